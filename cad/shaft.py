@@ -29,3 +29,12 @@ class Shaft:
     held: float  # [mm]
     loaded: float  # [mm]
     material: Material = STEEL_MATERIAL
+
+
+@dataclass(frozen=True)
+class PinPlace:
+    """Where the pin of a throw is [mm]: its axis at (throw, 0), its middle at z = 0."""
+
+    throw: float
+    radius: float
+    length: float  # of the cylinder, between its fillets

@@ -1,0 +1,154 @@
+"""A chain of throws' matrices against finite elements of the whole shaft, free and guided at all mains.
+
+    python -m benchmarks.crank_chain
+
+The shaft reaches from its first mid-main to its last, one end held. Both sides take the same level, so what
+differs is the chain: its sections are the means that loads see, and between mains it moves as loads at mains
+and pins do. The whole is the throws' solids joined, so that mid-mains are faces of its mesh. `series`: the
+stiffness of one throw with a free end, divided by their number; `series_guided`: that of a throw guided at
+its end. The rows are printed and kept in benchmarks/results/crank_chain.json.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator, Sequence
+from functools import cache
+from math import radians
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+from time import process_time
+from typing import Any
+
+import ngsolve as ng
+import numpy as np
+from netgen.occ import Axis, Glue, OCCGeometry, Pnt, Z
+
+from cad.analysis.chain import Chain, in_series
+from cad.analysis.elastic import Response, System
+from cad.analysis.levels import LEVELS, Level
+from cad.analysis.mesh import make_grid
+from cad.analysis.modes import torsional_mode
+from cad.analysis.solid import FREE, HELD, LOADED, Solid
+from cad.analysis.throw_matrix import ThrowMatrix, section_loads, throw_matrix
+from cad.cranks.chain_throw import throw_step
+from cad.cranks.whole import WholeShaft
+from cad.models.crankshaft_v2 import Crankshaft
+
+RESULTS = Path("benchmarks/results/crank_chain.json")
+LEVEL = LEVELS[0]
+GIVEN: dict[str, Any] = {
+    "journal_diameter": "55 mm", "journal_length": "26 mm", "pin_diameter": "48 mm", "pin_length": "32 mm",
+    "throw": "43 mm", "web_thickness": "18 mm", "web_width": "80 mm", "fillet": "2.5 mm",
+}  # fmt: skip
+CASES = (0.0, 180.0), (0.0, 120.0, 240.0), (0.0, 180.0, 180.0, 0.0)
+
+
+@cache
+def shaft(angles: tuple[float, ...]) -> WholeShaft:
+    """The shaft with pins at these angles [deg]."""
+    pins = {"value": list(angles), "unit": "deg"}
+    return Crankshaft.from_quantities({**GIVEN, "pin_angles": pins}).drawn()
+
+
+@cache
+def one(level: Level = LEVEL) -> ThrowMatrix:
+    """The matrices of its throw."""
+    step, ends, pin = throw_step(shaft((0.0,)), 0)
+    return throw_matrix(step, ends, pin, level)
+
+
+def whole(angles: Sequence[float], level: Level) -> tuple[System, list[str]]:
+    """Finite elements of all throws joined at mid-mains, which stay faces of the mesh; the mains' names."""
+    drawn = shaft(tuple(angles))
+    pieces = []
+    for k, angle in enumerate(angles):
+        step, held, _ = throw_step(drawn, k)
+        piece = solid_in(step)
+        piece = piece.Rotate(Axis(Pnt(0, 0, 0), Z), angle).Move((0, 0, drawn.pitch * k - held.held))
+        pieces.append(piece)
+    glued = Glue(pieces)
+    names = [HELD, *(f"main_{k}" for k in range(1, len(angles))), LOADED]
+    for face in glued.faces:
+        low, high = face.bounding_box
+        at = [
+            n
+            for n, z in zip(names, drawn.mains, strict=True)
+            if max(abs(low[2] - z), abs(high[2] - z)) < 1e-6
+        ]
+        face.name = at[0] if at else FREE
+    solid = Solid(glued, "", drawn.like.journal)
+    grid = make_grid(solid, level.fineness)
+    _, held, _ = throw_step(drawn, 0)
+    return System(grid, level.order, held.material, "torsion"), names[1:]
+
+
+def solid_in(step: bytes) -> Any:
+    """The one solid of a STEP file, as Netgen reads it."""
+    with NamedTemporaryFile(suffix=".step") as file:
+        file.write(step)
+        file.flush()
+        return next(iter(OCCGeometry(file.name).shape.solids))
+
+
+def response(system: System, mains: Sequence[str]) -> Response:
+    """The response to a unit torque at the loaded end, the named mains kept on the axis."""
+    force, _ = system.loads()
+    guides = []
+    for name in mains:
+        for field in section_loads(system, name)[:2]:
+            v = system.space.TestFunction()
+            guide = ng.LinearForm(system.space)
+            guide += field * v.Trace() * ng.ds(name)
+            guide.Assemble()
+            guides.append(guide.vec)
+    u = system.solve(force)
+    moved = [system.solve(guide) for guide in guides]
+    gram = np.array([[ng.InnerProduct(f, w) for w in moved] for f in guides]).reshape(
+        len(guides), len(guides)
+    )
+    shown = ng.GridFunction(system.space)
+    shown.vec.data = u
+    if guides:
+        held = np.array([ng.InnerProduct(guide, u) for guide in guides])
+        for reaction, w in zip(np.linalg.solve(gram, held), moved, strict=True):
+            shown.vec.data -= float(reaction) * w
+    return Response(system, ng.InnerProduct(force, shown.vec), shown, tuple(guides), tuple(moved), gram)
+
+
+def compared(angles: Sequence[float]) -> Iterator[dict[str, Any]]:
+    """By how much the chain differs from the whole, free and guided: relative, of stiffness and frequency."""
+    throws = [one()] * len(angles)
+    chain = Chain(throws, [radians(angle) for angle in angles])
+    system, mains = whole(angles, LEVEL)
+    for guided in (False, True):
+        answer = response(system, mains if guided else [])
+        stiffness, frequency = 1e-3 / answer.compliance, torsional_mode(answer).frequency
+        yield {
+            "pins": list(angles),
+            "guided": guided,
+            "stiffness_of_the_whole": stiffness,
+            "frequency_of_the_whole": frequency,
+            "chain": chain.stiffness(guided=guided) / stiffness - 1,
+            "chain_frequency": chain.frequency(guided=guided) / frequency - 1,
+            "series": in_series(throws, guided=False) / stiffness - 1,
+            "series_guided": in_series(throws, guided=True) / stiffness - 1,
+        }
+
+
+def main() -> None:
+    """Measure and keep all cases."""
+    rows = []
+    for angles in CASES:
+        for row in compared(angles):
+            print(json.dumps(row), file=sys.stderr, flush=True)
+            rows.append(row)
+    started = process_time()
+    one.__wrapped__()
+    kept = {"level": LEVEL.name, "seconds_of_a_throw": process_time() - started, "rows": rows}
+    RESULTS.write_text(json.dumps(kept, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,92 @@
+"""A crankshaft as a chain of throws: matrices of single throws, turned by their pins' angles and assembled.
+
+The first end is held. Guided, each main stays on the axis, as in a bearing, and may turn; else nothing else
+is held. Plain stiffnesses in series know of no bearings between the throws.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import cos, pi, sin, sqrt
+
+import numpy as np
+from scipy.linalg import block_diag, eigh
+
+from cad.analysis.throw_matrix import END, PIN, ThrowMatrix
+from templates.core.arrays import Array
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Throws one after the other, from the held end on; angles of their pins [rad]."""
+
+    throws: Sequence[ThrowMatrix]
+    angles: Sequence[float]
+
+    @property
+    def size(self) -> int:
+        """Freedoms: six of each main, then two of each pin."""
+        return END * (len(self.throws) + 1) + PIN * len(self.throws)
+
+    def assembled(self, name: str) -> Array:
+        """The `stiffness` or the `mass` of the chain, in axes that are those of the first section."""
+        whole = np.zeros((self.size, self.size))
+        pins = END * (len(self.throws) + 1)
+        for k, (throw, angle) in enumerate(zip(self.throws, self.angles, strict=True)):
+            turn = turned(angle)
+            at = np.r_[END * k : END * (k + 2), pins + PIN * k : pins + PIN * (k + 1)]
+            whole[np.ix_(at, at)] += turn.T @ getattr(throw, name) @ turn
+        return whole
+
+    def free_to_move(self, *, guided: bool) -> Array:
+        """The numbers of the freedoms that are not held."""
+        held = [*range(END)]
+        if guided:
+            held += [END * k + d for k in range(1, len(self.throws) + 1) for d in (0, 1)]
+        return np.setdiff1d(np.arange(self.size), held)
+
+    def stiffness(self, *, guided: bool) -> float:
+        """Torque at the last section for its rotation [N m/rad], the first one held."""
+        free = self.free_to_move(guided=guided)
+        torque = np.zeros(self.size)
+        last = END * len(self.throws) + 5
+        torque[last] = 1.0
+        turned_by = np.linalg.solve(self.assembled("stiffness")[np.ix_(free, free)], torque[free])
+        return float(1e-3 / turned_by[np.searchsorted(free, last)])
+
+    def frequency(self, *, guided: bool) -> float:
+        """Frequency [Hz] of the mode with the largest effective inertia about z, the first section held."""
+        free = self.free_to_move(guided=guided)
+        K, M = (self.assembled(name)[np.ix_(free, free)] for name in ("stiffness", "mass"))
+        squares, shapes = eigh(K, M)
+        moved = shapes.T @ M @ self._rotation()[free]
+        return sqrt(float(squares[np.argmax(moved**2)])) / (2 * pi)
+
+    def inertia(self) -> float:
+        """About z, of the whole as a rigid body [kg m²]."""
+        r = self._rotation()
+        return float(r @ self.assembled("mass") @ r) * 1e-3
+
+    def _rotation(self) -> Array:
+        """The freedoms when the whole turns by 1 rad about z."""
+        mains = np.tile([0.0, 0, 0, 0, 0, 1], len(self.throws) + 1)
+        pins = [
+            throw.throw * way
+            for throw, angle in zip(self.throws, self.angles, strict=True)
+            for way in (-sin(angle), cos(angle))
+        ]
+        return np.concatenate([mains, pins])
+
+
+def turned(angle: float) -> Array:
+    """Freedoms of a throw from those in axes that do not turn with its pin, (14, 14)."""
+    plane = np.array([[cos(angle), sin(angle)], [-sin(angle), cos(angle)]])
+    space = block_diag(plane, np.eye(1))
+    return np.asarray(block_diag(space, space, space, space, plane))
+
+
+def in_series(throws: Sequence[ThrowMatrix], *, guided: bool) -> float:
+    """Stiffness [N m/rad] of throws whose own stiffnesses, each alone, are put in series."""
+    alone = (Chain([throw], [0.0]).stiffness(guided=guided) for throw in throws)
+    return 1 / sum(1 / stiffness for stiffness in alone)

@@ -1,0 +1,129 @@
+"""Stiffness and mass of one crank throw as a member of a chain, by finite elements.
+
+The throw reaches from mid-main to mid-main: z = ±half, its pin at (throw, 0, 0). Its freedoms are the means
+of displacement [mm] and rotation [rad] of either end's section, six each, and the displacement of the pin
+across the shaft, two. A mean is the one that a load works on: of a force spread evenly, of a moment spread
+linearly.
+
+One end is held and eight unit loads act, six on the other end and two on the pin. They displace themselves
+by the flexibility F [8, 8]. With T [8, 14], what any freedoms displace relative to the first end as a rigid
+body, the stiffness is K = Tᵀ F⁻¹ T: it resists no rigid motion. The mass matrix is that of the same fields,
+rigid motions and responses to loads, so that its rigid part is the mass and inertia of the solid.
+
+Lengths in mm, forces in N, masses in t.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import ngsolve as ng
+import numpy as np
+
+from cad.analysis.elastic import System
+from cad.analysis.levels import LEVELS, Level
+from cad.analysis.mesh import make_grid
+from cad.analysis.solid import FREE, LOADED, read_solid
+from cad.shaft import PinPlace, Shaft
+from templates.core.arrays import Array
+
+END, PIN = 6, 2
+FREEDOMS = 2 * END + PIN
+
+_AXES = (ng.CF((1, 0, 0)), ng.CF((0, 1, 0)), ng.CF((0, 0, 1)))
+_INSIDE = 1e-4  # of a radius, by which a point may lie beyond the pin's surface and still be on it
+
+
+@dataclass(frozen=True)
+class ThrowMatrix:
+    """Stiffness and mass [14, 14] of a throw; freedoms of the end at -half, of that at +half, of the pin."""
+
+    stiffness: Array
+    mass: Array
+    pitch: float  # [mm]
+    throw: float  # [mm]
+
+
+def throw_matrix(step: bytes, shaft: Shaft, pin: PinPlace, level: Level = LEVELS[1]) -> ThrowMatrix:
+    """Stiffness and mass of the throw in a STEP file, which reaches from `shaft.held` to `shaft.loaded`."""
+    solid = read_solid(step, shaft, mirrors=())
+    system = System(make_grid(solid, level.fineness), level.order, shaft.material, "torsion")
+    pitch = shaft.loaded - shaft.held
+    loads = [*(system.traction(field) for field in section_loads(system, LOADED)), *_on_the_pin(system, pin)]
+    moved = [system.solve(load) for load in loads]
+    flexibility = np.array([[ng.InnerProduct(load, u) for u in moved] for load in loads])
+    relative = relative_motion(pitch, pin.throw)
+    forces = np.linalg.solve((flexibility + flexibility.T) / 2, relative)
+    basis = np.vstack([np.eye(END, FREEDOMS), forces])
+    return ThrowMatrix(
+        stiffness=relative.T @ forces,
+        mass=basis.T @ _mass(system, shaft.held, moved) @ basis,
+        pitch=pitch,
+        throw=pin.throw,
+    )
+
+
+def section_loads(system: System, name: str) -> list[Any]:
+    """Tractions of unit forces and moments on a flat section across z, whose centre is on the axis."""
+    mesh = system.grid.mesh
+    area, about_x, about_y = (
+        ng.Integrate(weight * ng.ds(name), mesh) for weight in (ng.CF(1), ng.y * ng.y, ng.x * ng.x)
+    )
+    moments = (
+        ng.CF((0, 0, ng.y)) / about_x,
+        ng.CF((0, 0, -ng.x)) / about_y,
+        ng.CF((-ng.y, ng.x, 0)) / (about_x + about_y),
+    )
+    return [*(axis / area for axis in _AXES), *moments]
+
+
+def relative_motion(pitch: float, throw: float) -> Array:
+    """What freedoms displace relative to the first end as a rigid body, (8, 14)."""
+    relative = np.zeros((END + PIN, FREEDOMS))
+    relative[:, END:] = np.eye(END + PIN)
+    relative[:END, :END] = -np.eye(END)
+    relative[0, 4], relative[1, 3] = -pitch, pitch
+    relative[6, 0], relative[6, 4] = -1, -pitch / 2
+    relative[7, 1], relative[7, 3], relative[7, 5] = -1, pitch / 2, -throw
+    return relative
+
+
+def _on_the_pin(system: System, pin: PinPlace) -> list[Any]:
+    """The vectors of unit forces along x and y, spread evenly over the pin's surface."""
+    off = (ng.x - pin.throw) ** 2 + ng.y**2
+    on_it = ng.IfPos((1 + _INSIDE) ** 2 * pin.radius**2 - off, 1.0, 0.0)
+    outside = ng.IfPos(off - (1 - _INSIDE) ** 2 * pin.radius**2, 1.0, 0.0)
+    along = ng.IfPos((pin.length / 2) ** 2 - ng.z**2, 1.0, 0.0)
+    here = on_it * outside * along
+    area = ng.Integrate(here * ng.ds(FREE), system.grid.mesh)
+    vectors = []
+    for axis in _AXES[:PIN]:
+        v = system.space.TestFunction()
+        force = ng.LinearForm(system.space)
+        force += here / area * axis * v.Trace() * ng.ds(FREE)
+        force.Assemble()
+        vectors.append(force.vec)
+    return vectors
+
+
+def _mass(system: System, held: float, moved: list[Any]) -> Array:
+    """Mass products [14, 14] of the rigid motions of the held end and of the responses to loads."""
+    u, v = system.space.TnT()
+    form = ng.BilinearForm(system.space, symmetric=False)
+    form += system.material.density * 1e-12 * ng.InnerProduct(u, v) * ng.dx
+    form.Assemble()
+    z = ng.z - held
+    rotations = (ng.CF((0, -z, ng.y)), ng.CF((z, 0, -ng.x)), ng.CF((-ng.y, ng.x, 0)))
+    fields = []
+    for motion in (*_AXES, *rotations):
+        field = ng.GridFunction(system.space)
+        field.Set(motion)
+        fields.append(field.vec)
+    fields += moved
+    products = np.zeros((len(fields), len(fields)))
+    done = form.mat.CreateColVector()
+    for row, field in enumerate(fields):
+        done.data = form.mat * field
+        products[row] = [ng.InnerProduct(done, other) for other in fields]
+    return (products + products.T) / 2
