@@ -122,3 +122,18 @@ def test_variants_may_have_pins_of_their_own(http):
     shown = http.get(f"{API}/designs/{saved['id']}/variants").json()
     assert {*shown["variants"]} >= {"twin", "same"}
     assert "failed" not in str(shown), shown
+
+
+def test_the_engine_of_the_gallery_has_its_crankshaft(http):
+    document = GALLERY["engine"].document
+    saved = created(http, {**document, "variants": {}})
+    assert saved["state"] == "current", saved
+    shaft = revision(http, saved)["models"]["crankshaft"]
+    assert [value % 360 for value in shaft["parameters"]["pin_angles"]["value"]] == [0, 180, 180, 0]
+    assert shaft["parameters"]["journal_length"]["value"] == pytest.approx(26)
+    answer = http.get(f"{API}/designs/{saved['id']}/models/crankshaft/model.step")
+    assert answer.status_code == 200
+    assert answer.content.startswith(b"ISO-10303-21;")
+    changed = patched(http, saved, {"steps": {"engine": {"inputs": {"crankpin_diameter": "50 mm"}}}})
+    assert changed["state"] == "current", changed
+    assert revision(http, changed)["models"]["crankshaft"]["build"] != shaft["build"]
