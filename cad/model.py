@@ -29,9 +29,10 @@ import numpy as np
 from cad.errors import GeometryError
 from cad.lists import listed
 from cad.shaft import STEEL_DENSITY, Shaft
-from templates.core.errors import Fault
+from templates.core.errors import Fault, InvalidInputs
 from templates.core.language.spec import Curve, Declaration
 from templates.core.language.template import Array, Template
+from templates.core.units.quantity import Typed
 
 if TYPE_CHECKING:
     from cadquery import Location, Shape
@@ -142,6 +143,8 @@ class CadModel(Template):
         """
         lists = {name for name, declared in cls.inputs.items() if isinstance(declared, Curve)}
         read = {name: listed(value) if name in lists else value for name, value in raw.items()}
+        if empty := [n for n, v in read.items() if isinstance(v, Typed) and np.size(v.si) == 0]:
+            raise InvalidInputs(Fault(name, "empty", "an array needs at least one value") for name in empty)
         return super().from_quantities(read, pending)
 
     def points(self) -> list[Fault]:
