@@ -49,9 +49,10 @@ def save(page, revision):
     expect(page.locator("[data-design-state]")).to_have_text("current", timeout=PATIENCE)
 
 
-@pytest.mark.usefixtures("plotted")
+@pytest.mark.parametrize("is_drawn", [False, pytest.param(True, marks=pytest.mark.slow)])
 @pytest.mark.skipif(not PDF_TO_TEXT, reason="needs Debian's package poppler-utils, which reads the PDF")
-def test_the_paper_in_a_browser(watched, tmp_path):
+def test_the_paper_in_a_browser(watched, tmp_path, is_drawn):
+    assert watched.plotted == is_drawn
     page = created(watched)
     expect(parameter(page, "model.inner_diameter")).to_have_text("50 mm")
     assert abs(width(page) - 90) < 0.2
