@@ -29,7 +29,7 @@ ABOUT = {
     ),
     "tests/app/test_backup.py": ("app/*maintenance/*.py", "app/*storage/*.py"),
     "tests/app/test_damage.py": ("app/solids/*.py", "app/*storage/*.py"),
-    "tests/app/test_demo.py": ("app/demo.py", "app/cli.py", "app/__main__.py", "app/server.py"),
+    "tests/app/test_demo.py": ("app/demo*.py", "app/cli.py", "app/serve_command.py", "app/__main__.py", "app/server.py"),
     "tests/app/test_designs_http.py": ("app/*jobs/*.py", "app/*workers/*.py"),
     "tests/app/test_embedded_start.py": ("app/*.py", "pyproject.toml"),
     "tests/app/test_events_resumed.py": ("app/*event*.py", "app/api/resuming.py"),
@@ -40,7 +40,7 @@ ABOUT = {
         "app/approval_commands.py",
     ),
     "tests/app/test_study_heals.py": ("app/studies/*.py", "app/*maintenance/*.py"),
-    "tests/app/test_calculations_in_processes.py": (
+    "tests/app/calculations/test_calculations_as_jobs.py": (
         "app/*jobs/*.py",
         "app/*workers/*.py",
         "app/calculations/*.py",

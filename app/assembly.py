@@ -165,7 +165,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
 def data_checks(
     database: Database, store: Artifacts, folder: DataFolder, settings: Settings
 ) -> dict[str, readiness.Check]:
-    """What must hold of the data for the service to be ready."""
+    """The conditions on the data under which the service is ready."""
     checks: dict[str, readiness.Check] = {
         "database": readiness.Writing(database),
         "space": readiness.Space(folder.path, settings.minimum_free_mb),
@@ -180,7 +180,7 @@ def register_answers(jobs: Jobs, *answering: LongAnswers) -> None:
 
 
 def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:
-    """What there is; every file of a team is checked in a process of the worker before it is loaded."""
+    """The catalogues. A process of the worker checks every file of a team before the server loads it."""
     if not settings.template_folders:
         return Catalogues(find_templates(()), find_models())
     limits = Limits(settings.template_seconds, settings.job_memory_mb)

@@ -73,7 +73,7 @@ def _moved(verdict: VerdictMoved) -> str:
 
 
 def _line(one: DesignImpact) -> str:
-    """What happens to a design, in short."""
+    """The effect on a design, in short."""
     if one.effect == "refused":
         return f"refused: {'; '.join(f'{fault.name}: {fault.detail}' for fault in one.refusals[:3])}"
     parts = [_moved(verdict) for verdict in one.verdicts[:3]]

@@ -171,7 +171,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
 
 
 def opened_traces(settings: Settings) -> Traces | None:
-    """What sends traces, if the settings name a collector; the packages belong to the extra `traces`."""
+    """The sender of traces, if the settings name a collector; its packages belong to the extra `traces`."""
     if settings.traces_url is None:
         return None
     from app.observation.traces import Traces

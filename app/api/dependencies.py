@@ -1,4 +1,4 @@
-"""What routes use, by annotation: a part of `Services`, and what a request says beside its body.
+"""Dependencies of routes, by annotation: parts of `Services`, and the parts of a request besides its body.
 
 The functions are async although they wait for nothing: FastAPI runs sync ones in a thread each.
 """

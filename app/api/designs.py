@@ -1,4 +1,4 @@
-"""What routes of designs share: parts of their paths, headers, and the answer once a design is saved."""
+"""Shared by the routes of designs: parts of their paths, headers, and the answer once a design is saved."""
 
 from __future__ import annotations
 

@@ -134,7 +134,7 @@ router = APIRouter(tags=["problems"])
 
 @router.get("/problems/{slug}", responses=refusals(404), dependencies=[public()])
 def explain_problem(slug: str) -> ProblemKind:
-    """What a kind of problem means, and what helps."""
+    """The meaning of a kind of problem, and the remedy."""
     if slug not in SLUGS:
         raise HTTPException(404, f"there is no problem {slug[:60]!r}")
     return ProblemKind(**vars(SLUGS[slug]))

@@ -1,4 +1,4 @@
-"""What this service asks of every request: a small body, JSON that is JSON, a precondition on changes.
+"""Requirements for every request: a small body, valid JSON, a precondition on changes.
 
 `StrictRoute` replaces FastAPI's lenient reading of bodies: pydantic's parser refuses lone surrogates and deep
 nesting, and nothing is guessed from a missing or wrong content type.

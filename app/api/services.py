@@ -39,7 +39,7 @@ from app.worksheets.service import Worksheets
 
 @dataclass(frozen=True)
 class Services:
-    """What the service consists of; each part ends with the application."""
+    """The parts of the service; each part ends with the application."""
 
     settings: Settings
     catalogues: Catalogues

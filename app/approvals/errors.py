@@ -1,4 +1,4 @@
-"""What can be wrong with a signature.
+"""Errors of signatures.
 
 ApprovalError
     NotReady            the revision is not calculated, or a file of it is missing

@@ -1,4 +1,4 @@
-"""What the calls of approvals and comments take."""
+"""Request bodies for approvals and comments."""
 
 from __future__ import annotations
 

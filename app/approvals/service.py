@@ -1,4 +1,4 @@
-"""What can be done with the approval of a revision: look, sign, withdraw."""
+"""The approval of a revision: read it, sign a step, withdraw."""
 
 from __future__ import annotations
 

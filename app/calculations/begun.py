@@ -12,7 +12,7 @@ from templates.core.units.quantity import Typed
 
 
 class Begun:
-    """What one request has begun and did not wait for; a job takes it over, or it is cancelled.
+    """Calculations that a request has begun and left; a job takes them over, or they are cancelled.
 
     Parameters
     ----------

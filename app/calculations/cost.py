@@ -140,7 +140,7 @@ def _points(cls: type[Template], shapes: Mapping[str, tuple[int, ...]]) -> Itera
 def _profiles(
     cls: type[Template], shapes: Mapping[str, tuple[int, ...]], outputs: Collection[str] | None
 ) -> float:
-    """What outputs along curves take beside those of the points [s]."""
+    """The time for outputs along curves, besides that for the points [s]."""
     curves = (math.prod(s) for name, s in shapes.items() if isinstance(cls.inputs.get(name), Curve))
     return min(MOST_POINTS, max(curves, default=0)) * len(_wanted(cls, outputs)) * PER_VALUE
 
@@ -204,7 +204,7 @@ def _evaluating(
 
 
 def _level_seconds(cls: type[Template], level: str, points: int) -> float:
-    """What a level was measured to take for so many points [s]; nothing, if it was not measured."""
+    """The measured time of a level for so many points [s]; None if it was not measured."""
     measured = accuracy(cls)
     cost = measured.content["levels"].get(level, {}).get("cost", {}) if measured else {}
     single = float(cost.get("single", 0.0))

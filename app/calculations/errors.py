@@ -1,4 +1,4 @@
-"""What can go wrong with calculations beside what templates refuse.
+"""Errors of calculations, besides the inputs that templates refuse.
 
 QueueFull
  └── TooManyCalculations   as many wait as may

@@ -1,4 +1,4 @@
-"""What can be asked of a template, by name: from the bytes of a request to the bytes of an answer.
+"""The operations on a template, by name: each turns the bytes of a request into the bytes of an answer.
 
 `answered` runs in a calculation process. Reading a large body and writing a large answer hold the interpreter
 as long as the calculation itself, so both are done there.
@@ -26,7 +26,7 @@ from templates.core.language.template import Template
 
 @dataclass(frozen=True)
 class Operation:
-    """What is asked: the model of the body, the check that calculates nothing, the forms of the answer."""
+    """An operation: the model of its body, the check that calculates nothing, the forms of its answer."""
 
     body: type[Asked]
     check: Callable[[type[Template], Any], None]  # takes an object of `body`

@@ -1,4 +1,4 @@
-"""What the calls of single templates take and give."""
+"""Request and answer bodies for single templates."""
 
 from __future__ import annotations
 

@@ -87,7 +87,7 @@ class Caller:
         return self.calculated(key, _evaluated, *question)
 
     def calculated(self, key: Hashable, function: Callable[[*Ts], T], *args: *Ts) -> T:
-        """What a function returns in the pool; blocks. A job that takes over knows it by its `key`.
+        """Run a function in the pool and wait for its result. A job that takes over finds it by its `key`.
 
         Raises
         ------
@@ -145,7 +145,7 @@ def evaluated_step(
 
 
 def in_the_pool(key: Hashable, function: Callable[[*Ts], T], *args: *Ts) -> T:
-    """What a function returns, calculated in the pool for the caller of this context, or here without one.
+    """Run a function in the pool for the caller of this context, or in this process if there is no pool.
 
     Raises
     ------
@@ -159,7 +159,7 @@ def in_the_pool(key: Hashable, function: Callable[[*Ts], T], *args: *Ts) -> T:
 
 
 def begun_steps() -> Begun | None:
-    """What the caller of this context has begun and does not wait for."""
+    """The calculations that the caller of this context has begun and does not wait for."""
     caller = _caller.get()
     return caller.begun if caller else None
 

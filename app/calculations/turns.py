@@ -1,4 +1,4 @@
-"""Whose calculation comes next: clients take turns, so that nobody waits for another's flood."""
+"""Turns of calculations: clients alternate, so a client does not wait for another client's flood."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What there is to use: templates and their versions."""
+"""The catalogue: templates and their versions."""

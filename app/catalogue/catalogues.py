@@ -1,4 +1,4 @@
-"""What a design can be made of: versions of this program, of a team's files, and of released worksheets.
+"""The parts of designs: versions of this program, of a team's files, and of released worksheets.
 
 The files of a team are read again when they change; `app.worksheets` says which worksheets there are.
 """
@@ -37,7 +37,7 @@ Drafts = Callable[[str, int], type[Template]]
 
 
 class Catalogues:
-    """What a design can be made of, as it is now; who uses one catalogue twice shall keep it meanwhile."""
+    """The catalogues as they are now. A caller that uses one of them twice keeps it in between."""
 
     def __init__(self, templates: Catalogue[Template], models: Catalogue[CadModel]) -> None:
         self.files = self.snapshot = Snapshot(templates, models)

@@ -57,7 +57,7 @@ class TeamFile:
 
 @dataclass(frozen=True)
 class Snapshot:
-    """What can be calculated and drawn at one time, the files of teams, and worksheets."""
+    """All templates and models at one time, with the files of teams and the worksheets."""
 
     templates: Catalogue[Template]
     models: Catalogue[CadModel]

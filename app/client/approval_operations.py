@@ -1,4 +1,4 @@
-"""What a client can ask of the service about approvals of revisions, and comments on them."""
+"""The client's calls about approvals of revisions, and comments on them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from app.schemas.approvals import Approvals, Comment, CommentList, Released, Ste
 
 
 def approvals(id: str, revision: int) -> Exchange[Approvals]:
-    """Who has calculated, checked and released a revision, and what there is to sign."""
+    """The principals that calculated, checked and released a revision, and the digest to sign."""
     return answered(Approvals, get(f"/designs/{id}/revisions/{revision}/approvals"))
 
 

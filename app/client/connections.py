@@ -16,7 +16,7 @@ Result = TypeVar("Result")
 
 
 class _Options(TypedDict):
-    """What every connection of httpx is made with."""
+    """The settings of every connection of httpx."""
 
     base_url: str
     timeout: float

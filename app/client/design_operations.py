@@ -1,4 +1,4 @@
-"""What a client can ask of the service about designs: each function is an exchange that returns a model."""
+"""The client's calls about designs: each function is an exchange that returns a model."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ def tags() -> Exchange[list[TagUse]]:
 def compare(
     id: str, revision: int | None = None, other: int | None = None, *, design: str | None = None
 ) -> Exchange[Comparison]:
-    """What differs from a revision to another one, of the same design or of another.
+    """The differences between two revisions, of the same design or of two designs.
 
     Without numbers: the newest revision with the one before, or the newest ones of both designs.
     """
@@ -143,7 +143,7 @@ def compare(
 
 
 def preview(id: str, patch: Mapping[str, object], *, worksheet: bool = False) -> Exchange[Preview]:
-    """What a change would do; nothing is saved. `worksheet` adds every step, its formulas written out."""
+    """The effect of a change; nothing is saved. `worksheet` adds every step with its formulas written out."""
     asked = "?worksheet=true" if worksheet else ""
     return calculated(Preview, post(f"/designs/{id}/preview{asked}", patch))
 
@@ -179,7 +179,7 @@ def explain(id: str, name: str, *, units: System = "si") -> Exchange[Explanation
 
 
 def network(id: str) -> Exchange[DesignNetwork]:
-    """What drives what in a design, and the names that its relations may use."""
+    """The dependencies in a design, and the names that its relations may use."""
     return answered(DesignNetwork, get(f"/designs/{id}/network"))
 
 
@@ -194,7 +194,7 @@ def revisions(id: str) -> Exchange[list[Revision]]:
 
 
 def measurements(id: str) -> Exchange[dict[str, ModelMeasurements]]:
-    """What the newest good models measure, by the name of the model."""
+    """Measurements of the newest good models, by the name of the model."""
     return answered(dict[str, ModelMeasurements], get(f"/designs/{id}/measurements"))
 
 

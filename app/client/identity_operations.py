@@ -1,4 +1,4 @@
-"""What a client can ask of the service about principals and keys: each function is an exchange."""
+"""The client's calls about principals and keys: each function is an exchange."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _PATH = "/principals"
 
 
 def me() -> Exchange[Me]:
-    """Who this client is for the service, with roles, limits and usage."""
+    """The principal of this client, with roles, limits and usage."""
     return answered(Me, get("/me"))
 
 
@@ -31,7 +31,7 @@ def change_principal(id: str, **changes: object) -> Exchange[Principal]:
 
 
 def usage(id: str) -> Exchange[Usage]:
-    """What a principal has used, and its limits."""
+    """The usage and limits of a principal."""
     return answered(Usage, get(f"{_PATH}/{id}/usage"))
 
 

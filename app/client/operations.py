@@ -1,4 +1,4 @@
-"""What a client can ask of the service: each function is an exchange that returns a model."""
+"""The client's calls: each function is an exchange that returns a model."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ def impact(
     units: System = "si",
     on_progress: Progress | None = None,
 ) -> Exchange[Impact]:
-    """What a version of a template does to the designs that use another one, worst first; nothing is saved.
+    """The effect of a version on the designs that use another one, worst first; nothing is saved.
 
     All designs that are not archived, unless ids, a part of the name or tags select some.
     """

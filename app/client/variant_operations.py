@@ -1,4 +1,4 @@
-"""What a client can ask about the variants of designs: exchanges, as those of `operations`."""
+"""The client's calls about the variants of designs: exchanges, as in `operations`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a client can ask of the service about worksheets: each function is an exchange."""
+"""The client's calls about worksheets: each function is an exchange."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def import_worksheet(
 
 
 def read_import(id: str) -> Exchange[SheetImport]:
-    """What became of every region of the sheet that a worksheet was imported from."""
+    """The result of the import for every region of the original sheet."""
     return answered(SheetImport, get(f"{_PATH}/{id}/import"))
 
 

@@ -57,7 +57,7 @@ def _reason(model: Block, name: str, called: str, others: list[Reference]) -> st
 
 
 def _named(graph: Graph, model: Block, name: str, called: str) -> Iterator[Reference]:
-    """What is called so: outputs and inputs of steps first, then parameters of the design."""
+    """The values of this name: outputs and inputs of steps first, then parameters of the design."""
     steps = [block for block in graph.blocks.values() if not block.is_model]
     fitting = [
         step for step in steps if _tells_its_part(called) or (called == name and _share_a_role(step, model))

@@ -1,4 +1,4 @@
-"""What comes out of the calculation of a design."""
+"""The results of the calculation of a design."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Prepared = Evaluation | Literal["deferred"]
 
 @dataclass
 class Calculation:
-    """What came out; all values are in SI."""
+    """The results; all values are in SI."""
 
     graph: Graph
     assumed: Mapping[Reference, float] = field(default_factory=dict)  # with which iterations begin a round

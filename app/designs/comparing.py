@@ -48,7 +48,7 @@ class Pair:
 
 
 def compare(session: Session, pair: Pair) -> Comparison:
-    """What differs between the two revisions.
+    """The differences between the two revisions.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What drives what in a design: its blocks in columns, its relations, and the names that these may use."""
+"""The dependencies in a design: its blocks in columns, its relations, and the names that these may use."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Columns = Mapping[str, int]
 
 
 def network_of(graph: Graph) -> DesignNetwork:
-    """What drives what in a checked network."""
+    """The dependencies in a checked network."""
     columns = _columns(graph)
     return DesignNetwork(
         blocks=[NetworkBlock(name=name, kind=_kind(graph, name), column=columns[name]) for name in columns],

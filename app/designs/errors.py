@@ -1,4 +1,4 @@
-"""What can be wrong with a request about designs, beyond wrong inputs.
+"""Errors of requests about designs, besides wrong inputs.
 
 DesignError
     StaleRevision       the design has changed since the client read it

@@ -52,7 +52,7 @@ class Explainer:
         self.depth = depth
 
     def of(self, reference: Reference) -> JsonObject:
-        """What a name is, and what it follows from."""
+        """The meaning of a name, and the values on which it depends."""
         name = str(reference)
         if reference in self.explained:
             return {"name": name, "kind": "told_above"}

@@ -37,7 +37,7 @@ def explain_any(document: Document, calculation: Calculation, name: str) -> Json
 
 
 def _explainable(parameters: Sequence[str], criteria: Sequence[str]) -> str:
-    """What can be explained in a design, in words."""
+    """The names that can be explained in a design, in words."""
     kinds = {"parameters of models": parameters, "verdicts of criteria": criteria}
     there = [f"{kind} ({', '.join(names)})" for kind, names in kinds.items() if names]
     if not there:
@@ -81,7 +81,7 @@ class _Sides:
             yield {"name": relation.text, "kind": "written", **({"source": source} if source else {})}
 
     def _link(self, name: str) -> JsonObject:
-        """What a name follows from, or who gave it."""
+        """The values on which a name depends, or the person who gave it."""
         if name in self.subject.references:
             return self.explainer.of(self.subject.references[name])
         return self._limit(self.subject.criterion.limits_by_name[name])

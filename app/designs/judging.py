@@ -100,7 +100,7 @@ class Judging:
         yield _named(judgement, block, demand)
 
     def _instead(self, block: Block, evaluated: Evaluated, criterion: Criterion) -> Instead | None:
-        """What is judged where a side has no value, with the errors from upstream."""
+        """The judgement where a side has no value, with the errors from upstream."""
         missing = missing_of(evaluated, criterion)
         if missing is None or missing.instead is None:
             return None

@@ -79,7 +79,7 @@ class Block:
 
     @cached_property
     def solid(self) -> Solid:
-        """What is built of a model."""
+        """The build of a model."""
         return Solid(self)
 
     @cached_property

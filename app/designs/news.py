@@ -1,4 +1,4 @@
-"""What those who watch a design hear of its changes; its job notes how the regeneration goes on."""
+"""News for those who watch a design: its changes, and the progress of its regeneration."""
 
 from __future__ import annotations
 

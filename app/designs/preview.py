@@ -1,4 +1,4 @@
-"""What a change would do, before it is saved: outputs and model parameters, old beside new."""
+"""The effect of a change before it is saved: outputs and model parameters, old beside new."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from templates.core.judging.judgement import Judgement
 
 @dataclass(frozen=True)
 class Previewed:
-    """What a change would do; without what depends on deferred steps it is not whole."""
+    """The effect of a change; it is incomplete where something depends on deferred steps."""
 
     content: Preview
     is_whole: bool

@@ -23,7 +23,7 @@ from app.storage.tables import BuildRow, DesignRow, RevisionModelRow, RevisionRo
 
 @dataclass(frozen=True)
 class Written:
-    """What a save writes into a new revision."""
+    """The content of a new revision."""
 
     document: JsonObject
     results: JsonObject | None

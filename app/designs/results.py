@@ -1,4 +1,4 @@
-"""What a calculated design leaves in its revision: steps with answers, models with parameters, as JSON."""
+"""The results of a design as its revision stores them, as JSON: steps with answers, models with parameters."""
 
 from __future__ import annotations
 

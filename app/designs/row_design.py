@@ -38,7 +38,7 @@ FEWEST_TIMED = 64  # rows of a call from which the time of others is estimated
 
 @dataclass(frozen=True)
 class Wanted:
-    """What is asked for: values by name, and inputs as steps are evaluated with them."""
+    """The values that the caller wants, by name, and the inputs with which steps are evaluated."""
 
     references: frozenset[Reference]
     inside: frozenset[Reference] = frozenset()
@@ -65,11 +65,11 @@ class RowDesign:
 
     @cached_property
     def moving(self) -> Varying:
-        """What differs from row to row."""
+        """The values that differ from row to row."""
         return varying(self.graph, self.varied)
 
     def needs(self, wanted: Wanted) -> Needs:
-        """What some values follow from."""
+        """The cells on which some values depend."""
         return needs(self.graph, wanted.references, self.varied | self.measured.keys(), wanted.inside)
 
     def steps(self, wanted: Wanted) -> list[Block]:

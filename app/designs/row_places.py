@@ -85,7 +85,7 @@ def place_faults(
 
 
 def _followed(cell: Cell) -> str:
-    """What to vary instead of a relation."""
+    """The places to vary instead of a relation."""
     text = cell.raw if isinstance(cell.raw, str) else "a list with relations"
     instead = f"; vary {', '.join(sorted(cell.uses))} instead, or write a value there" if cell.uses else ""
     return f"{cell.name} follows from others ({text.strip()}){instead}"

@@ -1,4 +1,4 @@
-"""What comes out of many rows of a design: columns, errors, levels, and why rows have no values."""
+"""The results of many rows of a design: columns, errors, levels, and why rows have no values."""
 
 from __future__ import annotations
 

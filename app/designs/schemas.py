@@ -1,4 +1,4 @@
-"""What the calls of designs take, beside the design itself."""
+"""Request bodies for designs, besides the design itself."""
 
 from __future__ import annotations
 

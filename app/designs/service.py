@@ -1,4 +1,4 @@
-"""What can be done with designs; decides, and leaves SQL to the repository and geometry to the jobs."""
+"""The operations on designs. This module decides; the repository has the SQL, jobs build the geometry."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ LONGEST_PLACE = 200  # characters of where in a document something is wrong
 
 @dataclass(frozen=True)
 class Saved:
-    """What a change led to: a revision, and the job that regenerates it, if one is needed."""
+    """The result of a change: a revision, and the job that regenerates it if it needs one."""
 
     design: str
     revision: int
@@ -190,7 +190,7 @@ class Designs:
         return self._saved(unit, draft)
 
     def _draft(self, raw: Mapping[str, Raw], note: str | None, action: str) -> _Draft:
-        """What to write for a document; its results wait for a job if anything in it does."""
+        """The revision to write for a document; its results wait for a job if any part of it waits."""
         document, calculation = self.prepare(raw)
         raise_if(calculation.faults)
         outcomes = self._variants(document, calculation)
@@ -324,7 +324,7 @@ def resolved(document: Document, catalogues: Catalogues) -> Document:
 
 
 def built(database: Database) -> Measured:
-    """What models measure, for those that have been built.
+    """Measurements of the models that have been built.
 
     It is looked up when asked for: a step may take minutes, and no connection is held meanwhile.
     """
@@ -343,7 +343,7 @@ def analyses_wanted(graph: Graph) -> bool:
 
 
 def analysed(database: Database) -> Analysed:
-    """What finite elements computed on models, where all that is wanted is stored; likewise."""
+    """Results of finite elements on models, where all wanted results are stored; likewise."""
 
     def stored(shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Outputs | None:
         with database.read() as session:

@@ -1,4 +1,4 @@
-"""What the files of a revision's model say of their design when they are downloaded."""
+"""The stamp that a downloaded file of a model carries: its design, revision, date and materials."""
 
 from __future__ import annotations
 

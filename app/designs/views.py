@@ -41,7 +41,7 @@ def design(row: DesignRow, revision: RevisionRow) -> Design:
 
 
 def _variants(document: JsonObject) -> JsonObject:
-    """What the variants of a design override, in their natural order; nothing where there are none."""
+    """The overrides of the variants of a design, in their natural order; empty if it has no variants."""
     variants = document.get("variants", {})
     return {"variants": {name: variants[name] for name in sorted(variants, key=natural)}} if variants else {}
 
@@ -123,7 +123,7 @@ def _model(session: Session, row: RevisionModelRow) -> JsonObject:
 
 
 def measurements(session: Session, id: str) -> dict[str, ModelMeasurements]:
-    """What the newest good model of every name measures."""
+    """Measurements of the newest good model of every name."""
     head = repository.head(session, id)
     measured: dict[str, ModelMeasurements] = {}
     for model in head.models:

@@ -1,1 +1,1 @@
-"""Who may do what, who did what: principals, keys, sessions, roles, approvals, audit, limits."""
+"""Identity: principals, keys, sessions, roles, approvals, audit and limits."""

@@ -49,7 +49,7 @@ ANONYMOUS = Principal("anonymous", "nobody", "person", frozenset())
 """Whoever has sent no valid key where keys are asked for."""
 
 BUILT_IN = frozenset({LOCAL.id, SYSTEM.id, ANONYMOUS.id})
-"""Who has no row: nothing limits them, and nothing is counted for them."""
+"""Principals without a row: the service neither limits them nor counts their usage."""
 
 
 def client_of(principal: str) -> str:

@@ -13,7 +13,7 @@ from app.settings import Settings
 
 @dataclass(frozen=True)
 class Limits:
-    """What one principal may use.
+    """The limits of one principal.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ def any_principal(session: Session) -> bool:
 
 
 def holder(session: Session, prefix: str, key: str) -> Guest | None:
-    """Whose key this is; None if it is not valid, for whatever reason.
+    """The owner of a key; None if the key is not valid, for whatever reason.
 
     Whether there is such a prefix makes no difference in what is done.
     """

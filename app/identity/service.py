@@ -39,7 +39,7 @@ _TOKEN_BYTES = 32
 
 @dataclass(frozen=True)
 class Changes:
-    """What shall be different about a principal; None: it stays."""
+    """A change of a principal; a field that is None stays."""
 
     name: str | None = None
     roles: Sequence[Role] | None = None
@@ -48,7 +48,7 @@ class Changes:
 
 
 class Identity:
-    """Who may use the service."""
+    """The principals of the service, with their keys."""
 
     def __init__(self, database: Database, settings: Settings) -> None:
         self._database, self._settings = database, settings
@@ -176,7 +176,7 @@ class Identity:
             return rows.keys_of(session, principal)
 
     def usage(self, principal: str) -> tuple[Used, Limits | None]:
-        """What a principal has used, and its limits, for itself or an administrator.
+        """The usage and limits of a principal, for itself or an administrator.
 
         Raises
         ------

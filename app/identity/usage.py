@@ -24,7 +24,7 @@ _RAISE = text(
 
 @dataclass(frozen=True)
 class Used:
-    """What a principal has used today (UTC), how many bytes it has stored in all, and how many jobs wait."""
+    """The usage of a principal: calculation today (UTC), stored bytes, and waiting jobs."""
 
     requests: int
     jobs: int
@@ -57,7 +57,7 @@ def note_bytes(session: Session, size: int) -> None:
 
 
 def used(session: Session, principal: str) -> Used:
-    """What a principal has used."""
+    """The usage of a principal."""
     row = session.get(UsageRow, (principal, today()), populate_existing=True)
     total = select(StorageRow.bytes).where(StorageRow.principal_id == principal)
     waiting = select(func.count()).where(JobRow.client == client_of(principal), JobRow.state == "queued")

@@ -18,7 +18,7 @@ def principal(row: PrincipalRow) -> schemas.Principal:
 
 
 def me(who: Principal, amounts: schemas.Usage) -> schemas.Me:
-    """Who sends the request."""
+    """The principal that sends the request."""
     roles = [role for role in ROLES if role in who.roles]
     return schemas.Me(id=who.id, name=who.name, kind=who.kind, roles=roles, usage=amounts)
 
@@ -29,7 +29,7 @@ def key(row: ApiKeyRow) -> schemas.Key:
 
 
 def used(amounts: Used, limits: Limits | None) -> schemas.Usage:
-    """What was used, beside the limits."""
+    """The usage beside the limits."""
     return schemas.Usage(
         requests=amounts.requests,
         jobs=amounts.jobs,

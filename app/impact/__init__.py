@@ -1,1 +1,1 @@
-"""What a version of a template does to the designs that use another one; nothing is written."""
+"""The effect of a version of a template on the designs that use another one; nothing is written."""

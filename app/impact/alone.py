@@ -24,7 +24,7 @@ from templates.core.units.units import Value, unit
 def outcome_alone(
     document: Document, catalogues: Catalogues, solids: Solids, settled: Mapping[Reference, float]
 ) -> Outcome:
-    """What a document comes to.
+    """The result of a document.
 
     `settled` are the values [SI] with which its iterations ended; they are taken as they are, because each
     round would need a solid.

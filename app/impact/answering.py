@@ -1,4 +1,4 @@
-"""What one design says of a version: everything that moves, of the design itself and of its variants."""
+"""The effect of a version on one design: every change, in the design itself and in its variants."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Pairs = Mapping[str | None, tuple[Outcome, Outcome]]
 def impact_of(
     batch: Batch, design: DesignAt, document: Document, pairs: Pairs, catalogues: Catalogues
 ) -> DesignImpact | None:
-    """What moves in a design; None if nothing does."""
+    """The changes in a design; None if nothing changes."""
     about = described(design, document, batch.template, batch.version)
     if refusals := list(_refusals(pairs)):
         given = {"refusals": refusals[:MOST_NAMED], **_remedies(batch, document, pairs, catalogues)}

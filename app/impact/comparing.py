@@ -26,7 +26,7 @@ UNREMARKABLE = {(None, "met"), (None, "not_checked"), ("not_checked", None)}
 
 @dataclass(frozen=True)
 class Difference:
-    """What moves, of one design or one variant.
+    """The changes in one design or one variant.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Difference:
 
 
 def difference(before: Outcome, after: Outcome, variant: str | None) -> Difference:
-    """What moves between two outcomes without faults."""
+    """The changes between two outcomes without faults."""
     moved = sorted(_outputs(before, after), key=lambda one: (-one[1], one[0]))
     output = _shown(before, after, moved[0][0], variant) if moved else None
     names = after.values.keys() | {name for name in before.values if _is_of_waiting(name, after)}

@@ -1,4 +1,4 @@
-"""What designs of one structure have in common, and the quantities in which they differ.
+"""The common part of designs of one structure, and the quantities in which they differ.
 
 Two documents have one form if they are equal but for single quantities of equal kind: parameters, inputs of
 steps, parameters of models. Everything else, such as relations, choices, curves, limits and criteria, is part

@@ -1,4 +1,4 @@
-"""What a design comes to with one version of a template, whichever way it was calculated."""
+"""The result of a design with one version of a template, however it was calculated."""
 
 from __future__ import annotations
 

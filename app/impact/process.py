@@ -1,4 +1,4 @@
-"""What a calculation process does for the impact of a version: some designs, with both versions."""
+"""The impact of a version in a calculation process: some designs, calculated with both versions."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ def worst_first(moved: Iterable[VerdictMoved]) -> list[VerdictMoved]:
 
 
 def rank(impact: DesignImpact) -> tuple[int, float, float, str]:
-    """What designs are sorted by."""
+    """The key by which designs are sorted."""
     worst = min((severity(one) for one in impact.verdicts), default=MOVED)
     if impact.effect == "refused":
         worst = REFUSED

@@ -52,7 +52,7 @@ def _settled(session: Session, id: str, number: int) -> tuple[tuple[str, float],
 
 
 def solids_of(session: Session, batch: Collection[tuple[DesignAt, Document]]) -> Solids:
-    """What is known of the solids of some designs and of their variants."""
+    """The stored measurements of the solids of some designs and of their variants."""
     with_models = [(design.id, design.revision) for design, document in batch if document.models]
     at = tuple_(RevisionModelRow.design_id, RevisionModelRow.number).in_(with_models)
     keys = {key for key in session.scalars(select(RevisionModelRow.build_key).where(at)) if key}

@@ -1,4 +1,4 @@
-"""What the call for the impact of a version takes."""
+"""The request body for the impact of a version."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is known of the solids of some designs, as a calculation process takes it."""
+"""The stored measurements of the solids of some designs, as a calculation process takes them."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class Solids:
     analyses: Mapping[str, Outputs] = field(default_factory=dict)
 
     def measured(self, shape: CadModel) -> Measures | None:
-        """What a model measures, if its solid is among these."""
+        """The measurements of a model, if its solid is among these."""
         return self.builds.get(build_key(shape))
 
     def analysed(self, shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Outputs | None:
-        """What finite elements computed on a model, if all that is wanted is among these."""
+        """The results of finite elements on a model, if all wanted results are among these."""
         outputs = self.analyses.get(question.key(build_key(shape)), {})
         if not set(wanted) <= outputs.keys():
             return None

@@ -73,7 +73,7 @@ class Survey:
     catalogues: Catalogues
 
     def impact(self) -> Impact:
-        """What the version does to them."""
+        """The effect of the version on them."""
         asked = self.asked
         chosen = None if asked.body.designs is None else set(asked.body.designs)
         tags = tuple(dict.fromkeys(map(key_of, asked.body.tags)))

@@ -1,4 +1,4 @@
-"""What a handler can do while its job runs."""
+"""The tools of a handler while its job runs."""
 
 import logging
 import threading

@@ -1,4 +1,4 @@
-"""What the rest of the server can do with jobs."""
+"""The operations on jobs for the rest of the server."""
 
 from __future__ import annotations
 

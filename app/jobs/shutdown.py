@@ -1,4 +1,4 @@
-"""What begins as soon as the server is asked to stop.
+"""The work that begins as soon as the server receives a signal to stop.
 
 uvicorn waits for open responses before it runs the end of the lifespan, so a stream of events would keep it
 from stopping. The signal itself has to end the streams, and to keep new jobs from being begun.

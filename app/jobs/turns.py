@@ -1,4 +1,4 @@
-"""Whose job comes next: clients take turns, so nobody's many jobs delay another's one. All SQL about that.
+"""Turns of jobs: clients alternate, so that one cannot delay the others. All SQL about turns.
 
 A client's new job takes the turn after its own last one, but none before the turn that the queue is at; jobs
 run by turn, those of one turn by age. So a newcomer comes second, however many jobs of another client wait.

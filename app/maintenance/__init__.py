@@ -1,1 +1,1 @@
-"""What an operator does with a data folder from the command line: check, repair, back up, restore."""
+"""Maintenance of a data folder from the command line: check, repair, back up, restore."""

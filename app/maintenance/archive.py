@@ -1,4 +1,4 @@
-"""What a backup holds, in this order: `manifest.json`, the database, the artifacts, `end.json`.
+"""The archive of a backup, in this order: `manifest.json`, the database, the artifacts, `end.json`.
 
 A tar file, compressed by gzip if its name ends with gz. An artifact is named by the hash of its bytes, the
 manifest holds that of the database, and the last entry says that the archive is whole.

@@ -28,7 +28,7 @@ Say = Callable[[str], None]
 
 @dataclass
 class Findings:
-    """What is wrong in a data folder; `damaged` and `unnamed` can be repaired."""
+    """The faults of a data folder; `damaged` and `unnamed` files can be repaired."""
 
     database: list[str] = field(default_factory=list)
     references: list[str] = field(default_factory=list)

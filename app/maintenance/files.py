@@ -45,7 +45,7 @@ class Files(Protocol):
         ...
 
     def place(self, sha: str) -> str:
-        """Where a file lies."""
+        """The place of a file."""
         ...
 
     def quarantined(self) -> int:
@@ -76,7 +76,7 @@ class FolderFiles:
     folder: Path
 
     def path(self, sha: str) -> Path:
-        """Where a file lies, or would."""
+        """The place of a file, whether it exists or not."""
         return self.folder / sha[:2] / sha
 
     def ages(self) -> dict[str, float]:
@@ -99,7 +99,7 @@ class FolderFiles:
         return self.path(sha).stat().st_size
 
     def place(self, sha: str) -> str:
-        """Where a file lies."""
+        """The place of a file."""
         return str(self.path(sha))
 
     def quarantined(self) -> int:
@@ -138,7 +138,7 @@ class BucketFiles:
         return self._sizes[sha]
 
     def place(self, sha: str) -> str:
-        """Where an object lies."""
+        """The place of an object."""
         return f"{self._url}/{sha}"
 
     def quarantined(self) -> int:

@@ -1,4 +1,4 @@
-"""What no line of a log and no answer may hold: keys of the interface."""
+"""Secrets: keys of the interface are removed from lines of the log and from answers."""
 
 from __future__ import annotations
 

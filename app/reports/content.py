@@ -1,4 +1,4 @@
-"""What a report says, in plain data: built once, shown by the page and by the typesetter alike.
+"""The content of a report as plain data: built once, then shown by the page and by the typesetter.
 
 Formulas are MathML, numbers are texts; nothing here knows HTML or Typst.
 """

@@ -1,4 +1,4 @@
-"""What can go wrong with a report; nothing here knows HTTP."""
+"""Errors of reports; nothing here knows HTTP."""
 
 
 class Unprintable(Exception):

@@ -193,7 +193,7 @@ def _round(one: schemas.Round) -> Round:
 
 
 def _summary(steps: Sequence[Step], models: Sequence[Model]) -> list[str]:
-    """What a checker wants to know besides the verdict: warnings, values out of range, violated rules."""
+    """The notes for a checker besides the verdict: warnings, values out of range, violated rules."""
     warnings = sum(len(step.warnings) for step in steps) + sum(len(model.warnings) for model in models)
     outside = [f"{step.name}: {one.words}" for step in steps for one in step.ranges if not one.holds]
     rules = [(part.name, part.rules) for part in steps] + [(part.name, part.rules) for part in models]

@@ -31,7 +31,7 @@ from templates.core.paper.verdicts import Check
 WAITS = "waits for a solid that is not built"
 GUARD = 1e-5  # a domain that is used less than this guards against overflow and says nothing to an engineer
 OF_CURVE = " of its largest value"
-"""What the error of a curve is relative to: it may cross zero."""
+"""The reference value for the error of a curve, which may cross zero."""
 KINDS = {"domain": "range", "published": "published range", "rule": "rule", "warning": "rule"}
 RANGES = ("domain", "published")
 
@@ -187,7 +187,7 @@ def _error(error: Json, *, is_curve: bool) -> str:
 
 
 def words_of(name: str, cls: Class) -> str:
-    """What a name means, in words."""
+    """The meaning of a name, in words."""
     declared = _declared(name, cls)
     return declared.meaning.words if declared else name.replace("_", " ")
 

@@ -19,7 +19,7 @@ SIGNS = {"met": "met", "not_met": "NOT MET", "undecided": "undecided", "not_chec
 
 
 def variants_of(out: VariantsOut, *, pending: bool) -> Variants:
-    """What a report says of all variants; `pending` if their pictures are still being made."""
+    """The content of a report of all variants; `pending` while the service makes their pictures."""
     rows = _worst_first(out)
     first = next((row for row in rows if out.governing and row.name == out.governing.variant), None)
     return Variants(

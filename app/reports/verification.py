@@ -1,4 +1,4 @@
-"""What of a printed report holds, line by line, against the approval that a service has."""
+"""The verification of a printed report, line by line, against the service's approval."""
 
 from __future__ import annotations
 

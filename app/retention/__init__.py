@@ -1,1 +1,1 @@
-"""What is deleted once nobody wants it: ended jobs, idempotency keys, events, builds, their files."""
+"""Retention: the service deletes old jobs, idempotency keys, events, unused builds and their files."""

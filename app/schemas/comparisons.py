@@ -1,4 +1,4 @@
-"""What differs between two revisions, of one design or of two."""
+"""The differences between two revisions, of one design or of two."""
 
 from __future__ import annotations
 

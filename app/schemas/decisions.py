@@ -1,4 +1,4 @@
-"""What `decide` answers: criteria as far as they could be decided, and what that took."""
+"""Answers of `decide`: the criteria as far as they could be decided, and the work that this took."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a template or model declares of each input, parameter and output, read from its JSON Schemas."""
+"""The declarations of inputs, parameters and outputs of a template or model, read from its JSON Schemas."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ _NAMES = TypeAdapter(frozenset[str])
 
 
 def properties(schema: Schema) -> dict[str, Declared]:
-    """What a schema declares, by name, in its order."""
+    """The declarations in a schema, by name, in its order."""
     return _PROPERTIES.validate_python(schema.get("properties", {}))
 
 

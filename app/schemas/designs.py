@@ -203,7 +203,7 @@ class RevisionList(Page[Revision]):
 
 
 class ModelMeasurements(Measurements):
-    """What the newest good solid of a model measures."""
+    """Measurements of the newest good solid of a model."""
 
     revision: int
     build: str
@@ -246,7 +246,7 @@ class RevisionWorksheet(Revision):
 
 
 class Preview(Answer):
-    """What a change would do; nothing is saved."""
+    """The effect of a change; nothing is saved."""
 
     revision: int = Field(description="with which revision it is compared")
     outputs: dict[str, Change]
@@ -274,7 +274,7 @@ class Sensitivity(Answer):
 
 
 class Explanation(Answer):
-    """What a name is, and what it follows from."""
+    """The meaning of a name, and the values on which it depends."""
 
     name: str
     kind: str

@@ -23,7 +23,7 @@ class Author(Answer):
 
 
 class Limits(Answer):
-    """What a principal may use."""
+    """The limits of a principal."""
 
     requests_per_minute: float = Field(description="of one server [1/min]")
     storage_mb: float = Field(
@@ -35,7 +35,7 @@ class Limits(Answer):
 
 
 class Usage(Answer):
-    """What a principal has used today (UTC), and what it has stored in all."""
+    """The usage of a principal today (UTC), and the bytes that it has stored."""
 
     requests: int = Field(description="requests today; counted every few seconds")
     jobs: int = Field(description="jobs that were queued today")
@@ -61,7 +61,7 @@ class PrincipalList(Page[Principal]):
 
 
 class Me(Answer):
-    """Who sends the request, and what that may."""
+    """The principal of the request, and its rights."""
 
     id: str
     name: str
@@ -116,7 +116,7 @@ class LimitsIn(Bounded):
 
 
 class PrincipalPatch(Bounded):
-    """What shall be different about a principal."""
+    """A change of a principal."""
 
     model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"disabled": True}]})
 

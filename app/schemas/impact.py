@@ -1,4 +1,4 @@
-"""What a version of a template does to the designs that use another one."""
+"""The effect of a version of a template on the designs that use another one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What drives what in a design, as the interface shows it."""
+"""The dependencies in a design, as the interface shows them."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class NetworkName(Answer):
 
 
 class DesignNetwork(Answer):
-    """What drives what in a design, and the names that its relations may use."""
+    """The dependencies in a design, and the names that its relations may use."""
 
     blocks: list[NetworkBlock] = Field(description="in the order of calculation")
     relations: list[NetworkRelation]

@@ -34,7 +34,7 @@ class Problem(BaseModel):
 
 
 class ProblemKind(BaseModel):
-    """What a kind of problem means."""
+    """The meaning of a kind of problem."""
 
     slug: str
     status: int

@@ -26,7 +26,7 @@ class Inertia(Answer):
 
 
 class Measurements(Answer):
-    """What was measured on the finished STEP file."""
+    """Measurements of the finished STEP file."""
 
     bounding_box: BoundingBox
     volume: Quantity = Field(description="in mm**3")
@@ -75,7 +75,7 @@ class Verification(Answer):
 
 
 class Analysable(Answer):
-    """What finite elements can compute of a model's solid."""
+    """Results that finite elements can compute for a model's solid."""
 
     outputs: dict[str, str | None] = Field(description="outputs with their units; a surface has none")
     boundaries: list[str]

@@ -1,4 +1,4 @@
-"""What solving a design answers: every value of an unknown that gives a target, with the curve between."""
+"""Answers of `solve` on a design: every value of an unknown that gives a target, with the curve between."""
 
 from __future__ import annotations
 

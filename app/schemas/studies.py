@@ -21,14 +21,14 @@ SetAside = Annotated[
 
 
 class Estimate(Answer):
-    """What a study will take, as known before it begins."""
+    """The estimated cost of a study before it begins."""
 
     seconds: float = Field(description="of one calculation process; an order of magnitude")
     solids: int = Field(0, description="that have to be built")
 
 
 class StudyEstimate(Answer):
-    """What a study would do, if it began now."""
+    """The estimate of a study, if it began now."""
 
     rows: int = Field(description="planned; of a search the most that it may ask for")
     criteria: list[str] = Field(description="that a row must meet")
@@ -129,7 +129,7 @@ class Index(Answer):
 
 
 class StudyResult(Answer):
-    """What the method found."""
+    """The result of the method."""
 
     best: Best | None = None
     front: list[Best] | None = Field(None, description="none is better in all objectives")

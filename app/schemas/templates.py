@@ -87,7 +87,7 @@ class DeclaredCriterion(Answer):
 
 
 class Described(Answer):
-    """What a version takes and gives, with its sources."""
+    """The inputs and outputs of a version, with its sources."""
 
     id: str
     version: int

@@ -1,4 +1,4 @@
-"""What the tolerances of a design do to its outputs: limits, scatter, shares and yields."""
+"""The effect of tolerances on the outputs of a design: limits, scatter, shares and yields."""
 
 from __future__ import annotations
 
@@ -155,7 +155,7 @@ class NotJudged(Answer):
 
 
 class About(Answer):
-    """What was analysed, and what was left out."""
+    """The scope of an analysis of tolerances, with all that it left out."""
 
     revision: int
     points: int = Field(description="products that were sampled for quantiles and yields")

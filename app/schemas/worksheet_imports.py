@@ -1,4 +1,4 @@
-"""What the service says of a sheet of Mathcad that was imported: every region, and what became of it."""
+"""The result of importing a sheet of Mathcad, region by region."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class RegionCounts(Answer):
 
 
 class SheetOrigin(Answer):
-    """What a worksheet was imported from, in short."""
+    """The origin of an imported worksheet, in short."""
 
     program: str = Field(description="Mathcad Prime, or Mathcad (11 to 15)")
     file: str = Field(description="the name under which it was sent")

@@ -78,7 +78,7 @@ class SheetLine(Answer):
 
 
 class SheetCheck(Answer):
-    """What the service makes of a text; nothing is saved."""
+    """The check of a worksheet text; nothing is saved."""
 
     language: int = Field(description="the version of the language")
     digest: str | None = Field(description="SHA-256 of the statements; null while there are faults")

@@ -1,1 +1,1 @@
-"""What a build's key finds: builds, their files, measurements and analyses."""
+"""Builds, with their files, measurements and analyses: each is stored under the key of the build."""

@@ -1,4 +1,4 @@
-"""What a solid's parameters and measurements are in the units of the interface."""
+"""Parameters and measurements of a solid in the units of the interface."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def parameters(shape: CadModel) -> JsonObject:
 def measurements(
     measures: Mapping[str, float], dimensions: Mapping[str, Json], materials: Mapping[str, str] | None = None
 ) -> Measurements:
-    """What a solid measures; builds of an older recipe measured less."""
+    """The measurements of a solid; builds of an older recipe have fewer."""
 
     def one(name: str) -> Quantity:
         return Quantity(value=measures[name], unit=MEASURES[name])

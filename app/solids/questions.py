@@ -1,4 +1,4 @@
-"""What can be asked of a solid by finite elements, and by what an answer is found again.
+"""Finite-element analyses of a solid, and the cache key of each result.
 
 For the REST interface and for relations of designs. Which analyses exist stands in `cad.analysis.kinds`; that
 module does not import the kernel that computes them.
@@ -33,7 +33,7 @@ from templates.core.units.quantity import read
 LARGEST_LOAD = 1e12  # [N m]
 
 ON_REQUEST = STRESSES | {SURFACE}
-"""What is computed only where it is asked for by name."""
+"""Outputs that are computed only if a request names them."""
 
 RECIPE = 3
 """Raised whenever the same question to the same solid gets another answer."""

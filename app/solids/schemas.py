@@ -1,4 +1,4 @@
-"""What the calls of analyses take."""
+"""Request bodies for analyses."""
 
 from __future__ import annotations
 

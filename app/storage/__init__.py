@@ -1,1 +1,1 @@
-"""What outlives the process: the database with its one writer, the artifacts, the folder that holds both."""
+"""Storage: the database with its one writer, the artifacts, and the folder that holds both."""

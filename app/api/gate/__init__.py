@@ -1,1 +1,1 @@
-"""What a request passes before a route: hosts, origins, sizes, times."""
+"""The checks of a request before its route: hosts, origins, sizes, times."""

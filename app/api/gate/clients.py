@@ -1,4 +1,4 @@
-"""Who sends a request. Limits hold, and turns are taken, by client.
+"""The client of a request. Limits and turns are counted by client.
 
 Who has signed in is the client as a principal. Where nothing asks for a key, a client is the header
 `Crankwright-Client`, else the session of a page, else the address that the request came from.

@@ -77,7 +77,7 @@ class HeadLimit:
 
 
 def _too_large(scope: Scope) -> str:
-    """What is too much about a head; empty if nothing is."""
+    """The limit that a head exceeds; empty if it exceeds none."""
     headers, query = scope["headers"], scope["query_string"]
     size = sum(len(name) + len(value) for name, value in headers) + len(query)
     if size + len(scope.get("raw_path") or b"") > LONGEST_HEAD:

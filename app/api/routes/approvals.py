@@ -30,7 +30,7 @@ def show_released(id: Id, approving: TheApproving) -> Released:
 
 @router.get("/revisions/{number}/approvals", response_model=Approvals, responses=refusals(404))
 def show_approvals(id: Id, number: Number, approving: TheApproving) -> Response:
-    """Who took which step, which comes next, and the digest of what there is to sign; the ETag is that."""
+    """The steps that were taken, the next step, and the digest to sign, which is also the ETag."""
     return _answer(approving.show(id, number), 200)
 
 

@@ -35,6 +35,6 @@ def compare_revisions(
     design: Other = None,
     units: Units = "si",
 ) -> Comparison:
-    """What differs from a revision of this design to another one, or to a revision of another design."""
+    """Compare a revision of this design with another one, or with a revision of another design."""
     with database.read() as session:
         return compare(session, Pair(id, revision, design or None, number)).in_units(units)

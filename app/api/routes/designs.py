@@ -186,7 +186,7 @@ async def preview_design(
     within: Within = None,
     prefer: Prefer = None,
 ) -> Response:
-    """What a change would do to outputs and model parameters; nothing is saved."""
+    """Preview the effect of a change on outputs and model parameters; nothing is saved."""
     change = Change(id, _noted(body)[0], worksheet, units)
     if within is not None:
         return written(await threads.run_within(within, request, previews.quick, change))
@@ -239,7 +239,7 @@ async def copy_design(
 
 @router.get("/{id}/measurements", responses=refusals(404))
 def show_measurements(id: Id, database: TheDatabase, units: Units = "si") -> dict[str, ModelMeasurements]:
-    """What the newest good models measure, their dimensions read back from the STEP files."""
+    """Measurements of the newest good models, with dimensions read back from the STEP files."""
     with database.read() as session:
         measured = views.measurements(session, id)
         return {name: model.in_units(units) for name, model in measured.items()}

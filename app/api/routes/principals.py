@@ -35,7 +35,7 @@ Id = Annotated[str, Path(max_length=64)]
 
 @router.get("/me")
 def show_me(identity: TheIdentity) -> Me:
-    """Who sends this request, with which roles, and what that has used; on a service without keys `local`."""
+    """The principal of this request, with roles and usage; `local` on a service without keys."""
     who = acting()
     return views.me(who, views.used(*identity.usage(who.id)))
 
@@ -69,7 +69,7 @@ def change_principal(id: Id, body: PrincipalPatch, identity: TheIdentity) -> Pri
 
 @router.get("/principals/{id}/usage", responses=refusals(403, 404))
 def show_usage(id: Id, identity: TheIdentity) -> Usage:
-    """What a principal has used, and its limits: one's own, or any for administrators."""
+    """The usage and limits of a principal: one's own, or any for administrators."""
     return views.used(*identity.usage(id))
 
 

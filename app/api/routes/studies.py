@@ -100,7 +100,7 @@ async def answer_begun(
 async def estimate_study(
     body: StudyIn, studies: TheStudies, client: TheClient, request: Request
 ) -> StudyEstimate:
-    """What a study would do: its rows, its levels, the time and the solids it takes. Nothing begins."""
+    """Estimate a study: its rows, levels, time and solids. Nothing begins."""
     draft = await run_in_threadpool(studies.draft, body)
     plan, _ = await _planned(request, client, draft)
     return views.estimate(plan)

@@ -55,7 +55,7 @@ async def import_worksheet(
 
 @router.get("/{id}/import", responses=refusals(404))
 def read_import(id: Id, worksheets: TheWorksheets) -> SheetImport:
-    """What became of every region of the sheet that a worksheet was imported from."""
+    """The result of the import for every region of the original sheet."""
     return imported(worksheets.newest(id))
 
 

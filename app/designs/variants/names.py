@@ -1,4 +1,4 @@
-"""What variants and the places that they override are called, and the order of their names."""
+"""Names of variants and of the places that they override, and the order of these names."""
 
 from __future__ import annotations
 

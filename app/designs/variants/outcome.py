@@ -1,4 +1,4 @@
-"""What a variant came to, whichever way it was calculated."""
+"""The result of a variant, however it was calculated."""
 
 from __future__ import annotations
 

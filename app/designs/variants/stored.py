@@ -1,4 +1,4 @@
-"""What variants leave in a revision: `results.variants`, and rows of their models."""
+"""The results of variants as a revision stores them: `results.variants`, and rows of their models."""
 
 from __future__ import annotations
 

@@ -71,7 +71,7 @@ class _Run:
         self.calculation.faults.append(Fault("relations", "too_many_values", TOO_MUCH))
 
     def outcome(self) -> Outcome:
-        """What it came to."""
+        """The result."""
         if wrong := row_arrays(self.calculation):
             return refused(self.name, wrong)
         return outcome_of(self.name, self.places, self.document, self.calculation)

@@ -1,23 +1,19 @@
-"""Expensive calculations over HTTP: in processes of their own, and as jobs when nobody waits any longer."""
+"""Calculations for which nobody waits any longer: they go on as jobs, which keep their answers."""
 
 import json
-import os
 from concurrent.futures import ThreadPoolExecutor
 
 import httpx
 import pytest
 from click.testing import CliRunner
-from patience import until
 from serving import API, faults, heard, problem, serving
+from sleepers import FILM, FILM_PLACE, SLEEPER, begun, ended, sleep, without_time
 from sleeping import folder_of_sleeper
 from test_damage import delete, flip, truncate
 from test_workers import alive, eventually
 
 from app.calculations.operations import LARGE
 from app.calculations.schemas import EvaluateIn, SolveIn
-from app.calculations.service import run_evaluate, run_solve
-from app.calculations.worksheet import run_worksheet
-from app.catalogue.finding import find_templates
 from app.cli import main
 from app.client import Client, Problem
 from app.jobs import repository
@@ -26,196 +22,13 @@ from app.maintenance.rows import Named
 from app.settings import Settings
 from app.workers.inline import Inline
 
-SLEEPER = f"{API}/templates/sleeper/versions/1"
-FILM = find_templates(()).get("oil_film", 2)
-FILM_PLACE = f"{API}/templates/oil_film/versions/2"
-
-
-@pytest.fixture(scope="module")
-def log(tmp_path_factory):
-    return tmp_path_factory.mktemp("sleeper") / "log"
-
-
-@pytest.fixture(scope="module")
-def settings(tmp_path_factory, log):
-    folder = tmp_path_factory.mktemp("pool")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SLEEPER_LOG", str(log))
-        yield Settings(
-            data=folder / "data",
-            template_folders=(folder_of_sleeper(folder / "own"),),
-            calculation_processes=1,
-            calculation_waiting=2,
-            calculation_deadline=2,
-            calculation_job_deadline=5,
-            calculation_memory_mb=1024,
-        )
-
-
-@pytest.fixture(scope="module")
-def server(settings):
-    with serving(settings) as server:
-        pool = server.app.state.services.calculations
-        assert pool.submit("tests", os.getpid).future.result(60) != os.getpid()  # they have been imported
-        yield server
-
-
-@pytest.fixture(scope="module")
-def http(server):
-    with httpx.Client(base_url=server.url, timeout=60, trust_env=False) as http:
-        yield http
-
-
-@pytest.fixture(autouse=True)
-def quiet(server, log):
-    log.write_text("")
-    yield
-    pool = server.app.state.services.calculations
-    assert eventually(lambda: pool.running == pool.waiting == 0, 20)
-
-
-def begun(log, count=1):
-    """The processes in which the sleeper has begun, once they are so many."""
-    assert eventually(lambda: len(log.read_text().split()) >= count, 20)
-    return [int(pid) for pid in log.read_text().split()]
-
-
-def sleep(http, duration="1 ms", mood="good", **headers):
-    body = {"inputs": {"duration": duration, "mood": mood}}
-    return http.post(f"{SLEEPER}/evaluate", json=body, headers=headers)
-
-
-def ended(http, place):
-    """A job once it has ended."""
-    end = lambda: http.get(place).json()["state"] not in ("queued", "running")  # noqa: E731
-    assert eventually(end, 30)
-    return http.get(place).json()
-
-
-def followed(http, answer):
-    """The answer, or that of the job: other work of the machine comes before processes of niceness 10."""
-    if answer.status_code != 202:
-        return answer
-    job = ended(http, answer.headers["Location"])
-    assert job["state"] == "done", job["problem"]
-    return http.get(job["result"])
-
-
-def without_time(answer):
-    """An answer without what differs from run to run."""
-    return {name: part for name, part in answer.items() if name != "seconds"}
-
-
-def test_it_is_calculated_in_another_process(http, log):
-    answer = sleep(http).json()
-    assert answer["outputs"]["process"]["value"] == begun(log)[0] != os.getpid()
-
-
-def test_the_server_comes_first(server):
-    pool = server.app.state.services.calculations
-    niceness = pool.submit("tests", os.getpriority, os.PRIO_PROCESS, 0).future.result(60)
-    assert niceness == min(19, os.getpriority(os.PRIO_PROCESS, 0) + 10)
-    assert pool.submit("tests", os.getsid, 0).future.result(60) == os.getsid(0)  # else it would not count
-
-
-def test_processes_are_used_again(http, log):
-    assert {sleep(http).json()["outputs"]["process"]["value"] for _ in range(3)} == {begun(log)[0]}
-
-
-@pytest.mark.parametrize("level", ["reynolds", "mass_conserving"])
-def test_answers_are_those_of_this_process(http, level):
-    body = {"inputs": dict(FILM.example), "level": level, "outputs": ["minimum_film_thickness", "side_flow"]}
-    answer = followed(http, http.post(f"{FILM_PLACE}/evaluate", json=body))
-    assert without_time(answer.json()) == without_time(run_evaluate(FILM, EvaluateIn(**body)))
-
-
-def test_a_worksheet_is_that_of_this_process(http):
-    body = {"inputs": dict(FILM.example), "level": "reynolds", "outputs": ["minimum_film_thickness"]}
-    answer = http.post(f"{FILM_PLACE}/worksheet", json=body, params={"units": "us"}).json()
-    assert without_time(answer) == without_time(run_worksheet(FILM, EvaluateIn(**body), "us"))
-
-
-def test_a_solution_is_that_of_this_process(http):
-    body = {
-        "inputs": {name: value for name, value in FILM.example.items() if name != "bearing_width"},
-        "unknown": "bearing_width",
-        "bounds": ["10 mm", "40 mm"],
-        "target": {"minimum_film_thickness": "2 um"},
-        "level": "map",
-    }
-    answer, same = http.post(f"{FILM_PLACE}/solve", json=body).json(), run_solve(FILM, SolveIn(**body))
-    assert answer["unknown"] == same["unknown"]
-    assert answer["evaluation"]["outputs"] == same["evaluation"]["outputs"]
-
-
-def test_a_large_body_gives_the_same_answer(http):
-    cls = find_templates(()).get("oil_film", 1)
-    loads = {"value": [6.0 + 0.001 * number for number in range(40_000)], "unit": "kN"}
-    body = {"inputs": {**cls.example, "radial_load": loads}, "outputs": ["minimum_film_thickness"]}
-    answer = http.post(f"{API}/templates/oil_film/versions/1/evaluate", json=body)
-    assert int(answer.request.headers["content-length"]) > 256 * 1024
-    assert without_time(answer.json()) == without_time(run_evaluate(cls, EvaluateIn(**body)))
-
-
-PADDING = {"value": [1.0] * 200_000, "unit": "kN"}
-
-
-@pytest.mark.parametrize("operation", ["evaluate", "worksheet"])
-@pytest.mark.parametrize(
-    "body",
-    [
-        {
-            "inputs": {**FILM.example, "radial_load": {**PADDING, "unit": "furlong"}},
-            "outputs": ["side_flow"],
-        },
-        {"inputs": {"radial_load": PADDING}, "output": []},
-        {"inputs": {"radial_load": PADDING}, "outputs": "all"},
-        {"inputs": {"radial_load": PADDING}, "tolerance": 2},
-        [PADDING],
-    ],
-)
-def test_a_large_body_is_refused_as_a_small_one(http, body, operation):
-    large = faults(http.post(f"{FILM_PLACE}/{operation}", json=body))
-    small = _with_short_lists(body)
-    assert large == faults(http.post(f"{FILM_PLACE}/{operation}", json=small))
-
-
-def _with_short_lists(raw):
-    if isinstance(raw, dict):
-        return {name: _with_short_lists(part) for name, part in raw.items()}
-    return [_with_short_lists(part) for part in raw[:2]] if isinstance(raw, list) else raw
-
-
-def test_a_large_body_that_is_no_json_is_refused(http):
-    answer = http.post(
-        f"{FILM_PLACE}/evaluate", content="[" + "1," * 200_000, headers={"Content-Type": "application/json"}
-    )
-    assert faults(answer) == {"body": "json_invalid"}
-
-
-def test_a_large_body_for_no_template_is_refused(http):
-    place = f"{API}/templates/nothing/versions/1/evaluate"
-    problem(http.post(place, json={"inputs": {"x": PADDING}}), 404, "unknown-template")
-
-
-@pytest.mark.parametrize(("mood", "slug"), [("dies", "crashed"), ("eats", "memory")])
-def test_a_process_that_dies_harms_nobody_else(http, mood, slug):
-    problem(sleep(http, mood=mood), 422, slug)
-    assert sleep(http).status_code == 200
-
-
-def test_who_leaves_frees_the_process(http, log):
-    with pytest.raises(httpx.ReadTimeout):
-        http.post(f"{SLEEPER}/evaluate", json={"inputs": {"duration": "60 s"}}, timeout=1.0)
-    assert eventually(lambda: not alive(begun(log)[0]))
-
 
 def test_what_takes_long_goes_on_as_a_job(http, log):
     accepted = sleep(http, "3 s")
     assert accepted.status_code == 202, accepted.text
     place = accepted.headers["Location"]
     job = ended(http, place)
-    assert job["kind"], job["state"] == ("calculation", "done")
+    assert (job["kind"], job["state"]) == ("calculation", "done")
     assert set(job["log"]) == {"half asleep"}
     assert len(begun(log)) == 1  # it was not begun again
     answer = http.get(job["result"])
@@ -266,7 +79,11 @@ def test_a_job_that_is_refused_says_why(http):
 
 
 MASS_CONSERVING = {**EvaluateIn.model_config["json_schema_extra"]["examples"][0], "level": "mass_conserving"}
+
+
 SOLVING = {**SolveIn.model_config["json_schema_extra"]["examples"][0], "level": "mass_conserving"}
+
+
 WRONG = [
     ("evaluate", {"inputs": {**MASS_CONSERVING["inputs"], "speed": "1 N", "sped": 1}}, {"speed", "sped"}),
     (
@@ -407,77 +224,6 @@ def test_progress_of_a_job_is_streamed(http):
 def test_a_second_long_job_waits_for_the_first(http, log):
     places = [sleep(http, "1 s", Prefer="respond-async").headers["Location"] for _ in range(2)]
     assert [ended(http, place)["state"] for place in places] == ["done", "done"]
-
-
-def test_too_many_are_asked_to_come_again_and_a_flood_gives_way(http, log):
-    def ask(client):
-        return sleep(http, "0.5 s", **{"Crankwright-Client": client})
-
-    with ThreadPoolExecutor(6) as threads:
-        first = threads.submit(ask, "flood")
-        begun(log)
-        flood = [threads.submit(ask, "flood") for _ in range(3)]
-        refused = next(f for f in _done_first(flood))
-        newcomer = threads.submit(ask, "newcomer")
-        assert newcomer.result().status_code == 200
-        statuses = sorted(f.result().status_code for f in (first, *flood))
-    refusal = problem(refused.result(), 429, "queue-full")
-    assert "calculations are waiting" in refusal["detail"]
-    assert refused.result().headers["Retry-After"] == "5"
-    assert statuses == [200, 200, 429, 429]
-
-
-def _done_first(futures):
-    assert eventually(lambda: any(f.done() for f in futures), 20)
-    return [f for f in futures if f.done()]
-
-
-def design(duration):
-    return {
-        "name": "sleep",
-        "steps": {"s": {"template": "sleeper", "version": 1, "inputs": {"duration": duration}}},
-    }
-
-
-def test_a_step_of_a_design_is_calculated_in_another_process(http, log):
-    response = http.post(f"{API}/designs", json=design("11 ms"))
-    assert response.status_code == 201, response.text
-    steps = http.get(f"{API}/designs/{response.json()['id']}/revisions/1").json()["steps"]
-    assert steps["s"]["outputs"]["process"]["value"] == begun(log)[0] != os.getpid()
-
-
-def test_a_step_that_is_refused_or_crashes_says_so(http):
-    problem(http.post(f"{API}/designs", json=design("-1 s")), 422, "invalid-inputs")
-    wrong = design("1 ms")
-    wrong["steps"]["s"]["inputs"]["mood"] = "dies"
-    problem(http.post(f"{API}/designs", json=wrong), 422, "crashed")
-
-
-def test_a_preview_that_nobody_waits_for_ends(http, log):
-    place = f"{API}/designs/{http.post(f'{API}/designs', json=design('12 ms')).json()['id']}"
-    (process,) = begun(log)
-    patch = {"steps": {"s": {"inputs": {"duration": "60 s"}}}}
-    with pytest.raises(httpx.ReadTimeout):
-        http.post(f"{place}/preview", json=patch, timeout=1.0)
-    assert eventually(lambda: not alive(begun(log, 2)[1]))
-    assert http.get(place).status_code == 200
-    assert process
-
-
-def test_a_page_waits_for_its_calculation_within_the_process(server, http):
-    page = http.get(f"/designs/{http.post(f'{API}/designs', json=design('13 ms')).json()['id']}")
-    assert page.status_code == 200
-
-
-def test_a_file_that_changed_is_calculated_as_it_is_now(tmp_path, monkeypatch, log):
-    monkeypatch.setenv("SLEEPER_LOG", str(log))
-    own = folder_of_sleeper(tmp_path / "own")
-    chosen = Settings(data=tmp_path / "data", template_folders=(own,), calculation_processes=1)
-    with serving(chosen) as server, httpx.Client(base_url=server.url, timeout=60, trust_env=False) as http:
-        file = own / "sleeper_v1.py"
-        assert sleep(http).json()["outputs"]["process"]["value"] > 0
-        file.write_text(file.read_text().replace("return np.float64(os.getpid())", "return np.float64(-1)"))
-        until(lambda: sleep(http).json()["outputs"]["process"]["value"] == -1)
 
 
 @pytest.mark.slow
