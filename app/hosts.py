@@ -37,7 +37,7 @@ class Authority:
 
 
 def parse(text: str) -> Authority | None:
-    """The authority in a text such as `localhost:8000` or `[::1]:8000`; None if it is no authority.
+    """The authority in a text such as `localhost:8000` or `[::1]:8000`; None if it is not an authority.
 
     A name may end with the dot of the root, as in `localhost.`: it is the same name.
     """
@@ -108,7 +108,7 @@ class Hosts:
     allowed
         Entries of the allow-list: `name`, `name:port`, or `*.domain` with or without a port.
     bound
-        The host that the server was asked to listen on. A wildcard such as 0.0.0.0 is no name of it.
+        The host that the server was asked to listen on. A wildcard such as 0.0.0.0 is not a name of it.
     """
 
     def __init__(self, allowed: Iterable[str] = (), bound: str = "127.0.0.1") -> None:

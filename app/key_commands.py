@@ -160,7 +160,7 @@ def _moment(span: str | None) -> datetime | None:
     if span is None:
         return None
     if (match := _SPAN.fullmatch(span)) is None:
-        raise click.BadParameter(f"{span!r} is no span of time; write days as 90d or hours as 12h")
+        raise click.BadParameter(f"{span!r} is not a span of time; write days as 90d or hours as 12h")
     amount = int(match[1])
     return datetime.now(UTC) + (timedelta(days=amount) if match[2] == "d" else timedelta(hours=amount))
 

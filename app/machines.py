@@ -64,7 +64,7 @@ def check_collector(url: str | None) -> str | None:
     try:
         parts = urlsplit(url)
         is_address = parts.scheme in ("http", "https") and parts.hostname and parts.port != 0
-    except ValueError:  # of a port that is no number
+    except ValueError:  # of a port that is not a number
         is_address = False
     if not is_address or parts.query or parts.fragment or parts.username:
         raise ValueError(f"traces are sent to an address without user or query, such as {COLLECTOR}")
@@ -86,7 +86,7 @@ def _scheme_and_host(engine: str) -> tuple[str, str]:
     try:
         parts = urlsplit(engine)
         is_address = parts.scheme in ("tcp", "tls") and parts.hostname and parts.port
-    except ValueError:  # of a port that is no number
+    except ValueError:  # of a port that is not a number
         is_address = False
     if not is_address or parts.path or parts.query or parts.username:
         raise ValueError(wrong)

@@ -115,7 +115,7 @@ ROUTERS = (
 )
 """They are tried one after another; that of `evaluate`, which is called most, is the first.
 
-Reports come before variants: `…/variants/report.pdf` is no variant.
+Reports come before variants: `…/variants/report.pdf` is not a variant.
 """
 
 

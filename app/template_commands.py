@@ -90,7 +90,7 @@ def _result(answer: Answer) -> str:
 def _pair(text: str) -> tuple[str, Raw]:
     name, sign, value = text.partition("=")
     if not sign:
-        raise click.BadParameter(f"{text!r} is no NAME=QUANTITY, such as radial_load='25 kN'")
+        raise click.BadParameter(f"{text!r} is not a NAME=QUANTITY, such as radial_load='25 kN'")
     return name, argument(name, value)
 
 

@@ -249,4 +249,4 @@ def _text(file: Path) -> str:
     try:
         return file.read_bytes().decode("utf-8")
     except UnicodeDecodeError:
-        raise click.ClickException(f"{file} is no text in UTF-8") from None
+        raise click.ClickException(f"{file} is not text in UTF-8") from None

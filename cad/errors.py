@@ -25,7 +25,7 @@ class GeometryError(Exception):
 
 
 class UnreadableStep(ValueError):
-    """Bytes that are no STEP file, or one without a shape."""
+    """Bytes that are not a STEP file, or one without a shape."""
 
 
 class AnalysisError(Exception):

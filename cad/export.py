@@ -35,7 +35,7 @@ def derive(step: bytes, kind: str) -> bytes:
     Raises
     ------
     UnreadableStep
-        If the bytes are no STEP file or hold no shape.
+        If the bytes are not a STEP file or hold no shape.
     KeyError
         If no such kind can be derived.
     """

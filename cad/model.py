@@ -125,7 +125,7 @@ class CadModel(Template):
         raise NotImplementedError
 
     def shaft(self) -> Shaft | None:
-        """Where the solid is held and loaded when it is analysed; None if it is no shaft."""
+        """Where the solid is held and loaded when it is analysed; None if it is not a shaft."""
         return None
 
     def dimensions(self, seen: Mapping[str, Seen]) -> Mapping[str, Dimension]:

@@ -69,12 +69,12 @@ def read_step(step: bytes) -> tuple[Body, ...]:
     Raises
     ------
     UnreadableStep
-        If the bytes are no STEP file or hold no shape.
+        If the bytes are not a STEP file or hold no shape.
     """
     reader = STEPCAFControl_Reader()
     document = _new_document()
     if reader.ReadStream("model.step", io.BytesIO(step)) != IFSelect_ReturnStatus.IFSelect_RetDone:
-        raise UnreadableStep("this is no STEP file")
+        raise UnreadableStep("this is not a STEP file")
     if not reader.Transfer(document):
         raise UnreadableStep("this STEP file holds no shape")
     return tuple(_bodies(document))
@@ -144,7 +144,7 @@ def _bodies(document: TDocStd_Document) -> Iterator[Body]:
 
 
 def _instances(label: TDF_Label, place: Location) -> Iterator[tuple[TDF_Label, Location]]:
-    """The products below a label that are no assemblies, each time that they are used."""
+    """The products below a label that are not assemblies, each time that they are used."""
     components = TDF_LabelSequence()
     if not XCAFDoc_ShapeTool.GetComponents_s(label, components):
         yield label, place

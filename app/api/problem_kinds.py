@@ -134,7 +134,7 @@ TABLE: dict[type[Exception], Kind] = {
         "cross-site",
         403,
         "Another site may not do this",
-        "use the service's own pages, or a client that is no browser",
+        "use the service's own pages, or a client that is not a browser",
     ),
     BodyTooLarge: Kind("body-too-large", 413, "The body is too large", "send less at once"),
     HeadTooLarge: Kind("head-too-large", 431, "The headers are too large", "send fewer or shorter headers"),

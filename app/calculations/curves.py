@@ -80,7 +80,7 @@ def _lines(body: bytes) -> Iterator[tuple[int, str]]:
         text = body.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         at = body[: error.start].count(b"\n") + 1
-        raise _wrong(f"line {at}", "not_utf_8", "this is no UTF-8; save the file as CSV in UTF-8") from None
+        raise _wrong(f"line {at}", "not_utf_8", "this is not UTF-8; save the file as CSV in UTF-8") from None
     if sum(map(text.count, _LINE_ENDS)) > 2 * MOST_LINES:  # a line may end by two signs
         raise _wrong("rows", "too_many_lines", f"a file has at most {MOST_LINES} lines, blank ones included")
     count = 0
@@ -162,7 +162,7 @@ def _number(text: str, column: Column, separator: str) -> float:
     if separator != "," and _DECIMAL_COMMA.fullmatch(text):
         text = text.replace(",", ".")
     if not _NUMBER.fullmatch(text):
-        what = f"{excerpt(text)!r} is no number" if text else "there is no value"
+        what = f"{excerpt(text)!r} is not a number" if text else "there is no value"
         raise FaultyText("not_a_number", f"{column.name}: {what}; write it as in 1234.5, without a unit")
     value = float(text)
     if value in (float("inf"), -float("inf")):

@@ -77,7 +77,7 @@ def answered(source: Source, question: Question) -> Pieces:
     Raises
     ------
     InvalidBody
-        If the body is no JSON, or not what the operation takes.
+        If the body is not JSON, or not what the operation takes.
     NoArray
         If an array is wanted and the outputs do not fit one.
     TemplateError, TooManyValues

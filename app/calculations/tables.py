@@ -238,7 +238,7 @@ def _number(cell: str, is_comma: bool) -> float:
         raise FaultyText("formula", f"{excerpt(cell)} is a formula; paste its value instead")
     plain = cell.replace(",", ".") if not is_comma and _DECIMAL_COMMA.fullmatch(cell) else cell
     if not _NUMBER.fullmatch(plain):
-        what = f"{excerpt(cell)} is no number" if cell else "there is no number"
+        what = f"{excerpt(cell)} is not a number" if cell else "there is no number"
         raise FaultyText("not_a_number", f"{what}; write one such as 0.05")
     if not math.isfinite(number := float(plain)):
         raise FaultyText("not_finite", f"{excerpt(cell)} is too large")

@@ -116,7 +116,7 @@ class TeamFiles:
 
     def _checked(self, file: TeamFile, content: bytes) -> TeamFile:
         if file.key is None:
-            what = f"{file.path.name} is no name of a version"
+            what = f"{file.path.name} is not a name of a version"
             return replace(file, faults=(FileFault("file_name", what, NAME),))
         faults = self._check(file.path, content)
         if any(fault.quarantines for fault in faults):

@@ -79,7 +79,7 @@ def _plain(value: object) -> JsonObject:
 
 
 def read(model: type[Model], response: httpx.Response) -> Model:
-    """The answer as a model. A field that a newer service adds is no error."""
+    """The answer as a model. A field that a newer service adds is not an error."""
     return TypeAdapter(model).validate_json(checked(response).content, extra="allow")
 
 

@@ -40,7 +40,7 @@ class Problem(Exception):
         """The problem in an answer; a proxy's page counts as one too."""
         try:
             return cls(response.status_code, response.json())
-        except ValueError:  # no JSON, or JSON that is no problem
+        except ValueError:  # no JSON, or JSON that is not a problem
             return cls(response.status_code, {"title": response.reason_phrase, "detail": response.text[:500]})
 
 

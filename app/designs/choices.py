@@ -56,7 +56,7 @@ class Choices:
         declared = cls.inputs.get(reference.member) if cls else None
         if isinstance(declared, Choice):
             return declared, values.get(reference.member)
-        raise FaultyText("no_truth", f"{name[:60]} is no choice; compare it with < <= > >= == or !=")
+        raise FaultyText("no_truth", f"{name[:60]} is not a choice; compare it with < <= > >= == or !=")
 
     def _block(self, name: str, block: str) -> tuple[type[Template] | None, Mapping[str, Raw]]:
         if step := self.document.steps.get(block):

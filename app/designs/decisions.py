@@ -46,7 +46,7 @@ def read_budget(raw: Raw) -> float:
     Raises
     ------
     InvalidInputs
-        If it is no single time from 0 to `LONGEST_BUDGET`.
+        If it is not a single time from 0 to `LONGEST_BUDGET`.
     """
     try:
         seconds = read(raw, "s").si

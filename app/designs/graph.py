@@ -133,7 +133,7 @@ def _step(choices: Choices, name: str, step: Step) -> tuple[Block | None, list[F
 def _related_limits(
     choices: Choices, name: str, step: Step, cls: type[Template]
 ) -> tuple[dict[str, Cell], list[Fault]]:
-    """The limits that a step gives by relations; names that are no limits are left to `_limits`."""
+    """The limits that a step gives by relations; names that are not limits are left to `_limits`."""
     cells: dict[str, Cell] = {}
     faults: list[Fault] = []
     if not step.limits:

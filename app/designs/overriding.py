@@ -44,7 +44,7 @@ def _faults(graph: Graph, others: Overrides, unknown: str) -> Iterator[Fault]:
 
 
 def _misfit(graph: Graph, name: str, raw: Raw) -> Iterator[Fault]:
-    """A fault if a value is none of its place: a word that is no option, a quantity of another kind."""
+    """A fault if a value is none of its place: a word that is not an option, a quantity of another kind."""
     reference = Reference.parse(name)
     block = graph.blocks.get(reference.block)
     declared = block.cls.inputs[reference.member] if block else None

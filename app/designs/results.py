@@ -1,4 +1,4 @@
-"""The results of a design as its revision stores them, as JSON: steps with answers, models with parameters."""
+"""The results of a design as its revision stores them in JSON: answers of steps, parameters of models."""
 
 from __future__ import annotations
 

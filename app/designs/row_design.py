@@ -84,7 +84,7 @@ class RowDesign:
         yield from unknown_names(unknown, self.graph.names(), "name")
         for reference in wanted:
             if isinstance(self._declared(reference), (spec.Text, spec.Table)):
-                yield Fault(str(reference), "not_a_number", f"{reference} is no quantity")
+                yield Fault(str(reference), "not_a_number", f"{reference} is not a quantity")
         for name, level in levels.items():
             block = self.graph.blocks.get(name)
             if block is None:

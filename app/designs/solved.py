@@ -54,7 +54,9 @@ class SolveDesignIn(Bounded):
         },
     )
 
-    unknown: Named = Field(description="a parameter, `step.input` or `model.parameter` that is no relation")
+    unknown: Named = Field(
+        description="a parameter, `step.input` or `model.parameter` that is not a relation"
+    )
     between: Annotated[list[Given], Field(min_length=2, max_length=2)] = Field(
         description="the lowest and the highest value to try"
     )

@@ -20,7 +20,7 @@ def starts(document: Document) -> dict[Reference, float]:
     Raises
     ------
     InvalidInputs
-        If a start is no quantity of its measure's kind.
+        If a start is not a quantity of its measure's kind.
     """
     faults, values = list[Fault](), dict[Reference, float]()
     for iteration in document.iterations:

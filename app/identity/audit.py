@@ -18,8 +18,8 @@ def record(
 ) -> None:
     """Record what the acting principal does to an object, in the unit of work that does it.
 
-    The id of the row begins with the time by this machine's clock, and is no counter of the database: units
-    of work that only record something do not wait for each other.
+    The id of the row begins with the time by this machine's clock, and is not a counter of the
+    database: units of work that only record something do not wait for each other.
 
     Parameters
     ----------

@@ -95,9 +95,9 @@ def verify(session: Session, exported: str | None = None) -> Verified:
             last = Link(last.seq + 1, row.hash)
             met = met or row.hash == exported
     except _DAMAGED:
-        return Verified(last, unsealed, f"row {last.seq + 1} was changed: it holds what is no text")
+        return Verified(last, unsealed, f"row {last.seq + 1} was changed: it holds what is not text")
     if len(waiting(session)) < min(unsealed, SOME):
-        return Verified(last, unsealed, f"a row behind row {last.seq}, not sealed, holds what is no text")
+        return Verified(last, unsealed, f"a row behind row {last.seq}, not sealed, holds what is not text")
     cut = f"no row has the hash {exported}: rows were cut off at the end, or all of them written again"
     return Verified(last, unsealed, "" if met else cut)
 
@@ -109,7 +109,7 @@ def _sealed(session: Session) -> Iterator[AuditRow]:
         query = select(AuditRow).where(AuditRow.seq > last).order_by(AuditRow.seq).limit(AT_ONCE)
         try:
             page = list(session.scalars(query))
-        except _DAMAGED:  # one of them is no text: those before it, one by one
+        except _DAMAGED:  # one of them is not text: those before it, one by one
             page = list(session.scalars(query.limit(1)))
         if not page:
             return
@@ -126,7 +126,7 @@ def _fault(row: AuditRow, last: Link) -> str:
     if not isinstance(seq, int):
         return f"{name} was changed: its number is none"
     if not _is_text(row):
-        return f"{name} was changed: it holds what is no text"
+        return f"{name} was changed: it holds what is not text"
     if seq > last.seq + 1:
         return f"row {last.seq + 1} is missing: after row {last.seq} comes {name}"
     if seq <= last.seq or row.hash is None:
@@ -143,7 +143,7 @@ def _is_text(row: AuditRow) -> bool:
 
 
 def waiting(session: Session) -> list[AuditRow]:
-    """The oldest rows that are not sealed, without those that hold what is no text: `verify` names these."""
+    """The oldest rows that are not sealed, without those that hold what is not text: `verify` names these."""
     query = select(AuditRow).where(AuditRow.seq.is_(None)).order_by(AuditRow.id).limit(SOME)
     try:
         rows = list(session.scalars(query))

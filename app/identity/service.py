@@ -140,8 +140,8 @@ class Identity:
         Raises
         ------
         NotFound, NotOwn, RoleNeeded, Outlives
-            There is no such principal; it is another; a scope is no role that the key may have; it would be
-            valid for longer than it may.
+            There is no such principal; it is another; a scope is not a role that the key may have; the key
+            would be valid for too long.
         """
         new = new_key()
 
@@ -327,7 +327,7 @@ def _scopes(owner: Principal, scopes: list[Role], maker: ApiKeyRow | None) -> li
     if maker is None or not maker.scopes:
         return _in_order(scopes)
     who = acting()
-    if not who.roles:  # the scope of the present key is no role of its principal any more
+    if not who.roles:  # the scope of the present key is not a role of its principal any more
         raise RoleNeeded(who, owner.roles)
     for scope in scopes:
         if not who.may(scope):

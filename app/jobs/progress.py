@@ -1,6 +1,6 @@
 """How far running jobs are, beyond the server that runs them: their rows, and what other servers read there.
 
-Progress is no event that is kept: only the latest counts, and it costs one small write now and then.
+Progress is not an event that is kept: only the latest counts, and it costs one small write now and then.
 """
 
 from __future__ import annotations

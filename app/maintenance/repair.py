@@ -110,7 +110,7 @@ class Repair:
             job = jobs.get(session, row.owner)
         assert job is not None, "it has just been named"
         if job.kind != CALCULATION:
-            raise CannotRebuild("answer_lost", f"job {job.id} is no calculation; send its request again")
+            raise CannotRebuild("answer_lost", f"job {job.id} is not a calculation; send its request again")
         question = question_of(job.payload, self.store)
         source = source_of(self.catalogues.templates.get(question.template, question.version))
         sha = self.store.put(*self.runner.run(answered, source, question, limits=self.calculation))

@@ -104,7 +104,7 @@ def unpacked(archive: Path, folder: Path, form: int) -> Restored:
                 raise CannotRun(f"The archive goes on behind its end, with {entry.name[:100]!r}.")
             file = tar.extractfile(entry) if entry.isreg() else None
             if file is None:
-                raise CannotRun(f"The archive holds {entry.name[:100]!r}, which is no plain file.")
+                raise CannotRun(f"The archive holds {entry.name[:100]!r}, which is not a plain file.")
             _take(entry, file, folder, restored)
     if restored.end is None:
         raise CannotRun("The archive is not complete: its end is missing.")
@@ -136,7 +136,7 @@ def _take_artifact(sha: str, file: IO[bytes], place: Path, restored: Restored) -
 
 def _manifest(entry: tarfile.TarInfo, file: IO[bytes], form: int) -> JsonObject:
     if entry.name != MANIFEST:
-        raise CannotRun(f"This is no backup of Crankwright: it begins with {entry.name[:100]!r}.")
+        raise CannotRun(f"This is not a backup of Crankwright: it begins with {entry.name[:100]!r}.")
     manifest = _note(entry, file)
     if manifest["format"] != form and manifest["format"] in DATABASES:
         raise CannotRun(OTHER_DATABASE[manifest["format"]])

@@ -24,7 +24,7 @@ MOST_SHOWN = 3  # places in which the text differs
 
 
 class NotReport(Exception):
-    """The file is no report with an approval block."""
+    """The file is not a report with an approval block."""
 
 
 @dataclass(frozen=True)
@@ -46,13 +46,13 @@ def read_block(pdf: bytes) -> Block:
     from pypdf import PdfReader  # of the extra `team`; nothing else reads PDF
 
     if len(pdf) > LARGEST:
-        raise NotReport(f"the file has more than {LARGEST // 2**20} MiB: it is no report of this service")
+        raise NotReport(f"the file has more than {LARGEST // 2**20} MiB: it is not a report of this service")
     try:
         attached = PdfReader(io.BytesIO(pdf)).attachments.get(ATTACHMENT, [])
     except Exception as error:  # whatever somebody wrote into the file
         raise NotReport(f"the file cannot be read as PDF: {plain(str(error), 200)}") from error
     if len(attached) != 1 or len(attached[0]) > LARGEST_BLOCK:
-        raise NotReport(f"the file carries no attachment {ATTACHMENT}: it is no report, or an old one")
+        raise NotReport(f"the file carries no attachment {ATTACHMENT}: it is not a report, or an old one")
     try:
         return Block.model_validate_json(attached[0])
     except ValidationError as error:

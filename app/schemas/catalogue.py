@@ -21,7 +21,7 @@ class FaultyFile(Answer):
     """A file of a team's folder with everything that is wrong with it."""
 
     file: str = Field(description="the file within its folder, the name of the folder first")
-    id: str | None = Field(description="from the file's name; null where that is no name of a version")
+    id: str | None = Field(description="from the file's name; null where that is not a name of a version")
     version: int | None
     quarantined: bool = Field(description="whether the version cannot be used")
     digest: str = Field(description="SHA-256 of the file and of those beside it that belong to it")

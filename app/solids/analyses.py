@@ -45,7 +45,7 @@ class Analyses:
         Raises
         ------
         AnalysisError
-            If the model is no shaft.
+            If the model is not a shaft.
         """
         shaft_of(shape)
         build = build_key(shape)

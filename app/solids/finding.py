@@ -79,7 +79,7 @@ def shaft_of(shape: CadModel) -> Shaft:
     """
     shaft = shape.shaft()
     if shaft is None:
-        raise AnalysisError("no_shaft", f"{shape.id} is no shaft with these parameters")
+        raise AnalysisError("no_shaft", f"{shape.id} is not a shaft with these parameters")
     return shaft
 
 

@@ -151,11 +151,11 @@ def no_shaft(cls: type[CadModel]) -> str | None:
     """Why solids of a model cannot be analysed; None if they can."""
     if cls.shaft is not CadModel.shaft:
         return None
-    return f"{cls.id} is no shaft: it does not say by which ends it is held and loaded"
+    return f"{cls.id} is not a shaft: it does not say by which ends it is held and loaded"
 
 
 def what_can_be_asked(cls: type[CadModel]) -> JsonObject:
-    """The kinds of analyses of a model, each with its outputs and their units; none of what is no shaft."""
+    """The kinds of analyses of a model, each with its outputs and their units; none unless it is a shaft."""
     if no_shaft(cls):
         return {}
     options = {"boundaries": list(BOUNDARIES), "levels": list(LEVELS)}

@@ -97,7 +97,7 @@ class Artifacts(Protocol):
         ...
 
     def read_note(self, name: str) -> str | None:
-        """What the store says under a name that is no hash; None if nothing."""
+        """What the store says under a name that is not a hash; None if nothing."""
         ...
 
     def write_note(self, name: str, text: str) -> None:
@@ -155,7 +155,7 @@ class ArtifactStore:
         Raises
         ------
         ArtifactMissing
-            Nothing is stored under this name, or it is no SHA-256.
+            Nothing is stored under this name, or it is not a SHA-256.
         ArtifactDamaged
             The bytes had another hash; the file has been set aside.
         """
@@ -276,7 +276,7 @@ class ArtifactStore:
             raise ArtifactMissing(sha) from None
 
     def _clear(self, target: Path) -> None:
-        """Set aside what is no file and has taken the place of one, such as a folder."""
+        """Set aside what is not a file and has taken the place of one, such as a folder."""
         if target.is_dir() and not target.is_symlink():
             aside = self.folder / QUARANTINE / f"{target.name}.folder-{_moment()}"
             aside.parent.mkdir(exist_ok=True)

@@ -79,7 +79,7 @@ class BucketStore:
         Raises
         ------
         ArtifactMissing
-            The bucket has no such object, or the name is no SHA-256.
+            The bucket has no such object, or the name is not a SHA-256.
         ArtifactDamaged
             Its bytes have another hash; a copy of it lies under `quarantine/`.
         ArtifactsUnreachable

@@ -1,14 +1,15 @@
-"""The clock of operation: for how many seconds the service has been running in its life.
+"""The clock of operation: a counter of the seconds for which the service has run, over all its starts.
 
-Ages of stored things are differences of it. It is a counter in the database, so a wall clock that jumps back
-or forward ages nothing, nor does time without the service.
+The age of a stored thing is the difference of two readings. The counter stands in the database. So nothing
+ages while no server runs, or when the clock of a machine jumps.
 
-A SQLite file has one server, whose writer raises the counter by the monotonic clock of the process; a killed
-server loses the time since its last write. PostgreSQL has several. There the counter stands for the moment
-that `TICKED` names by the clock of the database, and the time since then, at most `LONGEST`, is added when it
-is read. Every server moves both forward every few seconds, under the lock of a row: so each second counts
-once, however many servers there are, and none while there is no server; a jump of the database's clock counts
-as `LONGEST` at most.
+SQLite has one server, whose writer raises the counter by the monotonic clock of its process. A killed server
+loses the time since its last write.
+
+PostgreSQL may have several servers. Each of them raises the counter every few seconds under the lock of a row,
+and notes in `TICKED` when it did so, by the clock of the database. A reader adds the time since then, at most
+`LONGEST`. So each second counts once, however many servers run. A jump of the database's clock counts as
+`LONGEST` at most.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Whether a SQLite file is whole: its pages, its indexes, and the JSON in its rows.
 
 SQLite keeps no checksums. A page that was overwritten shows by a broken tree, an index that disagrees with
-its table, or a text that is no JSON; a changed digit inside a text does not show.
+its table, or a text that is not JSON; a changed digit inside a text does not show.
 """
 
 from __future__ import annotations
@@ -148,4 +148,4 @@ def _of_texts(connection: sqlite3.Connection) -> Iterator[str]:
         for column in (c.name for c in table.columns if isinstance(c.type, JsonText) and c.name in there):
             wrong = f"SELECT rowid FROM {table.name} WHERE {column} IS NOT NULL AND NOT json_valid({column})"
             for (row,) in connection.execute(wrong):
-                yield f"row {row} of table {table.name}: {column} is no JSON"
+                yield f"row {row} of table {table.name}: {column} is not JSON"

@@ -78,7 +78,7 @@ def _parsed(url: str) -> SplitResult:
         place = urlsplit(url)
         has_more = bool(place.query or place.fragment or place.username or place.port)
     except ValueError:
-        raise _refused(f"it is no URL; write {FORMS}") from None
+        raise _refused(f"it is not a URL; write {FORMS}") from None
     if place.scheme not in ("s3", "file"):
         raise _refused(f"its scheme is {place.scheme[:20]!r}; write {FORMS}")
     if has_more:  # perhaps keys: the text does not quote it
@@ -101,7 +101,7 @@ def opened_bucket(settings: Settings, figures: Figures = NO_FIGURES) -> Bucket:
         raise _refused("files in S3 need the extra `team`: pip install 'crankwright[team]'") from None
     place = _parsed(settings.artifacts_url or "")
     if not _BUCKET.fullmatch(place.netloc):
-        raise _refused(f"{place.netloc[:63]!r} is no name of a bucket; write {FORMS}")
+        raise _refused(f"{place.netloc[:63]!r} is not a name of a bucket; write {FORMS}")
     if not _PREFIX.fullmatch(place.path):
         raise _refused("a prefix has letters of ASCII, digits and any of / . _ - only")
     endpoint = _endpoint(settings.s3_endpoint)

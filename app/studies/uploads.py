@@ -1,6 +1,6 @@
 """The rows of a study as a spreadsheet's file: CSV, or the first sheet of an XLSX file. In a process.
 
-A cell that is no number, or that holds a formula, is refused with its row and column.
+A cell that is not a number, or that holds a formula, is refused with its row and column.
 """
 
 from __future__ import annotations

@@ -118,7 +118,7 @@ class Analysis:
         Raises
         ------
         InvalidInputs
-            If an output is no single value, or the levels of the design take too long.
+            If an output is not a single value, or the levels of the design take too long.
         """
         most = self._most_points()  # by the tables of costs: a measured pace is another one every time
         nominal = self._nominal()

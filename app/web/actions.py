@@ -205,7 +205,7 @@ async def _change(api: Api, id: str, revision: str, patch: Mapping[str, JsonValu
 
 
 def tag_of(revision: str) -> str:
-    """The ETag of a revision as a form names it; of what is no number, one that matches nothing."""
+    """The ETag of a revision as a form names it; of what is not a number, one that matches nothing."""
     return f'"{revision if _NUMBER.fullmatch(revision) else 0}"'
 
 

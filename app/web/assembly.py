@@ -86,7 +86,7 @@ def install(app: FastAPI) -> None:
     app.include_router(tables.router)
     app.include_router(study_routes.router)
     app.include_router(study_routes.forms)
-    app.include_router(import_page.router)  # before the worksheets: `import` is no id of one
+    app.include_router(import_page.router)  # before the worksheets: `import` is not an id of one
     app.include_router(import_page.forms)
     app.include_router(worksheet_routes.router)
     app.include_router(worksheet_routes.forms)

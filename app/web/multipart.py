@@ -50,7 +50,7 @@ async def parts_of(request: Request) -> dict[str, Part]:
 
 
 def read_parts(body: bytes, content_type: str) -> dict[str, Part]:
-    """The parts of a form by name; linear in the length of the body. What is no part is left out."""
+    """The parts of a form by name; linear in the length of the body. What is not part is left out."""
     boundary = _BOUNDARY.search(content_type)
     if boundary is None:
         return {}

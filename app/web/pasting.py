@@ -29,7 +29,7 @@ def paste(pasted: PastedTable) -> ReadTable:
     Raises
     ------
     InvalidInputs
-        If the text is no table.
+        If the text is not a table.
     """
     columns = read_table(pasted.text)
     chosen = _chosen(columns, pasted)
@@ -188,7 +188,7 @@ def _shifted(axis: TableColumn, offset: str) -> TableColumn:
     Raises
     ------
     FaultyText
-        If it is no angle with its unit.
+        If it is not an angle with its unit.
     """
     if not offset:
         return axis
@@ -203,6 +203,6 @@ def _shifted(axis: TableColumn, offset: str) -> TableColumn:
 
 
 def refused(error: InvalidInputs) -> ReadTable:
-    """What is wrong with a text that is no table, as a page shows it."""
+    """What is wrong with a text that is not a table, as a page shows it."""
     faults = [f"{fault.name}: {fault.detail}" for fault in error.faults]
     return ReadTable(columns=[], first=[], rows=0, faults=faults)

@@ -128,7 +128,7 @@ class Typed:
         ]
 
     def _share(self, name: str) -> JsonValue:
-        """A tolerance typed in per cent, as a share; a text that is no number as it is."""
+        """A tolerance typed in per cent, as a share; a text that is not a number as it is."""
         text = self.text(name).strip().removesuffix("%").strip()
         try:
             return float(text) / 100 if text else None

@@ -56,7 +56,7 @@ async def _criteria(api: Api, study: Study, units: str) -> list[Criterion]:
 
 
 def _limits(study: Study, criteria: list[Criterion]) -> dict[str, list[float]]:
-    """Limits of criteria by output; a limit that itself follows from a row is no line."""
+    """Limits of criteria by output; a limit that itself follows from a row is not a line."""
     limits: dict[str, list[float]] = {}
     for one in criteria:
         if line := _limit_of(study, one):

@@ -18,7 +18,7 @@ router = APIRouter(include_in_schema=False, route_class=StrictRoute)
 async def read_pasted_table(pasted: PastedTable) -> ReadTable:
     """The columns of a pasted table, and the texts of the fields that take them.
 
-    A text that is no table is no error: the page shows what is wrong with it while it is typed.
+    A text that is not a table is not an error: the page shows what is wrong with it while it is typed.
     """
     return await run_in_threadpool(_read, pasted)
 

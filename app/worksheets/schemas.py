@@ -21,7 +21,7 @@ def storable(text: str) -> str:
     Raises
     ------
     ValueError
-        If it is too long, or has a character that is no text.
+        If it is too long, or has a character that is not text.
     """
     if (size := len(text.encode("utf-8"))) > LONGEST_TEXT:
         raise ValueError(f"a worksheet has at most {LONGEST_TEXT} bytes in UTF-8, not {size}")

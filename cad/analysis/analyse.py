@@ -49,7 +49,7 @@ def analyse(
     Raises
     ------
     AnalysisError
-        If the solid is no shaft, or cannot be meshed.
+        If the solid is not a shaft, or cannot be meshed.
     """
     report(0.0, "reading the solid")
     solid = read_solid(step, shaft)

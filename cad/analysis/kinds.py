@@ -22,7 +22,7 @@ KINDS: dict[str, dict[str, str]] = {
 """The outputs of each kind with their units; stress is that under a torque or moment of 1 N·m."""
 
 SURFACE = "surface"
-"""An output of every kind, the surface for a picture. It is no quantity, so no relation can use it."""
+"""An output of every kind, the surface for a picture. It is not a quantity, so no relation can use it."""
 
 STRESSES = frozenset({"maximum_stress"})
 """Outputs proportional to the load, computed on meshes of their own, whatever the level."""

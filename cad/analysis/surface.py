@@ -3,7 +3,7 @@
 From the response of one mesh, of one order, under a load of 1 N·m. Every curved surface element is divided
 into plane triangles, so that a shaft looks round; points are shared between triangles, so the surface is
 closed. Of a solid that was halved by its symmetry the other half is added, with the signs that the load
-requires (see `cad.analysis.elastic`); faces within the mirror plane are no part of the surface. It is a
+requires (see `cad.analysis.elastic`); faces within the mirror plane are not part of the surface. It is a
 picture: `cad.analysis.analyse` computes outputs with their errors, `cad.analysis.stress` the greatest
 stresses.
 

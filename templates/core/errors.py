@@ -7,7 +7,7 @@ TemplateError
         UnreleasedTemplate      it is the draft of a worksheet
     UnusableFile        a file in a folder of templates or models is broken
     Unreachable         `solve` cannot reach the target within the bounds
-    FaultyText          a text that is no quantity, unit or relation
+    FaultyText          a text that is not a quantity, unit or relation
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from typing import Any
 from templates.core.nearest import nearest
 
 MOST_SUGGESTED = 10
-"""Unknown names of one request that get a suggestion; a thousand typing errors are no typing errors."""
+"""Unknown names of one request that get a suggestion; a thousand typing errors are not typing errors."""
 
 MOST_LISTED = 100
 """Names that one sentence lists."""
@@ -112,7 +112,7 @@ class Unreachable(TemplateError):
 
 
 class FaultyText(TemplateError):
-    """A text that is no quantity, unit or relation; `code` says in which way."""
+    """A text that is not a quantity, unit or relation; `code` says in which way."""
 
     def __init__(self, code: str, detail: str) -> None:
         self.code = code

@@ -101,7 +101,7 @@ def _each_once(path: Path, keys: Iterable[str]) -> None:
         if times > 1:
             raise UnusableTable(path, f"{key!r} is there {times} times")
         if not _ROW.fullmatch(key):
-            raise UnusableTable(path, f"{key!r} is no name")
+            raise UnusableTable(path, f"{key!r} is not a name")
 
 
 def _row(path: Path, record: Mapping[str, str], sources: Mapping[str, Source]) -> Row:
@@ -140,7 +140,7 @@ def _number(path: Path, row: str, text: str) -> float:
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
-        raise UnusableTable(path, f"{row}: {text!r} is no number")
+        raise UnusableTable(path, f"{row}: {text!r} is not a number")
     return number
 
 

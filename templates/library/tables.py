@@ -161,7 +161,7 @@ def _read(name: str, columns: tuple[Column, ...]) -> tuple[Row, ...]:
     for row in rows:
         for quantity, cited in row.values.items():
             if units.get(quantity) != cited.unit:
-                raise UnusableTable(path, f"{quantity} [{cited.unit}] is no column of this table")
+                raise UnusableTable(path, f"{quantity} [{cited.unit}] is not a column of this table")
     return rows
 
 

@@ -222,7 +222,7 @@ def test_a_file_is_synced_before_it_is_renamed(store, monkeypatch):
 
 
 def test_a_folder_that_takes_the_place_meanwhile_is_set_aside(store, monkeypatch):
-    """To sync takes long, and what stands in the way then is no file that can be replaced."""
+    """To sync takes long, and what stands in the way then is not a file that can be replaced."""
     location = store.folder / hashlib.sha256(BYTES).hexdigest()[:2] / hashlib.sha256(BYTES).hexdigest()
     monkeypatch.setattr("os.fsync", lambda descriptor: None if location.exists() else location.mkdir())
     assert store.read(store.put(BYTES)) == BYTES

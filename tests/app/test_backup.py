@@ -262,7 +262,7 @@ class TestRestore:
         link = tarfile.TarInfo("artifacts/ab/" + "ab" * 32)
         link.type, link.linkname = kind, "/etc/passwd"
         entries.insert(2, (link, b""))
-        assert "no plain file" in self.refused(self.written(tmp_path / "x.tar", entries), tmp_path)
+        assert "not a plain file" in self.refused(self.written(tmp_path / "x.tar", entries), tmp_path)
 
     @pytest.mark.parametrize("which", [1, 2, -2], ids=["database", "artifact", "last artifact"])
     def test_a_flipped_byte(self, backup, tmp_path, which):

@@ -96,7 +96,7 @@ class TestDatabase:
         with sqlite3.connect(file) as connection:
             connection.execute("UPDATE build SET parameters = '{' WHERE key = 'k'")
         connection.close()
-        with pytest.raises(DatabaseDamaged, match="table build: parameters is no JSON"):
+        with pytest.raises(DatabaseDamaged, match="table build: parameters is not JSON"):
             refuse_damage(f"sqlite:///{file}")
 
     def test_damage_that_shows_later_ends_all_writing(self, file):

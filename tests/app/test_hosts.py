@@ -165,7 +165,7 @@ class TestProxy:
             ("https://a.works.example", "a.works.example", 404),
             ("https://crank.example:9000", "crank.example", 403),
             ("http://crank.example", "localhost:8000", 403),
-            ("https://a.works.example", "localhost:8000", 403),  # a wildcard is no name to trust elsewhere
+            ("https://a.works.example", "localhost:8000", 403),  # a wildcard is not a name to trust elsewhere
             ("https://a.works.example", "b.works.example", 403),
             ("https://evil.example", "crank.example", 403),
             ("https://localhost:8000", "localhost:8000", 403),  # not https, and not listed

@@ -97,7 +97,7 @@ class TestHeads:
 
 
 class TestDepth:
-    """What follows long chains goes on; what stands deep in a form or a page's address is no failure."""
+    """What follows long chains goes on; what stands deep in a form or a page's address is not a failure."""
 
     def test_a_chain_of_500_relations_is_explained_as_far_as_it_is_shown(self, http):
         parameters = {"p0": "11 mm", **{f"p{i}": f"= p{i - 1}" for i in range(1, 500)}}

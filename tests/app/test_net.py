@@ -266,7 +266,7 @@ def test_wrong_names_of_outputs_are_refused():
         net({ref("clearance"): np.ones(2)}, [ref("film.minimum_film_thicknes")])
     with pytest.raises(InvalidInputs, match="reynolds"):
         net({ref("clearance"): np.ones(2)}, [FILM], levels={"film": "reynold"})
-    with pytest.raises(InvalidInputs, match="no quantity"):
+    with pytest.raises(InvalidInputs, match="not a quantity"):
         net({ref("clearance"): np.ones(2)}, [ref("film.lubrication_regime")])
 
 

@@ -64,7 +64,7 @@ def test_numbers_without_headings_and_pure_numbers_are_read():
 @pytest.mark.parametrize(
     ("text", "wanted"),
     [
-        ("load_x [kN]\n1\n\nabc\n", "row 4, column load_x: 'abc' is no number; write one such as 0.05"),
+        ("load_x [kN]\n1\n\nabc\n", "row 4, column load_x: 'abc' is not a number; write one such as 0.05"),
         ("a [deg];load_x [kN]\n1;\n", "row 2, column load_x: there is no number; write one such as 0.05"),
         ("a [deg],b [kN]\n1,2\n1,5,2\n", "row 3: it has 3 cells, the first row has 2; with decimal commas"),
         ("a [deg];b [kN]\n1;2\n3\n", "row 3: it has 1 cells, the first row has 2"),
@@ -72,8 +72,8 @@ def test_numbers_without_headings_and_pure_numbers_are_read():
         ("a [deg]\n=A2+1\n", "row 2, column a: '=A2+1' is a formula"),
         ("a [deg]\nNaN\n", "'NaN' is no"),
         ("a [deg]\n1e999\n", "row 2, column a: '1e999' is too large"),
-        ("a [qqq]\n1\n", "row 1, column a: 'qqq' is no known unit"),
-        ("a;b\nkN;foo\n1;2\n", "row 2, column b: 'foo' is no known unit"),
+        ("a [qqq]\n1\n", "row 1, column a: 'qqq' is not a known unit"),
+        ("a;b\nkN;foo\n1;2\n", "row 2, column b: 'foo' is not a known unit"),
         ("a [N]\nkN\n1\n", "row 2, column a: the header says N, this row kN; keep one of them"),
         ("a [deg]\n1.000,5\n", "row 2: it has 2 cells"),
         ("a [deg]\n", "there is no row of numbers"),
@@ -92,7 +92,7 @@ def test_twenty_wrong_cells_are_named_and_the_others_counted():
     text = "a [deg]\n" + "1\nx\n" * 50
     assert len(faults(text)) == 21
     assert faults(text)[-1].startswith("table: 30 further faults of this table are not listed")
-    assert faults(text)[1] == "row 5, column a: 'x' is no number; write one such as 0.05"
+    assert faults(text)[1] == "row 5, column a: 'x' is not a number; write one such as 0.05"
 
 
 def test_columns_go_to_fields_by_name_and_the_repeated_last_point_is_left_out():

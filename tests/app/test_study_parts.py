@@ -144,7 +144,7 @@ def test_faults_that_are_not_listed_are_counted():
         read_rows(Pieces.of(f"ratio\n1\n{rows}".encode()), "csv", PLACES)
     assert len(refused.value.faults) == 501
     assert refused.value.faults[-1].detail.startswith("99499 further faults")
-    assert "'x' is no number; write one" in refused.value.faults[0].detail
+    assert "'x' is not a number; write one" in refused.value.faults[0].detail
 
 
 def test_a_file_that_unpacks_to_too_much_is_refused():

@@ -90,4 +90,4 @@ def test_the_limit_of_points_is_named(http, film):
     few = asked(http, film, method="optimise", **asking, points=4000).json()["detail"]
     assert "looks at 4096 rows before it searches; give more, up to 100000" in few
     odd = asked(http, film, method="sensitivity", kind="sobol", **asking, points=4000).json()["detail"]
-    assert "4000 is no power of two; write 2048 or 4096" in odd
+    assert "4000 is not a power of two; write 2048 or 4096" in odd

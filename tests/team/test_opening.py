@@ -33,9 +33,9 @@ def refusal(opened, **place):
     [
         ("bucket", "write s3://bucket"),
         ("gs://bucket", "its scheme is 'gs'"),
-        ("s3://", "no name of a bucket"),
-        ("s3://B", "no name of a bucket"),
-        ("s3://a b", "no name of a bucket"),
+        ("s3://", "not a name of a bucket"),
+        ("s3://B", "not a name of a bucket"),
+        ("s3://a b", "not a name of a bucket"),
         ("s3://bucket/a?b", "AWS environment"),
         ("s3://bucket/ä", "letters of ASCII"),
         ("s3://key:SECRET@bucket", "AWS environment"),
@@ -43,7 +43,7 @@ def refusal(opened, **place):
         ("file:///", "no folder of this machine"),
         ("file:///nowhere/files", "there is no folder /nowhere"),
         ("file:///proc/files", "cannot be written"),
-        ("s3://[", "no URL"),
+        ("s3://[", "not a URL"),
     ],
 )
 def test_a_wrong_url(opened, url, remedy):

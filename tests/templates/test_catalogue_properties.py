@@ -257,7 +257,7 @@ class TestArrays:
 
 
 def numbers(cls, raw):
-    """The outputs that are no texts, at the level that is taken when nothing is asked for."""
+    """The outputs that are not texts, at the level that is taken when nothing is asked for."""
     outputs = evaluate(cls, raw, level=cls.default_level or None).outputs
     return {name: answer for name, answer in outputs.items() if not isinstance(cls.formulas[name], Text)}
 

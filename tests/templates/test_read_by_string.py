@@ -124,8 +124,8 @@ def seen_of(cls, method):
 def test_property_no_template_reads_an_attribute_unseen(cls):
     for method in methods(cls):
         for name in reads_by_string(method):
-            assert name, f"{method.name} reads an attribute by a name that is no literal"
-            assert name in cls.declarations, f"{method.name} reads {name}, which is no input"
+            assert name, f"{method.name} reads an attribute by a name that is not a literal"
+            assert name in cls.declarations, f"{method.name} reads {name}, which is not an input"
             assert name in seen_of(cls, method.name)
             if method.name in cls.declarations:
                 assert name in cls.dependencies(method.name)

@@ -1,4 +1,4 @@
-"""Downloads in Chromium: a file that has to be made is waited for, and what is no file is never saved."""
+"""Downloads in Chromium: a file that has to be made is waited for, and what is not a file is never saved."""
 
 import json
 from pathlib import Path

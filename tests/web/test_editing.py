@@ -19,7 +19,7 @@ def test_a_pasted_table_fills_the_curves_of_a_template(watched, tmp_path):
     dialog = page.get_by_role("dialog", name="Paste a table")
     expect(dialog.get_by_label("Table", exact=True)).to_be_focused()
     dialog.get_by_label("Table", exact=True).fill(CYCLE.replace("-2,5", "abc"))
-    expect(dialog.get_by_role("alert")).to_contain_text("row 4, column Fx: 'abc' is no number")
+    expect(dialog.get_by_role("alert")).to_contain_text("row 4, column Fx: 'abc' is not a number")
     expect(dialog.get_by_role("button", name="Take over")).to_be_disabled()
     dialog.get_by_label("Table", exact=True).fill(CYCLE)
     expect(dialog.get_by_role("status")).to_contain_text("the last point repeats the first and was left out")

@@ -47,7 +47,7 @@ def test_a_file_that_is_not_taken_is_explained_beside_the_form(plain):
     page = plain.page
     plain.open("/worksheets/import")
     sent(page, "import_wrong", b"no sheet")
-    expect(page.get_by_role("alert")).to_contain_text("is no XML", timeout=30_000)
+    expect(page.get_by_role("alert")).to_contain_text("is not XML", timeout=30_000)
     expect(page.get_by_label("Name", exact=True)).to_have_value("import_wrong")
 
 

@@ -52,7 +52,7 @@ async def get_client(request: Request) -> str:
     Raises
     ------
     InvalidInputs
-        If the header is no name.
+        If the header is not a name.
     """
     if is_inside(request.scope):
         return str(request.scope[_CALLER])

@@ -132,7 +132,7 @@ class TimedProtocol(WholeTarget):
         self._refuse(431, "head-too-large", "The headers are too large", detail)
 
     def send_400_response(self, msg: str) -> None:
-        """Answer what is no HTTP."""
+        """Answer what is not HTTP."""
         self._refuse(400, "not-http", "Not HTTP", msg)
 
     def _refuse(self, status: int, slug: str, title: str, detail: str) -> None:

@@ -178,7 +178,7 @@ def _check_link(looked: Looked) -> None:
 
 
 def _check_origin(looked: Looked, asked: Authority, scheme: str, hosts: Hosts) -> None:
-    """Refuse what a page of another origin sends; a client that is no browser sends no Origin."""
+    """Refuse what a page of another origin sends; a client that is not a browser sends no Origin."""
     for origin in looked.get(b"origin", ()):
         if not _is_own(origin.decode("latin-1"), asked, scheme, hosts):
             raise CrossSite(

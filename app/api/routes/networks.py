@@ -22,7 +22,7 @@ Id = Annotated[str, Path(max_length=64)]
 
 @router.get("/{id}/network", responses=refusals(404))
 def show_network(id: Id, designs: TheDesigns) -> DesignNetwork:
-    """The dependencies of a design: blocks in order of calculation, relations, and the names these may use."""
+    """The dependencies of a design: its blocks in order of calculation, its relations, and names for them."""
     with designs.database.read() as session:
         document = repository.head(session, id).document
     graph, _ = build_graph(resolved(read_document(document), designs.catalogues), designs.catalogues)

@@ -49,7 +49,7 @@ async def check_worksheet(
 ) -> Response:
     """Read a text: every fault under its line, or every line on paper with the numbers of the example.
 
-    Nothing is saved, and a faulty text is no error of the request.
+    Nothing is saved, and a faulty text is not an error of the request.
     """
     content = await threads.run(worksheets.calculated, client, checked, body.text, body.id)
     return Response(content, media_type="application/json")

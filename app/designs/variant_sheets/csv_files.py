@@ -1,6 +1,6 @@
 """CSV files: UTF-8 with or without a byte-order mark, columns separated by tabs, semicolons or commas.
 
-The first line that is not blank shows the separator. A decimal comma is read where it is no comma.
+The first line that is not blank shows the separator. A decimal comma is read where it is not a comma.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def read_csv(content: bytes) -> Grid:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         row = content[: error.start].count(b"\n") + 1
-        raise _wrong(f"A{row}", "not_utf_8", "this is no UTF-8; save the file as CSV in UTF-8") from None
+        raise _wrong(f"A{row}", "not_utf_8", "this is not UTF-8; save the file as CSV in UTF-8") from None
     separator = _separator(text)
     return grid_of([[_meant(cell, separator) for cell in row] for row in _rows(text, separator)])
 
@@ -59,7 +59,7 @@ def _rows(text: str, separator: str) -> list[list[str]]:
     try:
         for row in csv.reader(io.StringIO(text, newline=""), delimiter=separator):
             if len(rows) > LAST_ROW and not any(row):
-                continue  # blank rows at the end are no variants
+                continue  # blank rows at the end are not variants
             rows.append(row)
             if len(rows) > 2 * LAST_ROW:
                 break  # enough to refuse

@@ -104,6 +104,6 @@ def column_of(letters: str) -> int:
 
 
 def cell_of(address: str) -> tuple[int, int] | None:
-    """Row and column of an address, from 0: (3, 3) for `D4`; None of what is no address."""
+    """Row and column of an address, from 0: (3, 3) for `D4`; None of what is not an address."""
     match = _ADDRESS.fullmatch(address)
     return (int(match["row"]) - 1, column_of(match["column"])) if match else None

@@ -187,7 +187,7 @@ def _name(grid: Grid, row: int, variants: Collection[str], faults: list[Fault]) 
     if not name:
         faults.append(Fault(where, "missing_name", "this row has no name; name its variant, such as main_1"))
     elif not NAME.fullmatch(name):
-        message = f"{excerpt(name)} is no name; write letters, digits and _, a letter first: main_1"
+        message = f"{excerpt(name)} is not a name; write letters, digits and _, a letter first: main_1"
         faults.append(Fault(where, "ill_named", message))
     elif name in RESERVED:
         faults.append(Fault(where, "reserved", RESERVED[name]))

@@ -80,7 +80,7 @@ def relation(text: str) -> str:
     Raises
     ------
     FaultyText
-        If it has a sign, or is no relation.
+        If it has a sign, or is not a relation.
     """
     if text.startswith("="):
         raise FaultyText("formula", f"write the relation without =: {text.lstrip('= ')[:60]}")

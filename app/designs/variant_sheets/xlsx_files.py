@@ -132,7 +132,7 @@ def _text(value: object, kind: str) -> str:
         message = "the spreadsheet made a date of this cell; format it as a number, and type it again"
         raise FaultyText("date", message)
     if isinstance(value, bool):
-        raise FaultyText("not_a_number", f"{str(value).upper()} is no quantity; write a number")
+        raise FaultyText("not_a_number", f"{str(value).upper()} is not a quantity; write a number")
     return number_text(value) if isinstance(value, (int, float)) else str(value)
 
 

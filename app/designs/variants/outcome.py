@@ -137,7 +137,7 @@ def base_unit(graph: Graph, parameter: str) -> str:
 
 
 def single_outputs(calculation: Calculation) -> dict[str, JsonObject]:
-    """Every output of every step that is no array, by its name in relations; null with its reason."""
+    """Every output of every step that is not an array, by its name in relations; null with its reason."""
     shown: dict[str, JsonObject] = {}
     for step, evaluation in calculation.evaluations.items():
         answers = {n: a for n, a in evaluation.outputs.items() if not isinstance(a.value, np.ndarray)}

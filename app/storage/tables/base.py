@@ -20,7 +20,7 @@ NAMING = {
 canonical_json = json.JSONEncoder(
     sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False
 ).encode
-"""Write a JSON value in its one canonical form; raises ValueError for NaN and infinity, which are no JSON."""
+"""Write a JSON value in its one canonical form; raises ValueError for NaN and infinity."""
 
 
 class NotWritten(ValueError):
@@ -38,11 +38,11 @@ class JsonText(TypeDecorator[plain.Json]):
         return None if value is None else canonical_json(value)
 
     def process_result_value(self, value: str | None, dialect: Dialect) -> plain.Json:
-        """From the column to Python; text that is no JSON was not written by this program."""
+        """From the column to Python; text that is not JSON was not written by this program."""
         try:
             return None if value is None else json.loads(value)
         except ValueError as error:
-            raise NotWritten(f"a stored text is no JSON: {error}") from error
+            raise NotWritten(f"a stored text is not JSON: {error}") from error
 
 
 class Base(DeclarativeBase):

@@ -103,7 +103,7 @@ def sobol_sequence(dimensions: int, seed: int, first: int, last: int) -> Array:
     sequence = qmc.Sobol(dimensions, rng=seed)
     if first:
         return np.asarray(sequence.fast_forward(first).random(last - first), dtype=np.float64)
-    # SciPy warns if the first draw is no power of two; what it draws too much is left out.
+    # SciPy warns if the first draw is not a power of two; what it draws too much is left out.
     drawn = sequence.random_base2(max(last - 1, 0).bit_length())
     return np.asarray(drawn[:last], dtype=np.float64)
 

@@ -107,7 +107,7 @@ class SobolPoints:
     Raises
     ------
     InvalidInputs
-        With code `points`, if `base` is no power of two.
+        With code `points`, if `base` is not a power of two.
     """
 
     space: Space
@@ -117,7 +117,7 @@ class SobolPoints:
     def __post_init__(self) -> None:
         if self.base < 2 or self.base & (self.base - 1):
             low = 2 ** max(1, min(self.base, 10**6).bit_length() - 1)
-            detail = f"{self.base} is no power of two; write {low} or {2 * low}"
+            detail = f"{self.base} is not a power of two; write {low} or {2 * low}"
             raise InvalidInputs([Fault("points", "points", detail)])
 
     @property

@@ -1,4 +1,4 @@
-// Downloads: a file that still has to be made is waited for, and an answer that is no file is never saved.
+// Downloads: a file that still has to be made is waited for, and an answer that is not a file is never saved.
 import { Refused, call } from "./api.js";
 import { isolated } from "./isolated.js";
 import { watched } from "./progress.js";

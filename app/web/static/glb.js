@@ -3,7 +3,7 @@ const JSON_CHUNK = 0x4e4f534a;
 
 export function readGlb(buffer) {
   const view = new DataView(buffer);
-  if (view.getUint32(0, true) !== 0x46546c67) throw new Error("this is no GLB file");
+  if (view.getUint32(0, true) !== 0x46546c67) throw new Error("this is not a GLB file");
   const length = view.getUint32(12, true);
   if (view.getUint32(16, true) !== JSON_CHUNK) throw new Error("this GLB file does not begin with its description");
   const about = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 20, length)));

@@ -27,7 +27,7 @@ class Calls(Writer):
             case Failed(region):
                 raise Unnamed(key, region)
             case Value() | Range() | Written() | Choice():
-                raise Untranslatable("call of what is no function", "write a product with *")
+                raise Untranslatable("call of something that is not a function", "write a product with *")
         if key in functions.REFUSED:
             raise Untranslatable(
                 functions.REFUSED[key], "write the formula by hand, or give its value as an input"
@@ -59,7 +59,7 @@ class Calls(Writer):
             if key == "mean" and parts[0].axis is None:
                 return parts[0]
             if any(part.axis is None for part in parts):
-                raise Untranslatable(f"{key} of what is no list", "give it a list")
+                raise Untranslatable(f"{key} of something that is not a list", "give it a list")
             parts[0].shaped(*parts)
             return _filled(pattern, parts)
         if key in ("sum", "cnt"):
@@ -83,7 +83,7 @@ class Calls(Writer):
         across, up = (literal.quantity(part) or literal.term(part) for part in arguments[:2])
         at = self.quantity(arguments[2]) or self.term(arguments[2])
         if across.axis is None or up.axis is None or at.is_vector:
-            raise Untranslatable("interpolation in what are no lists", "write a curve")
+            raise Untranslatable("interpolation in arguments that are not lists", "write a curve")
         return called(self.sheet.curve(across, up), at)
 
     def _own(self, function: Function, arguments: list[Node]) -> Term:

@@ -96,7 +96,7 @@ class Definitions(ListDefinitions):
             case "matrix":
                 self.several(outcome, target, value)
             case _:
-                raise Untranslatable("definition of what is no name", "give the result a name")
+                raise Untranslatable("definition of something that is not a name", "give the result a name")
 
     def _single(self, outcome: Outcome, target: Node, value: Node) -> None:
         inner = without_result(value)

@@ -4,7 +4,7 @@ from templates.core.errors import FaultyText
 
 
 class SheetNotRead(FaultyText):
-    """A file that is no Mathcad sheet, or one that is not taken; `code` says in which way."""
+    """A file that is not a Mathcad sheet, or one that is not taken; `code` says in which way."""
 
 
 class Untranslatable(Exception):

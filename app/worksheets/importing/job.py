@@ -30,7 +30,7 @@ def read_sheet(content: bytes) -> OriginalSheet:
     Raises
     ------
     SheetNotRead
-        It is no sheet of Mathcad, or it is not taken; the error says why and what would be right.
+        It is not a sheet of Mathcad, or it is not taken; the error says why and what would be right.
     """
     return read_prime(content) if is_package(content) else read_legacy(content)
 
@@ -41,7 +41,7 @@ def imported(content: bytes, title: str) -> Imported:
     Raises
     ------
     SheetNotRead
-        It is no sheet of Mathcad, or it is not taken.
+        It is not a sheet of Mathcad, or it is not taken.
     """
     sheet = read_sheet(content)
     outcomes = translated(sheet)

@@ -44,7 +44,7 @@ class Lists(Writer):
             raise Untranslatable("item of a matrix", "write its rows or columns as lists")
         term, at = self.term(whole), self.term(index)
         if term.axis is None:
-            raise Untranslatable("item of what is no list", "define the list above")
+            raise Untranslatable("item of something that is not a list", "define the list above")
         if at.axis is not None:
             return self._along(term, at)
         if at.number is None or at.number != int(at.number):
@@ -77,7 +77,7 @@ class Lists(Writer):
         if variable.tag != "id":
             term = self.value(body)
             if not term.is_vector:
-                raise Untranslatable("sum over what is no list", "write it out")
+                raise Untranslatable("sum over something that is not a list", "write it out")
             return reduced("sum", term)
         if "lowerBound" not in bounds or "upperBound" not in bounds:
             raise Untranslatable("sum over a range variable", "give its bounds, or sum the list")

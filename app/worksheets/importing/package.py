@@ -27,7 +27,7 @@ _ENCRYPTED = 0x1
 _DAMAGES = (
     zipfile.BadZipFile, zlib.error, EOFError, OSError, RuntimeError, struct.error, ValueError, OverflowError,
 )  # fmt: skip
-"""What `zipfile` raises for bytes that are no ZIP, or no longer one."""
+"""What `zipfile` raises for bytes that are not ZIP, or no longer one."""
 _METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
 AGAIN = "save the sheet in Mathcad again, and send that file"
 
@@ -52,7 +52,7 @@ class Package:
     Raises
     ------
     SheetNotRead
-        It is no ZIP, has too many parts, or parts that no sheet has.
+        It is not a ZIP, has too many parts, or parts that no sheet has.
     """
 
     def __init__(self, content: bytes, budget: Budget) -> None:
@@ -61,7 +61,7 @@ class Package:
         try:
             self._zip = zipfile.ZipFile(io.BytesIO(content))
         except _DAMAGES as error:
-            raise SheetNotRead("package", f"it is no whole ZIP package ({error}): {AGAIN}") from None
+            raise SheetNotRead("package", f"it is not a whole ZIP package ({error}): {AGAIN}") from None
         self._parts = self._zip.infolist()
         if len(self._parts) > MOST_PARTS:
             raise _crowded(len(self._parts))
@@ -107,7 +107,7 @@ def _check_directory(content: bytes) -> None:
     if content[place : place + 4] != _END or content[-2:] != b"\0\0":
         place = content.rfind(_END, max(0, place - _LONGEST_COMMENT))
     if place < 0 or len(content) < place + _END_SIZE:
-        raise SheetNotRead("package", f"it is no whole ZIP package (its directory is missing): {AGAIN}")
+        raise SheetNotRead("package", f"it is not a whole ZIP package (its directory is missing): {AGAIN}")
     entries, size = struct.unpack("<HI", content[place + 10 : place + 16])
     if entries > MOST_PARTS:
         raise _crowded(entries)

@@ -69,7 +69,7 @@ class Scaled:
         Raises
         ------
         Untranslatable
-            A power is no whole number, or the text is no unit here.
+            A power is not a whole number, or the text is not a unit here.
         """
         if any(exponent.denominator != 1 for _, exponent in self.powers):
             raise Untranslatable("root of a unit", "write the formula in pure numbers, such as f_ck / 1 MPa")

@@ -58,7 +58,7 @@ def read(content: bytes, name: str) -> Node:
     Raises
     ------
     SheetNotRead
-        It is no XML, declares a document type or entities, nests too deep, or has too many elements.
+        It is not XML, declares a document type or entities, nests too deep, or has too many elements.
     """
     return _Reader(name).read(content)
 
@@ -82,11 +82,11 @@ class _Reader:
             self._parser.Parse(content, True)
         except expat.ExpatError as error:
             place = f"line {error.lineno}, column {error.offset + 1}"
-            what = f"{self._name} is no XML ({expat.ErrorString(error.code)} at {place})"
+            what = f"{self._name} is not XML ({expat.ErrorString(error.code)} at {place})"
             raise SheetNotRead("xml", f"{what}: save the sheet again") from None
         except (LookupError, ValueError) as error:  # an encoding that there is not
-            raise SheetNotRead("xml", f"{self._name} is no XML ({error}): save the sheet again") from None
-        assert self._root is not None, "a document without a root is no XML"
+            raise SheetNotRead("xml", f"{self._name} is not XML ({error}): save the sheet again") from None
+        assert self._root is not None, "a document without a root is not XML"
         return self._root
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:

@@ -83,7 +83,7 @@ class Catalogue(Generic[T]):
             If it is the draft of a worksheet.
         """
         if reason := self.unreleased.get((id, version)):
-            raise UnreleasedTemplate(id, f"{self.kind} {id} version {version} is no release: {reason}")
+            raise UnreleasedTemplate(id, f"{self.kind} {id} version {version} is not a release: {reason}")
         if reason := self.quarantined.get((id, version)):
             raise QuarantinedTemplate(id, f"{self.kind} {id} version {version} is quarantined: {reason}")
 

@@ -47,7 +47,7 @@ def record(cls: type[Template], more: Iterable[Mapping[str, Any]] = ()) -> dict[
 
 
 def codes(refusal: InvalidInputs) -> list[str]:
-    """Why inputs are refused: each code once, because how many faults one cause makes is no result."""
+    """Why inputs are refused: each code once, because how many faults one cause makes is not a result."""
     return sorted({fault.code for fault in refusal.faults})
 
 

@@ -24,7 +24,9 @@ def faults_of_example(cls: type[Template]) -> Iterator[FileFault]:
     """What is wrong with the example: it must cover the required inputs, and be calculated."""
     line = _line_of_example(cls)
     if not isinstance(cls.example, dict):
-        yield FileFault("example", "example is no dictionary", 'write example = {"speed": "300 rpm"}', line)
+        yield FileFault(
+            "example", "example is not a dictionary", 'write example = {"speed": "300 rpm"}', line
+        )
         return
     required = [name for name, declared in cls.inputs.items() if declared.required]
     if missing := [name for name in required if name not in cls.example]:

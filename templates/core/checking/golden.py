@@ -39,7 +39,7 @@ def faults_of_release(cls: type[Template], path: Path) -> Iterator[FileFault]:
 def _against(cls: type[Template], file: Path) -> Iterator[FileFault]:
     record = _read(file)
     if record is None or not isinstance(record.get("cases"), list):
-        what = f"{file.name} is no golden record"
+        what = f"{file.name} is not a golden record"
         yield FileFault("golden", what, "write it by crankwright freeze, or take it away")
         return
     for number, what in enumerate(differences(cls, record)):

@@ -125,7 +125,7 @@ def _unknown_attributes(cls: type[Template]) -> Iterator[FileFault]:
 def _lines(function: Callable[..., Any]) -> dict[str, int]:
     try:
         return lines_of_attributes(function)
-    except (AssertionError, OSError, SyntaxError, TypeError):  # `_formulas` reports what is no method
+    except (AssertionError, OSError, SyntaxError, TypeError):  # `_formulas` reports what is not a method
         return {}
 
 

@@ -103,7 +103,7 @@ def _by_row(name: str, raw: Any, declared: Mapping[str, Limit]) -> dict[str, Giv
     if library is None:
         raise FaultyText("no_library", f"there is no library {name}; give the limits by hand")
     if not isinstance(raw, str):
-        raise FaultyText("not_a_row", f"{excerpt(raw)} is no row; give the id of a row of {name}")
+        raise FaultyText("not_a_row", f"{excerpt(raw)} is not a row; give the id of a row of {name}")
     try:
         row = library.row(raw)
     except KeyError:

@@ -128,7 +128,7 @@ class Comparison:
     def share(self) -> float | None:
         """What must be smaller over what must be larger, at the worst point that counts.
 
-        None where it has no meaning: a side is the constant 0, or is no amount at one of the points.
+        None where it has no meaning: a side is the constant 0, or is not an amount at one of the points.
         """
         small, large = self.ordered
         if small.constant == 0 or large.constant == 0:
@@ -139,7 +139,7 @@ class Comparison:
 def worst_share(small: Any, large: Any, where: Truth = True) -> float | None:
     """The largest ratio of what must be smaller to what must be larger, over the points in `where`.
 
-    None if no point has both values, or one of the values is no amount: below 0, or 0 as the larger.
+    None if no point has both values, or one of the values is not an amount: below 0, or 0 as the larger.
     """
     low, high, counts = np.broadcast_arrays(
         np.asarray(small, dtype=float), np.asarray(large, dtype=float), np.asarray(where)
@@ -153,7 +153,7 @@ def worst_share(small: Any, large: Any, where: Truth = True) -> float | None:
 class Outcome(_Recording):
     """A truth and what it follows from: one comparison, all or any of several outcomes, or unknown causes.
 
-    An equality is no comparison, because nothing is close to its limit; `equated` are its two sides.
+    An equality is not a comparison, because nothing is close to its limit; `equated` are its two sides.
     """
 
     value: Any

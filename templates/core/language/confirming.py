@@ -13,7 +13,7 @@ from templates.core.language.scan import Outputs, SampledCurve
 
 CONFIRMED = 8  # solutions that are calculated again at a level that is not the scan's
 POLISHES, POLISHED = 8, 1e-9  # steps at that level, and the relative miss with which they end
-SETTLED = 1e-3  # relative miss after the last step beyond which it is no solution
+SETTLED = 1e-3  # relative miss after the last step beyond which it is not a solution
 ALIKE = 1e-9  # of the bounds' distance, within which two solutions are one
 STEP = 1e-6  # of the unknown, by which the slope is measured
 

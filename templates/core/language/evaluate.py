@@ -247,7 +247,7 @@ def _with_reasons(
 
 
 def is_reported(template: Template, declared: Input) -> bool:
-    """Whether an answer reports an input: given, or with a default that exists and is no output anyway."""
+    """Whether an answer reports an input: it is given, or has a default that is not an output as well."""
     if declared.name in template.ledger.typed:
         return True
     if isinstance(declared, Derived):

@@ -93,7 +93,7 @@ def admitted(cls: type[Template], typed: Mapping[str, Typed | str]) -> Intake:
 
 
 def _bounded(declared: Input, typed: Typed) -> tuple[Any, Fault | Mask | None]:
-    """The value and what is wrong with it; a faulty point of an array is masked, and is no fault."""
+    """The value and what is wrong with it; a faulty point of an array is masked, and is not a fault."""
     if isinstance(declared, Table):
         return _rows(declared, typed.si)
     if isinstance(typed.si, np.ndarray) and is_single(declared):

@@ -141,7 +141,7 @@ class Accuracy:
 
 
 def _same_at_all_levels(template: Template, output: str) -> bool:
-    """Whether an output, which is no text, has no other value at another level."""
+    """Whether an output, which is not text, has no other value at another level."""
     formula = template.formulas[output]
     if isinstance(formula, Text):
         return False
@@ -223,10 +223,10 @@ def absolute_error(template: Template, output: str, error: Any) -> Any:
 
 
 def relative_to(template: Template, output: str) -> Any:
-    """What the error of an output that is no profile is relative to [SI]: itself, unless the table says else.
+    """The reference [SI] of the error of an output that is not a profile: itself, or what the table names.
 
     The table's `relative_to` has by output a size [SI] (of an angle, 90°), or a list of outputs, the largest
-    of which counts, or null for a size that is no output.
+    of which counts, or null for a size that is not an output.
     """
     measured = accuracy(type(template))
     others = measured.content.get("relative_to", {}).get(output, [output]) if measured else [output]

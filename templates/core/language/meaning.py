@@ -153,7 +153,7 @@ def _named(words: str, name: str | None) -> str:
     Raises
     ------
     TypeError
-        If that is no name in snake_case.
+        If that is not a name in snake_case.
     """
     name = name or api_name(words)
     if not _API_NAME.fullmatch(name):

@@ -1,7 +1,7 @@
 """The target of `solve` as a curve over the unknown: sampled in array calls, finer where something happens.
 
 257 samples between the bounds, all at one level of fidelity, show where the output crosses the target, comes
-near it, or ends. Intervals that do so are divided again and again, so that a jump is no crossing,
+near it, or ends. Intervals that do so are divided again and again, so that a jump is not a crossing,
 two solutions close together are separated, and the end of the reachable range is located.
 """
 

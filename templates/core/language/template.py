@@ -249,7 +249,7 @@ class Template:
     def dependencies(cls, attribute: str) -> frozenset[str]:
         """The ancestors, and the inputs that any of them reads as given.
 
-        Formulas beneath an input's default may read the input as given: this is no order of evaluation.
+        Formulas beneath an input's default may read the input as given: this is not an order of evaluation.
         """
         if attribute not in cls._dependencies:
             ancestors = cls.ancestors(attribute)

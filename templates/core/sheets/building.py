@@ -144,7 +144,7 @@ class Builder:
             remedy = "write different words, as in (walther | vogel)"
             raise statement.refuse("choice", "each option is one word, and stands once", options, remedy)
         if default is not None and str(default) not in names:
-            message = f"the default {default} is no option"
+            message = f"the default {default} is not an option"
             raise statement.refuse("choice", message, default, f"write one of {', '.join(names)}")
         keywords: dict[str, Any] = {}
         for clause in clauses:
@@ -165,7 +165,7 @@ class Builder:
         word = str(tree.children[0]) if tree.data == "name" else ""
         if word not in options:
             raise statement.refuse(
-                "choice", "the example is no option", tree, f"write one of {', '.join(options)}"
+                "choice", "the example is not an option", tree, f"write one of {', '.join(options)}"
             )
         parts["example"] = word
 

@@ -121,7 +121,7 @@ def _clause(
         return "published", tuple(limits)
     sign = str(clause.children[0])
     if sign not in _BOUNDS:
-        raise statement.refuse("limit", f"{sign} is no bound", clause, "a bound is <, <=, > or >=")
+        raise statement.refuse("limit", f"{sign} is not a bound", clause, "a bound is <, <=, > or >=")
     return _BOUNDS[sign], limits[0]
 
 
@@ -134,5 +134,5 @@ def _said(statement: Parsed, clause: lark.Tree[Any]) -> tuple[str, Any]:
         raise statement.refuse("clause", f"{key} takes one text", clause, "leave out the other texts")
     if key == "symbol" and not _SYMBOL.fullmatch(said[0]):
         remedy = r'write a letter with a subscript, as in symbol "\eta_{0}"'
-        raise statement.refuse("clause", f"{said[0][:40]!a} is no symbol", clause, remedy)
+        raise statement.refuse("clause", f"{said[0][:40]!a} is not a symbol", clause, remedy)
     return str(key), said[0]

@@ -27,7 +27,7 @@ def criterion_of(
     Raises
     ------
     Refusal
-        With code `check`, if it is no single comparison by <= or >=, or as `read_criterion` says.
+        With code `check`, if it is not a single comparison by <= or >=, or as `read_criterion` says.
     """
     at = statement.parts[0]
     remedy = "write p <= 30 MPa; several conditions are several checks"

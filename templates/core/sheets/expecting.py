@@ -27,7 +27,7 @@ def test_of(statement: Parsed, reader: Reader, every: Parts) -> SheetTest:
     Raises
     ------
     Refusal
-        If a name is no input or no output, or a value does not measure what its name does.
+        If a name is not an input or no output, or a value does not measure what its name does.
     """
     words, *parts, tolerance = statement.parts
     given, expected = {}, []
@@ -64,7 +64,7 @@ def _set(statement: Parsed, reader: Reader, declared: Declaration, tree: lark.Tr
         word = str(tree.children[0]) if tree.data == "name" else ""
         if word not in declared.options:
             remedy = f"write one of {', '.join(declared.options)}"
-            raise statement.refuse("unknown_name", f"this is no option of {name}", tree, remedy)
+            raise statement.refuse("unknown_name", f"this is not an option of {name}", tree, remedy)
         return word
     return _value(statement, reader, declared, tree, name)
 
@@ -103,6 +103,6 @@ def _expected(
         difference = declared.meaning.unit if not declared.meaning.scale.absolute else "K"
         reader.fitting(statement, (tolerance, sort), difference, "the tolerance", within)
     if not 0 <= number < np.inf:
-        message = f"{text} is no tolerance: it is finite, and not below 0"
+        message = f"{text} is not a tolerance: it is finite, and not below 0"
         raise statement.refuse("limit", message, within, "write within 0.2 %")
     return Expected(declared.name, value, number, f"{statement.text_of(tree)} within {text}")

@@ -175,7 +175,7 @@ def _along_of(axis: str) -> str:
 
 
 def no_temperature(parameter: str) -> str:
-    """Why a value that is no temperature does not fit a parameter in degC, and what would."""
+    """Why a value that is not a temperature does not fit a parameter in degC, and what would."""
     return (
         f"{parameter} is a temperature, and this is a difference of temperatures, or no plain one; "
         "give a temperature, or declare the parameter in K"

@@ -40,7 +40,7 @@ def chunks_of(text: str) -> list[Chunk]:
     Raises
     ------
     SheetRefused
-        If the text is too large, or holds what is no text.
+        If the text is too large, or holds what is not text.
     """
     if faults := list(_faults_of_text(text)):
         raise SheetRefused(faults)
@@ -70,7 +70,7 @@ def _faults_of_text(text: str) -> Iterator[SheetFault]:
     for number, line in enumerate(text.split("\n"), 1):
         column = next((place for place, sign in enumerate(line, 1) if _is_no_text(sign)), None)
         if column is not None:
-            message = f"{excerpt(line[column - 1])} is no letter, digit or sign that a text may hold"
+            message = f"{excerpt(line[column - 1])} is not a letter, digit or sign that a text may hold"
             yield SheetFault(number, column, "syntax", message, column + 1, "take it away")
 
 

@@ -150,7 +150,7 @@ class _Builder:
         """An item of an array or of a list that is written out."""
         shown = excerpt(f"{whole if isinstance(whole, lark.Token) else 'the list'}[{index}]")
         if whole in CONSTANTS or index in CONSTANTS:
-            raise FaultyText("syntax", f"{shown}: pi is no array, and no index")
+            raise FaultyText("syntax", f"{shown}: pi is not an array, and no index")
         place = str(index) if index.type == "NAME" else _place(shown, float(index))
         if isinstance(whole, lark.Token):
             return self.named_item(str(whole), place)
@@ -172,7 +172,7 @@ class _Builder:
         operation = first.get(called) or second.get(called)
         if operation is None:
             names = ", ".join(dict.fromkeys([*FUNCTIONS, *OVER_LISTS]))
-            raise FaultyText("unknown_function", f"{called[:60]} is no function; there are {names}")
+            raise FaultyText("unknown_function", f"{called[:60]} is not a function; there are {names}")
         if operation.arity not in (None, len(arguments)):
             count = f"{operation.arity} value{'s' if operation.arity != 1 else ''}"
             raise FaultyText("syntax", f"{called} takes {count}, not {len(arguments)}")
@@ -243,10 +243,10 @@ def check_word(name: str, word: str, options: Sequence[str]) -> None:
     Raises
     ------
     FaultyText
-        With code `no_truth`, where the name is no choice; `unknown_name`, where the word is no option of it.
+        With code `no_truth`, if the name is not a choice; `unknown_name`, if the word is not an option of it.
     """
     if not options:
-        raise FaultyText("no_truth", f"{name[:60]} is no choice; compare it with < <= > >= == or !=")
+        raise FaultyText("no_truth", f"{name[:60]} is not a choice; compare it with < <= > >= == or !=")
     if word not in options:
         raise FaultyText("unknown_name", unknown_name(word, options, f"option of {name[:60]}").detail)
 

@@ -200,7 +200,9 @@ def _in_si(magnitude: Value, scale: Unit) -> Value:
 
 def _number(raw: Any) -> float:
     if isinstance(raw, bool) or not isinstance(raw, (int, float)):
-        raise FaultyText("not_a_number", f"{excerpt(raw)} is no number; write it as in 1.5, without quotes")
+        raise FaultyText(
+            "not_a_number", f"{excerpt(raw)} is not a number; write it as in 1.5, without quotes"
+        )
     try:
         return _finite(float(raw))
     except OverflowError:
@@ -214,7 +216,7 @@ def _finite(number: float) -> float:
 
 
 def _array(raw: Sequence[Any]) -> Array:
-    """A list of numbers, nested evenly, as an array; `true` and texts are no numbers."""
+    """A list of numbers, nested evenly, as an array; `true` and texts are not numbers."""
     flat, shape = list(raw), [len(raw)]
     while flat and isinstance(flat[0], (list, tuple)) and len(shape) < _DEEPEST:
         shape.append(len(flat[0]))
@@ -243,4 +245,4 @@ def _joined(rows: Sequence[Any], length: int) -> list[Any]:
 
 def _no_quantity(raw: Any, declared: str) -> FaultyText:
     form = '"1.5"' if declared == "1" else f'"1.5 {declared}"'
-    return FaultyText("not_a_quantity", f"{excerpt(raw)} is no quantity; write it as {form}")
+    return FaultyText("not_a_quantity", f"{excerpt(raw)} is not a quantity; write it as {form}")

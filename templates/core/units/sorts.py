@@ -28,7 +28,7 @@ class Sort:
     weight
         How many temperatures it adds up: `(T_1 + T_2)/2` one, `T_1 - T_2` none. None: it cannot be said.
     truth
-        Whether it is a condition, which is no quantity.
+        Whether it is a condition, which is not a quantity.
     axis
         The name of what its list runs over; empty for a single value.
     words
@@ -90,7 +90,7 @@ def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> So
 def _truth(operation: Operation, sorts: list[Sort]) -> bool:
     """Whether the result is a condition, if conditions and quantities stand in their places."""
     if operation is not IS and (words := next((sort.words for sort in sorts if sort.words), ())):
-        raise FaultyText("no_truth", f"a choice is no quantity: test it, as in law is {words[0]}")
+        raise FaultyText("no_truth", f"a choice is not a quantity: test it, as in law is {words[0]}")
     truths = [sort.truth for sort in sorts]
     if operation is IF:
         if not truths[0]:

@@ -102,9 +102,9 @@ def split(text: str) -> Written | None:
         return Written(first, 0.0, 0.0, first, rest)
     if _FIT.fullmatch(rest):
         detail = "a fit names two parts: give the bore the first zone, and the shaft the second"
-        raise FaultyText("not_a_tolerance", f"{excerpt(rest)} is no tolerance of one value; {detail}")
+        raise FaultyText("not_a_tolerance", f"{excerpt(rest)} is not a tolerance of one value; {detail}")
     if rest[0] in "±+−":
-        raise FaultyText("not_a_tolerance", f"{excerpt(rest)} is no tolerance; write it as in {FORMS}")
+        raise FaultyText("not_a_tolerance", f"{excerpt(rest)} is not a tolerance; write it as in {FORMS}")
     return None
 
 
@@ -178,7 +178,7 @@ def _distribution(raw: Any) -> Distribution:
         if raw == name:
             return name
     choices = ", ".join(DISTRIBUTIONS)
-    raise FaultyText("not_an_option", f"{excerpt(raw)} is no distribution of a tolerance; give {choices}")
+    raise FaultyText("not_an_option", f"{excerpt(raw)} is not a distribution of a tolerance; give {choices}")
 
 
 def _deviation(raw: Any, name: str, declared: str) -> float:
@@ -186,10 +186,12 @@ def _deviation(raw: Any, name: str, declared: str) -> float:
     if isinstance(raw, str):
         match = re.fullmatch(rf"([+\-−]?)\s*({NUMBER})\s*(.*)", raw.strip(), re.DOTALL)
         if not match or len(raw) > LONGEST_TEXT:
-            raise FaultyText("not_a_quantity", f"{excerpt(raw)} is no tolerance; write it as in 5 {name}")
+            raise FaultyText("not_a_quantity", f"{excerpt(raw)} is not a tolerance; write it as in 5 {name}")
         return float(match[1].replace("−", "-") + match[2]) * _of_text(match[3], declared).factor
     if isinstance(raw, bool) or not isinstance(raw, (int, float)):
-        raise FaultyText("not_a_number", f"{excerpt(raw)} is no number; write it as in 1.5, without quotes")
+        raise FaultyText(
+            "not_a_number", f"{excerpt(raw)} is not a number; write it as in 1.5, without quotes"
+        )
     try:
         return float(raw) * require_same_kind(name, declared).factor
     except OverflowError:
@@ -233,7 +235,7 @@ def _of_zone(
     zone: Any, limits: Mapping[str, float], si: Value, name: str, distribution: Distribution
 ) -> Tolerance:
     if not isinstance(zone, str):
-        raise FaultyText("unknown_zone", f"{excerpt(zone)} is no tolerance zone; write it as in H7")
+        raise FaultyText("unknown_zone", f"{excerpt(zone)} is not a tolerance zone; write it as in H7")
     if not isinstance(si, float):
         raise FaultyText("not_single", "a zone is that of one size; give each item its own, as in 48 mm H7")
     tolerance, _ = in_zone(zone, si, name, distribution)
@@ -250,7 +252,7 @@ def in_zone(
     Raises
     ------
     FaultyText
-        If the zone is not shipped, or not for this size; if the quantity is no length.
+        If the zone is not shipped, or not for this size; if the quantity is not a length.
     """
     scale = unit(name)
     if scale.base != unit("m").base:

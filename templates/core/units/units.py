@@ -80,10 +80,10 @@ def unit(text: str) -> Unit:
     Raises
     ------
     FaultyText
-        If the text is no unit, or one that Pint does not know.
+        If the text is not a unit, or one that Pint does not know.
     """
     if len(text) > LONGEST_UNIT or not _PATTERN.fullmatch(text):
-        raise FaultyText("unknown_unit", f"{text[:60]!a} is no unit; write it as in kN, mm**2/s, W/(m*K)")
+        raise FaultyText("unknown_unit", f"{text[:60]!a} is not a unit; write it as in kN, mm**2/s, W/(m*K)")
     forget_units()
     try:
         named = registry.Unit("" if text == "1" else text)
@@ -91,7 +91,7 @@ def unit(text: str) -> Unit:
         factor = float(size)  # type: ignore[arg-type]
         zero, two = (float(registry.Quantity(x, named).to_base_units().magnitude) for x in (0.0, 2.0))
     except (pint.PintError, ArithmeticError, AttributeError, TypeError, ValueError):
-        raise FaultyText("unknown_unit", f"{text!r} is no known unit; {_hint(text)}") from None
+        raise FaultyText("unknown_unit", f"{text!r} is not a known unit; {_hint(text)}") from None
     if not (0 < factor < math.inf and math.isclose(two, 2 * factor + zero, rel_tol=1e-9)):
         raise FaultyText("unknown_unit", f"{text!r} has no fixed size (a logarithmic unit?)")
     difference = text.startswith("delta_") and base == registry.kelvin
@@ -170,8 +170,8 @@ def _remedy(want: Unit) -> str:
 def _meant(got: Unit, want: Unit) -> str:
     """A hint on well-known slips of the pen: Pint takes C for coulomb, F for farad, U for an enzyme unit."""
     if want.base == registry.kelvin and got.text in ("C", "F"):
-        return f" ({got.text} is no temperature: write deg{got.text})"
-    return " (U is no turn: write rpm or rev/min)" if got.text.startswith("U/") else ""
+        return f" ({got.text} is not a temperature: write deg{got.text})"
+    return " (U is not a turn: write rpm or rev/min)" if got.text.startswith("U/") else ""
 
 
 _KINDS = {

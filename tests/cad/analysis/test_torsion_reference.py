@@ -68,7 +68,7 @@ def test_one_output_that_is_refused_leaves_the_others(step: bytes, monkeypatch: 
 
 @pytest.mark.slow
 def test_no_value_where_elements_are_folded(step: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Orders that differ by a factor of two, or a stiffness below zero, are no answer."""
+    """Orders that differ by a factor of two, or a stiffness below zero, are not answer."""
     values = iter([2e6, 1e6, 1e5, -1e5])
     monkeypatch.setitem(ELASTIC, "stiffness", lambda response: next(values))
     for _ in range(2):

@@ -222,7 +222,7 @@ def test_an_error_that_was_not_measured_leaves_it_undecided(wave):
 def test_an_error_is_relative_to_what_its_table_says(wave, others, half):
     levels._cache[Wave].content["relative_to"] = {"top": others}
     top = by_name(evaluate(wave, {"angle": ANGLES, "size": "10 mm"}, outputs=["top"]))["top"]
-    if half is None:  # a size that is no output
+    if half is None:  # a size that is not an output
         assert (top.verdict, top.band, top.is_stated) == ("undecided", None, False)
     else:
         assert top.band == pytest.approx((11 - half, 11 + half))

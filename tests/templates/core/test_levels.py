@@ -90,7 +90,7 @@ class Judged(Ladder):
 
 
 class Quiet(Template):
-    """An input with a default that is no output."""
+    """An input with a default that is not an output."""
 
     example = {"length": "2 m"}
 

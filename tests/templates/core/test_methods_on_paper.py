@@ -1,4 +1,4 @@
-"""Property: a line of the report is a formula, or says how its result is calculated; it is no tautology."""
+"""Property: a line of the report is a formula, or says how its result is calculated, and no tautology."""
 
 import pytest
 

@@ -203,7 +203,7 @@ class TestRefusals:
             ("1e6 cycle", "1", ["cycle", "counts angle", "without a unit"]),
             ("4 turn", "1", ["turn", "counts angle", "without a unit"]),
             ("50 U/min", "rpm", ["U/min", "rpm or rev/min"]),
-            ("80 C", "degC", ["no temperature: write degC"]),
+            ("80 C", "degC", ["not a temperature: write degC"]),
             ("80 delta_degC", "degC", ["not a difference", "degC"]),
             ("5", "mm", ['"5 mm"']),
             ([1, 2], "mm", ['"unit": "mm"']),

@@ -20,7 +20,7 @@ class TestUnits:
         longest = "mm" + "*m" * 29
         assert len(longest) == units.LONGEST_UNIT == 60
         assert units.unit(longest).factor == pytest.approx(1e-3)
-        with pytest.raises(FaultyText, match="is no unit"):
+        with pytest.raises(FaultyText, match="is not a unit"):
             units.unit(longest + "*m")
 
     @pytest.mark.parametrize("text", ["Ym**99*Ym**99", "ym**99", "dB", "kN*furlongs_of_mine", "m//s"])

@@ -168,11 +168,11 @@ def test_a_whole_table_is_read(tmp_path):
     ("tin,a metal,5.5,150,book,,,no", "not confirmed"),
     ("tin,a metal,5.5,150,,,,yes", "in no list of sources"),
     ("tin,a metal,5.5,150,book,rumour,,yes", "'rumour', which is in no list"),
-    ("tin,a metal,soft,150,book,,,yes", "'soft' is no number"),
-    ("tin,a metal,inf,150,book,,,yes", "'inf' is no number"),
+    ("tin,a metal,soft,150,book,,,yes", "'soft' is not a number"),
+    ("tin,a metal,inf,150,book,,,yes", "'inf' is not a number"),
     ("tin,a metal,,,book,,,yes", "no value"),
     ("tin,,5.5,150,book,,,yes", "no words"),
-    ("Tin 1,a metal,5.5,150,book,,,yes", "no name"),
+    ("Tin 1,a metal,5.5,150,book,,,yes", "not a name"),
     ("tin,a metal,5.5,150,book,,,yes,more", "more cells"),
 ])  # fmt: skip
 def test_a_row_that_is_not_whole_is_refused(tmp_path, line, message):
