@@ -6,7 +6,7 @@ ages while no server runs, or when the clock of a machine jumps.
 SQLite has one server, whose writer raises the counter by the monotonic clock of its process. A killed server
 loses the time since its last write.
 
-PostgreSQL may have several servers. Each of them raises the counter every few seconds under the lock of a row,
+PostgreSQL may have several servers. Each raises the counter every few seconds under the lock of a row,
 and notes in `TICKED` when it did so, by the clock of the database. A reader adds the time since then, at most
 `LONGEST`. So each second counts once, however many servers run. A jump of the database's clock counts as
 `LONGEST` at most.
