@@ -139,7 +139,7 @@ TABLE: dict[type[Exception], Kind] = {
     BodyTooLarge: Kind("body-too-large", 413, "The body is too large", "send less at once"),
     HeadTooLarge: Kind("head-too-large", 431, "The headers are too large", "send fewer or shorter headers"),
     TooIntricate: Kind("body-too-intricate", 413, "The body is too intricate", "send less at once"),
-    NoArray: Kind("no-array", 406, "The answer is no array", "ask for application/json; see `detail`"),
+    NoArray: Kind("no-array", 406, "The answer is not an array", "ask for application/json; see `detail`"),
     TooManyValues: Kind("too-many-values", 413, "Too many values", "ask for fewer points or outputs"),
     BodyTooSlow: Kind("too-slow", 408, "The request comes too slowly", "send it faster, or in parts"),
     TooManyStreams: Kind("too-many-streams", 429, "Too many streams are open", "close some, then retry"),
