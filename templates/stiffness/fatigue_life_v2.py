@@ -57,6 +57,7 @@ from templates.physics.fatigue.tensors import (
     changes,
     go_together,
     has_any,
+    is_manageable,
     same_points,
     superposed,
 )
@@ -199,6 +200,12 @@ class FatigueLife(SteelEndurance):
     def something_changes(self) -> Truth:
         """At least one load is a curve of two values or more."""
         return changes(self.loads)
+
+    @require("force_1", "force_2", "moment_1", "moment_2", "moment_3", "stress_of_force_1",
+             remedy="take fewer points, wider steps of the crank angle or fewer curves at once")  # fmt: skip
+    def not_too_much(self) -> Truth:
+        """Points, angles and curves make at most 200 000 stress tensors."""
+        return is_manageable(self.loads, self.stresses)
 
     @require("multiaxial_criterion", remedy="take findley, which needs no sign")
     def one_tensor_leads(self) -> Truth:

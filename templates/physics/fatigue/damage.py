@@ -68,7 +68,7 @@ def _to_cycles(value: Array) -> Array:
 @units(None, None, returns="1")
 def one_tensor_leads(criterion: str, history: Array) -> Truth:
     """Whether one tensor carries the stress of every point, where a sign is given to it."""
-    return (criterion != SIGNED) | np.all(leading_tensor(history)[1] >= PROPORTIONAL, axis=-1)
+    return criterion != SIGNED or np.all(leading_tensor(history)[1] >= PROPORTIONAL, axis=-1)[()]
 
 
 @units(None, returns="1")

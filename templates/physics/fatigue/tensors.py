@@ -12,6 +12,7 @@ R. von Mises: Mechanik der festen Körper im plastisch-deformablen Zustand. Göt
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import prod
 
 import numpy as np
 
@@ -26,6 +27,9 @@ _WEIGHTS = np.sqrt(np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0]))
 
 PROPORTIONAL = 0.95
 """The share of one tensor in a history from which on a sign may be given to an equivalent stress."""
+
+MOST_TENSORS = 200_000
+"""Of all points, angles and curves; Findley's planes of so many take about ten seconds."""
 
 _PURE_SHEAR = 1e-6  # |p1 + p3| of the length of a tensor: neither tension nor compression leads
 
@@ -59,13 +63,23 @@ def changes(loads: Sequence[Array]) -> Truth:
     return any(np.ndim(load) > 0 and np.shape(load)[-1] > 1 for load in loads)
 
 
+@units(None, None, returns="1")
+def is_manageable(loads: Sequence[Array], stresses: Sequence[Rows]) -> Truth:
+    """Whether points, angles and curves together make no more tensors than are calculated at once."""
+    curves = np.broadcast_shapes(*(np.shape(load)[:-1] for load in loads if np.ndim(load)))
+    angles = max((np.shape(load)[-1] for load in loads if np.ndim(load)), default=1)
+    rows = max((len(rows) for rows in stresses), default=0)
+    return prod(curves) * angles * rows <= MOST_TENSORS
+
+
 def superposed(loads: Sequence[Array], stresses: Sequence[Rows]) -> Array:
     """The stress tensors [..., point, angle, 6] [Pa] of loads [..., angle] and of their units [point, 6].
 
     A load is in its SI unit, its stresses in Pa for each of these. One point without stress where the inputs
     do not go together, which is refused elsewhere.
     """
-    if not (has_any(stresses) and same_points(stresses) and go_together(loads, stresses)):
+    fits = has_any(stresses) and same_points(stresses) and go_together(loads, stresses)
+    if not (fits and is_manageable(loads, stresses)):
         return np.zeros((1, 1, len(COMPONENTS)))
     parts = [
         np.atleast_1d(load)[..., None, :, None] * np.asarray(rows)[:, None, :]

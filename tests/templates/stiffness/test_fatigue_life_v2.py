@@ -356,6 +356,12 @@ class TestRefusals:
     def test_property_bad_input_is_named(self, changes, name):
         assert name in refused({**loaded(cycle(300)), **changes})
 
+    def test_property_too_much_at_once_is_refused(self):
+        rows = [TENSION] * 200
+        assert "force_1" in refused(loaded(np.zeros((30, 72)), rows))
+        assert refused(loaded(np.zeros((30, 72)), rows, multiaxial_criterion="signed_von_mises"))
+        assert answers(loaded(np.zeros((13, 72)), rows))["life"].tolist() == ["endless"] * 13
+
     def test_property_no_load_at_all(self):
         assert "stress_of_force_1" in refused(STEEL)
 
