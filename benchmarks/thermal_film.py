@@ -1,6 +1,6 @@
 """What one temperature costs in accuracy, and a temperature at every place in time: `thermal_film` 1.
 
-python -m benchmarks.thermal_film           100 random bearings: refusals, times, ratios; some two minutes
+python -m benchmarks.thermal_film           100 random bearings: refusals, times, ratios; two minutes
 python -m benchmarks.thermal_film report    the same from the kept results
 python -m benchmarks.thermal_film mesh      the first 15 of them at level fine_field too; a minute
 python -m benchmarks.thermal_film picture   docs/pictures/thermal_film.svg; some seconds
@@ -146,7 +146,7 @@ def picture() -> None:
             {**plain, "heat_transfer_coefficient": "1000 W/(m**2*K)", "ambient_temperature": "40 degC"},
         "bush held at 50 °C": {**plain, "held_bush_temperature": "50 degC"},
     }  # fmt: skip
-    plt.rcParams["svg.hashsalt"] = "thermal_film"
+    plt.rcParams.update({"svg.hashsalt": "crankwright", "svg.fonttype": "none"})  # the same bytes again
     figure, axes = plt.subplots(figsize=(7, 3.6), layout="constrained")
     for words, raw in cases.items():
         found = evaluate(ThermalFilm, raw, level="fine_field").outputs
@@ -159,6 +159,7 @@ def picture() -> None:
     axes.set(xlabel="angle from the load in the sense of rotation [°]", ylabel="bush [°C]", xlim=(0, 355))
     axes.legend(fontsize="small", title="dotted: the journal")
     figure.savefig(PICTURE, metadata={"Date": None})
+    plt.close(figure)
 
 
 if __name__ == "__main__":
