@@ -47,8 +47,8 @@ class ThermalFilm(Oil, Template):
     map, fed along its widest gap: groove, supply pressure, carry_over, oil_conductivity and held temperatures
     do not count. Its greatest temperatures are those of the outlet.
     Levels field and fine_field have 48 x 8 x 12 and 96 x 16 x 24 intervals (around, half the width, across
-    the film); they differed by at most 0.34 % of the film and 0.3 K on 15 bearings. mesh_error and mesh_change
-    compare with half as many intervals, an estimate. What follows is for these levels.
+    the film); on 15 bearings they differed by at most 0.34 % of the film and 0.3 K. mesh_error and
+    mesh_change compare with half as many intervals, an estimate. What follows is for these levels.
     The film ruptures and re-forms as mass conservation demands. In a cavity the oil stands in streamers, and
     everything counts by their share: shear, heat, contact with the walls. The groove is full at the supply's
     pressure, which falls evenly over the lands at its ends; what leaks there, and shear in the groove, are
