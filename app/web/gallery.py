@@ -10,7 +10,7 @@ from pydantic import JsonValue
 from app.calculations.schemas import OIL_FILM
 from app.designs.schemas import PAPER, DesignIn
 from app.schemas.templates import TemplateSummary
-from app.web.gallery_engine import FOUR_CYLINDERS
+from app.web.gallery_engine import FOUR_CYLINDERS, V8
 
 FILM = {**OIL_FILM, "bearing_diameter": "= scale * 48 mm"}
 
@@ -67,6 +67,12 @@ GALLERY = {
         text="From gas pressure to the load of every main and big end, a film in each of them, and the "
         "crankshaft: change the bore of the cylinders, and see which bearing governs.",
         document=FOUR_CYLINDERS,
+    ),
+    "v8": Example(
+        title="All bearings of a cross-plane V8",
+        text="Two rods on each pin, five mains and eight big ends, and a crankshaft whose pins stand as the "
+        "firing order wants them.",
+        document=V8,
     ),
 }
 """By the name that its form sends."""

@@ -1,10 +1,10 @@
-"""A design to start from: a four-cylinder engine, a film in each of its nine bearings, its crankshaft."""
+"""Designs to start from: an in-line four and a V8, a film in each of their bearings, their crankshafts."""
 
 from __future__ import annotations
 
 from pydantic import JsonValue
 
-_ENGINE: dict[str, JsonValue] = {
+_FOUR: dict[str, JsonValue] = {
     "speed": "4500 rpm",
     "strokes": 4,
     "crank_angle_step": "5 deg",
@@ -39,8 +39,19 @@ _ENGINE: dict[str, JsonValue] = {
     "web_thickness": "18 mm",
     "web_width": "80 mm",
 }
+_V8: dict[str, JsonValue] = {
+    **_FOUR,
+    "firing_order": [1, 8, 4, 3, 6, 5, 7, 2],
+    "bank_angles": {"value": [45, -45] * 4, "unit": "deg"},
+    "throws": [1, 1, 2, 2, 3, 3, 4, 4],
+    "cylinder_positions": {"value": [46, 68, 160, 182, 274, 296, 388, 410], "unit": "mm"},
+    "main_positions": {"value": [0, 114, 228, 342, 456], "unit": "mm"},
+    "web_positions": {"value": [24, 90, 138, 204, 252, 318, 366, 432], "unit": "mm"},
+    "crankpin_length": "46 mm",
+    "web_thickness": "20 mm",
+    "web_width": "84 mm",
+}
 _CRANKSHAFT: dict[str, JsonValue] = {
-    "pin_angles": "= engine.crankpin_angles",
     "journal_diameter": "= engine.journal_diameter",
     "journal_length": "= engine.main_positions[2] - engine.main_positions[1] - engine.crankpin_length"
     " - 2 * engine.web_thickness",
@@ -51,7 +62,6 @@ _CRANKSHAFT: dict[str, JsonValue] = {
     "throw": "= engine.stroke / 2",
     "fillet": "2.5 mm",
     "oil_drilling_diameter": "5 mm",
-    "counterweight_radius": {"value": [72, 0, 0, 72, 72, 0, 0, 72], "unit": "mm"},
     "flange_diameter": "90 mm",
     "bolt_hole_diameter": "10 mm",
 }
@@ -59,52 +69,81 @@ _OUTPUTS: list[JsonValue] = [
     "layout", "crankpin_angles", "mean_torque", "crankpin_load_max", "main_load_max", "elastic_main_load_max",
     "elastic_difference", "governing_elastic_main",
 ]  # fmt: skip
-_MAINS: dict[str, JsonValue] = {f"main_{n}": {"bearing": f"{n}"} for n in range(1, 6)}
-_BIG_ENDS: dict[str, JsonValue] = {
-    f"big_end_{n}": {
-        "bearing": f"{n}",
-        "film.load_x": "= engine.crankpin_load_x[bearing]",
-        "film.load_y": "= engine.crankpin_load_y[bearing]",
-        "film.sleeve_speed": "= engine.rod_angular_velocity[bearing]",
-        "film.bearing_diameter": "= engine.crankpin_diameter + film.diametral_clearance",
-    }
-    for n in range(1, 5)
-}
 
-FOUR_CYLINDERS: dict[str, JsonValue] = {
-    "name": "bearings of a four-cylinder engine",
-    "parameters": {"bore": "86 mm", "bearing": "3"},
-    "steps": {
-        "engine": {"template": "engine", "version": 2, "inputs": _ENGINE, "outputs": _OUTPUTS},
-        "film": {
-            "template": "oil_film_cycle",
-            "version": 2,
-            "level": "mobility",
-            "inputs": {
-                "crank_angle": "= engine.crank_angle",
-                "load_x": "= engine.elastic_main_load_x[bearing]",
-                "load_y": "= engine.elastic_main_load_y[bearing]",
-                "load_sense": "sleeve_on_journal",
-                "speed": "= engine.speed",
-                "bearing_diameter": "= engine.journal_diameter + film.diametral_clearance",
-                "bearing_width": "20 mm",
-                "diametral_clearance": "0.055 mm",
-                "dynamic_viscosity": "10 mPa*s",
-                "permissible_film": "1 um",
+
+def _bearings(mains: int, cylinders: int) -> dict[str, JsonValue]:
+    """A variant for every main and every big end."""
+    big_ends: dict[str, JsonValue] = {
+        f"big_end_{n}": {
+            "bearing": f"{n}",
+            "film.load_x": "= engine.crankpin_load_x[bearing]",
+            "film.load_y": "= engine.crankpin_load_y[bearing]",
+            "film.sleeve_speed": "= engine.rod_angular_velocity[bearing]",
+            "film.bearing_diameter": "= engine.crankpin_diameter + film.diametral_clearance",
+        }
+        for n in range(1, cylinders + 1)
+    }
+    return {**{f"main_{n}": {"bearing": f"{n}"} for n in range(1, mains + 1)}, **big_ends}
+
+
+def _document(
+    name: str, engine: dict[str, JsonValue], shaft: dict[str, JsonValue], bearings: dict[str, JsonValue]
+) -> dict[str, JsonValue]:
+    """A design: the engine, a film in one bearing with its shell, the crankshaft; a variant per bearing."""
+    return {
+        "name": name,
+        "parameters": {"bore": "86 mm", "bearing": "3"},
+        "steps": {
+            "engine": {"template": "engine", "version": 2, "inputs": engine, "outputs": _OUTPUTS},
+            "film": {
+                "template": "oil_film_cycle",
+                "version": 2,
+                "level": "mobility",
+                "inputs": {
+                    "crank_angle": "= engine.crank_angle",
+                    "load_x": "= engine.elastic_main_load_x[bearing]",
+                    "load_y": "= engine.elastic_main_load_y[bearing]",
+                    "load_sense": "sleeve_on_journal",
+                    "speed": "= engine.speed",
+                    "bearing_diameter": "= engine.journal_diameter + film.diametral_clearance",
+                    "bearing_width": "20 mm",
+                    "diametral_clearance": "0.055 mm",
+                    "dynamic_viscosity": "10 mPa*s",
+                    "permissible_film": "1 um",
+                },
             },
         },
-    },
-    "models": {
-        "shell": {
-            "id": "plain_bearing",
-            "version": 1,
-            "parameters": {
-                "inner_diameter": "= film.bearing_diameter",
-                "width": "= film.bearing_width",
-                "shell": "half",
+        "models": {
+            "shell": {
+                "id": "plain_bearing",
+                "version": 1,
+                "parameters": {
+                    "inner_diameter": "= film.bearing_diameter",
+                    "width": "= film.bearing_width",
+                    "shell": "half",
+                },
             },
+            "crankshaft": {"id": "crankshaft", "version": 2, "parameters": {**_CRANKSHAFT, **shaft}},
         },
-        "crankshaft": {"id": "crankshaft", "version": 2, "parameters": _CRANKSHAFT},
+        "variants": bearings,
+    }
+
+
+FOUR_CYLINDERS = _document(
+    "bearings of a four-cylinder engine",
+    _FOUR,
+    {
+        "pin_angles": "= engine.crankpin_angles",
+        "counterweight_radius": {"value": [72, 0, 0, 72, 72, 0, 0, 72], "unit": "mm"},
     },
-    "variants": {**_MAINS, **_BIG_ENDS},
-}
+    _bearings(5, 4),
+)
+V8 = _document(
+    "bearings of a V8",
+    _V8,
+    {
+        "pin_angles": [f"= engine.crankpin_angles[{n}]" for n in (1, 3, 5, 7)],
+        "counterweight_radius": {"value": [76, 60, 60, 76, 76, 60, 60, 76], "unit": "mm"},
+    },
+    _bearings(5, 8),
+)

@@ -124,16 +124,27 @@ def test_variants_may_have_pins_of_their_own(http):
     assert "failed" not in str(shown), shown
 
 
-def test_the_engine_of_the_gallery_has_its_crankshaft(http):
-    document = GALLERY["engine"].document
+@pytest.mark.parametrize(
+    ("example", "pins", "journal"), [("engine", [0, 180, 180, 0], 26), ("v8", [45, 135, 315, 225], 28)]
+)
+def test_engines_of_the_gallery_have_their_crankshaft(http, example, pins, journal):
+    document = GALLERY[example].document
     saved = created(http, {**document, "variants": {}})
     assert saved["state"] == "current", saved
     shaft = revision(http, saved)["models"]["crankshaft"]
-    assert [value % 360 for value in shaft["parameters"]["pin_angles"]["value"]] == [0, 180, 180, 0]
-    assert shaft["parameters"]["journal_length"]["value"] == pytest.approx(26)
+    angles = shaft["parameters"]["pin_angles"]["value"]
+    assert [value % 360 for value in angles] == pytest.approx(pins, abs=1e-9)
+    assert shaft["parameters"]["journal_length"]["value"] == pytest.approx(journal)
     answer = http.get(f"{API}/designs/{saved['id']}/models/crankshaft/model.step")
     assert answer.status_code == 200
     assert answer.content.startswith(b"ISO-10303-21;")
     changed = patched(http, saved, {"steps": {"engine": {"inputs": {"crankpin_diameter": "50 mm"}}}})
     assert changed["state"] == "current", changed
     assert revision(http, changed)["models"]["crankshaft"]["build"] != shaft["build"]
+
+
+def test_all_thirteen_bearings_of_the_v8_are_variants(http):
+    document = {name: value for name, value in GALLERY["v8"].document.items() if name != "models"}
+    table = http.get(f"{API}/designs/{created(http, document)['id']}/variants").json()
+    assert len(table["variants"]) == 13, table
+    assert table["governing"]["criterion"].startswith("film."), table["governing"]
