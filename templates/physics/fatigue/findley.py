@@ -27,7 +27,8 @@ _PLANES = 400  # of the first search, 7 degrees apart
 _FIRST_STEP = 0.07  # [rad] of the second search, about the best of the first
 _SHRINK, _STEPS = 0.6, 18  # to 1e-5 rad
 _NEIGHBOURS = 6
-_APART = np.cos(np.radians(20))  # of the second start from the first
+_STARTS = 5  # of the second search
+_APART = np.cos(np.radians(15))  # of these from each other
 _AT_ONCE = 4_000_000  # values of a stress at once
 _DIRECTIONS = 36  # of the shear on its plane, in which it is counted
 
@@ -99,11 +100,12 @@ def _planes_of(tensors: Array, k: float, credit: bool) -> Array:
     everywhere = _hemisphere()
     values = _parameters(tensors, np.broadcast_to(everywhere, (len(tensors), *everywhere.shape)), k, credit)
     rows = np.arange(len(tensors))
-    best = np.argmax(values, axis=1)
-    near = np.abs(everywhere[best] @ everywhere.T) > _APART
-    second = np.argmax(np.where(near, -np.inf, values), axis=1)
-    places = np.stack([everywhere[best], everywhere[second]], 1)
-    reached = np.stack([values[rows, best], values[rows, second]], 1)
+    left, starts = values.copy(), []
+    for _ in range(_STARTS):
+        starts.append(np.argmax(left, axis=1))
+        left[np.abs(everywhere[starts[-1]] @ everywhere.T) > _APART] = -np.inf
+    places = np.stack([everywhere[start] for start in starts], 1)
+    reached = np.stack([values[rows, start] for start in starts], 1)
     step, turn = _FIRST_STEP, 0.0
     for _ in range(_STEPS):
         around = _around(places, step, turn)

@@ -131,14 +131,14 @@ class TestFindley:
 
     def test_property_rotation_changes_nothing(self):
         rng = np.random.default_rng(5)
-        tensors = rng.normal(size=(6, len(ANGLES), 6))
+        tensors = rng.normal(size=(30, len(ANGLES), 6))
         turned = []
         for matrix in Rotation.random(4, rng).as_matrix():
             full = matrix @ as_matrices(tensors) @ matrix.T
             turned.append(np.stack([full[..., i, j] for i, j in
                                     ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))], -1))  # fmt: skip
         for other in turned:
-            assert findley(other) == pytest.approx(findley(tensors), rel=2e-3)
+            assert findley(other) == pytest.approx(findley(tensors), rel=5e-4)
             assert von_mises_1913(other) == pytest.approx(von_mises_1913(tensors))
             assert leading_tensor(other)[1] == pytest.approx(leading_tensor(tensors)[1])
 
