@@ -2,6 +2,7 @@
 
 import pytest
 from serving import API, created, faults, patched, problem, revision
+from study_helpers import done, rows
 
 from app.web.gallery import GALLERY
 
@@ -148,3 +149,20 @@ def test_all_thirteen_bearings_of_the_v8_are_variants(http):
     table = http.get(f"{API}/designs/{created(http, document)['id']}/variants").json()
     assert len(table["variants"]) == 13, table
     assert table["governing"]["criterion"].startswith("film."), table["governing"]
+
+
+def test_a_study_builds_shafts_whose_pins_follow_from_its_rows(http):
+    """Rows vary an angle and a stroke; a list that a row changes makes another solid."""
+    parameters = {**PLAIN, "pin_angles": ["0 deg", "= angle"], "throw": "= stroke / 2"}
+    saved = created(http, {
+        "name": "twin",
+        "parameters": {"angle": "180 deg", "stroke": "60 mm"},
+        "models": {"shaft": {"id": "crankshaft", "version": 2, "parameters": parameters}},
+    })  # fmt: skip
+    table = {"angle": {"value": [90, 180], "unit": "deg"}, "stroke": {"value": [60, 60], "unit": "mm"}}
+    study = done(http, saved, method="table", rows=table, outputs=["shaft.mass", "shaft.centre_y"])
+    assert study["estimate"]["solids"] == 2
+    values = [row["values"] for row in rows(http, study)["items"]]
+    assert values[0]["shaft.mass"] == pytest.approx(values[1]["shaft.mass"], rel=1e-9)
+    assert values[0]["shaft.centre_y"] > 1
+    assert abs(values[1]["shaft.centre_y"]) < 1e-6
