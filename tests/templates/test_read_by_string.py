@@ -10,6 +10,7 @@ import pytest
 
 import templates
 from cad.catalogue import models
+from cad.model import CadModel
 from templates.core.catalogue.finding import find
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
@@ -79,10 +80,9 @@ def test_property_a_refused_point_of_an_input_read_as_given_has_no_result():
 
 
 def files_of(cls):
-    """The file of a version, and those of its groups."""
-    return {inspect.getfile(base) for base in cls.__mro__ if issubclass(base, Template)} - {
-        inspect.getfile(Template)
-    }
+    """The file of a version, and those of its groups; not those of the language."""
+    of_language = {inspect.getfile(Template), inspect.getfile(CadModel)}
+    return {inspect.getfile(base) for base in cls.__mro__ if issubclass(base, Template)} - of_language
 
 
 def reads_by_string(function):
