@@ -147,9 +147,10 @@ class CadModel(Template):
             raise InvalidInputs(Fault(name, "empty", "an array needs at least one value") for name in empty)
         return super().from_quantities(read, pending)
 
-    def points(self) -> list[Fault]:
-        """What is wrong with it as one solid: arrays of points, which only the language takes."""
-        return [fault for name, d in self.inputs.items() if (fault := _of_points(name, d, vars(self)))]
+
+def arrays_of_points(model: CadModel) -> list[Fault]:
+    """What is wrong with a model as one solid: arrays of points, which only the language takes."""
+    return [fault for name, d in model.inputs.items() if (fault := _of_points(name, d, vars(model)))]
 
 
 def _of_points(name: str, declared: Declaration, values: Mapping[str, Any]) -> Fault | None:

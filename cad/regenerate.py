@@ -23,7 +23,7 @@ from cad.errors import GeometryError
 from cad.header import Header
 from cad.inspect import bounding_box, look_at, measure, summarise
 from cad.lists import rounded, written
-from cad.model import CadModel, Dimension
+from cad.model import CadModel, Dimension, arrays_of_points
 from cad.step import read_step, write_step
 from cad.step_text import KERNEL
 from templates.core.catalogue.digests import content_digest
@@ -107,7 +107,7 @@ def _canonical(model: CadModel) -> _Canonical:
     """
     kept: _Canonical | None = vars(model).get(_KEPT)
     if kept is None:
-        if faults := model.points():
+        if faults := arrays_of_points(model):
             raise InvalidInputs(faults)
         texts, quantities = dict[str, str](), dict[str, dict[str, Value]]()
         for name, si in model.inputs_si().items():

@@ -5,8 +5,6 @@ is one of the load's size. What is brought to zero is the logarithm of the force
 from the load, which depend on y almost linearly. Slopes by differences once, then by Broyden's rule.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from templates.core.arrays import Array
@@ -29,21 +27,27 @@ class NoBalance(ArithmeticError):
     """No film was found that bears the load, or none whose heat is carried off."""
 
 
-@dataclass
 class Placing:
-    """The search on one mesh; it keeps the last film and the slopes for the next search."""
+    """The search on one mesh; it keeps the last film and the slopes for the next search.
 
-    arc: Arc
-    edges: Array
-    """(J + 1,) of the strips across."""
-    load: float
-    """So with the viscosity of the supply [-]."""
-    feed: tuple[float, float]
-    """P_s of the groove and its length over the width [-]."""
-    y: Array
-    """(2,) where the search begins and has ended."""
-    near: tuple[Array, Array] | None = None
-    slopes: Array | None = None
+    Parameters
+    ----------
+    arc
+        Where the film is.
+    edges
+        (J + 1,) of the strips across.
+    load
+        So with the viscosity of the supply [-].
+    feed
+        P_s of the groove and its length over the width [-].
+    y
+        (2,) where the search begins; then where it has ended.
+    """
+
+    def __init__(self, arc: Arc, edges: Array, load: float, feed: tuple[float, float], y: Array) -> None:
+        self.arc, self.edges, self.load, self.feed, self.y = arc, edges, load, feed, y
+        self.near: tuple[Array, Array] | None = None
+        self.slopes: Array | None = None
 
     def placed(self, fluidity: Array, accuracy: float) -> Pressed:
         """The film that bears the load with a fluidity (n + 1, J).
