@@ -10,6 +10,7 @@ from pydantic import JsonValue
 from app.calculations.schemas import OIL_FILM
 from app.designs.schemas import PAPER, DesignIn
 from app.schemas.templates import TemplateSummary
+from app.web.gallery_crank import CRANK
 from app.web.gallery_engine import FOUR_CYLINDERS, V8
 
 FILM = {**OIL_FILM, "bearing_diameter": "= scale * 48 mm"}
@@ -73,6 +74,12 @@ GALLERY = {
         text="Two rods on each pin, five mains and eight big ends, and a crankshaft whose pins stand as the "
         "firing order wants them.",
         document=V8,
+    ),
+    "crank": Example(
+        title="The paper's study of a crankshaft",
+        text="Crankpin, journals, throw and the inclination of the webs' faces drive a solid; finite "
+        "elements give its stiffness, torsion over the speeds its stress and life (Punewale et al. 2015).",
+        document=CRANK,
     ),
 }
 """By the name that its form sends."""
