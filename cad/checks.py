@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from math import isclose, isfinite
 
 import numpy as np
@@ -15,6 +16,7 @@ from cad.surfaces import Seen
 
 _BOX_TOLERANCE = 1e-5  # [mm]; the kernel's own boxes of cut faces are good to some 1e-7
 _DIMENSION_TOLERANCE = 1e-6  # in the declared unit: 1 nm of a length in mm
+_is_close: Callable[..., bool] = partial(isclose, rel_tol=1e-12, abs_tol=_DIMENSION_TOLERANCE)
 
 
 def check_bodies(
@@ -66,12 +68,19 @@ def check_dimensions(model: CadModel, seen: Mapping[str, Seen]) -> dict[str, Dim
         `dimension`, naming the parameters that are not as requested.
     """
     try:
-        measured = {name: _rounded(value) for name, value in model.dimensions(seen).items()}
+        measured = {
+            name: [round(item, 9) for item in value] if isinstance(value, list) else round(value, 9)
+            for name, value in model.dimensions(seen).items()
+        }
     except LookupError as error:
         detail = f"{model.id} does not show the surfaces from which its dimensions are read ({error})"
         raise GeometryError("dimension", detail, model.inputs) from error
     wanted = {name: _requested(model, name) for name in measured}
-    wrong = {n: v for n, v in measured.items() if not _as_requested(v, wanted[n])}
+    wrong = {
+        n: v
+        for n, v in measured.items()
+        if not (_are_alike if isinstance(v, list) or isinstance(wanted[n], list) else _is_close)(v, wanted[n])
+    }
     if wrong:
         unit = {name: model.inputs[name].meaning.unit for name in wrong}
         messages = (
@@ -104,20 +113,12 @@ def _requested(model: CadModel, name: str) -> Dimension:
     return value
 
 
-def _as_requested(measured: Dimension, wanted: Dimension) -> bool:
-    """Whether a dimension is the one requested; items of a list may all be requested by one number."""
+def _are_alike(measured: Dimension, wanted: Dimension) -> bool:
+    """Whether a list is the one requested; one number may request all its items, one item shows no list."""
     if not isinstance(measured, list):
-        return not isinstance(wanted, list) and _close(measured, wanted)
+        return False
     each = wanted if isinstance(wanted, list) else [wanted] * len(measured)
-    return len(each) == len(measured) and all(map(_close, measured, each))
-
-
-def _close(one: float, other: float) -> bool:
-    return isclose(one, other, rel_tol=1e-12, abs_tol=_DIMENSION_TOLERANCE)
-
-
-def _rounded(value: Dimension) -> Dimension:
-    return [round(item, 9) for item in value] if isinstance(value, list) else round(value, 9)
+    return len(each) == len(measured) and all(map(_is_close, measured, each))
 
 
 def _shown(value: Dimension) -> str:

@@ -39,7 +39,10 @@ class Header:
 def write_header(header: Header, schema: str, kernel: str) -> str:
     """The HEADER section, from `HEADER;` to `ENDSEC;`."""
     described = [header.title, f"build: {header.build}"]
-    described += [part for name, value in header.parameters.items() for part in _parts(name, value)]
+    for name, value in header.parameters.items():
+        described.append(f"{name}: {value[:_LONGEST_PART]}")
+        if len(value) > _LONGEST_PART:
+            described += _continued(name, value)
     lines = ",\n  ".join(map(quoted, described))
     name = quoted(f"{header.model}_v{header.version}.step")
     return (
@@ -60,10 +63,10 @@ def read_header(step: bytes) -> Header | None:
     return Header(title[1], int(title[2]), pairs, build)
 
 
-def _parts(name: str, value: str) -> list[str]:
-    """A parameter as strings: one, or several of which all but the first repeat its name with a plus."""
-    first, *others = [value[at : at + _LONGEST_PART] for at in range(0, max(len(value), 1), _LONGEST_PART)]
-    return [f"{name}: {first}", *(f"{name}+: {other}" for other in others)]
+def _continued(name: str, value: str) -> list[str]:
+    """The further strings of a long value: each repeats the parameter's name with a plus."""
+    places = range(_LONGEST_PART, len(value), _LONGEST_PART)
+    return [f"{name}+: {value[at : at + _LONGEST_PART]}" for at in places]
 
 
 def _joined(strings: list[str]) -> dict[str, str]:

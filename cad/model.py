@@ -21,6 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from math import isclose
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -30,7 +31,7 @@ from cad.errors import GeometryError
 from cad.lists import listed
 from cad.shaft import STEEL_DENSITY, Shaft
 from templates.core.errors import Fault, InvalidInputs
-from templates.core.language.spec import Curve, Declaration
+from templates.core.language.spec import Curve
 from templates.core.language.template import Array, Template
 from templates.core.units.quantity import Typed
 
@@ -54,6 +55,7 @@ def material_named(name: str, density: float) -> str:
     return f"{name} ({density:.6g} kg/m³)" if name else f"{density:.6g} kg/m³"
 
 
+@cache
 def _at_origin() -> tuple[Location, ...]:
     from cadquery import Location
 
@@ -141,24 +143,26 @@ class CadModel(Template):
         InvalidInputs
             Naming all that is wrong at once.
         """
-        lists = {name for name, declared in cls.inputs.items() if isinstance(declared, Curve)}
-        read = {name: listed(value) if name in lists else value for name, value in raw.items()}
-        if empty := [n for n, v in read.items() if isinstance(v, Typed) and np.size(v.si) == 0]:
-            raise InvalidInputs(Fault(name, "empty", "an array needs at least one value") for name in empty)
+        read, empty = dict(raw), []
+        for name, value in raw.items():
+            if isinstance(cls.inputs.get(name), Curve):
+                read[name] = value = listed(value)
+            if isinstance(value, Typed) and np.size(value.si) == 0:
+                empty.append(Fault(name, "empty", "an array needs at least one value"))
+        if empty:
+            raise InvalidInputs(empty)
         return super().from_quantities(read, pending)
 
 
 def arrays_of_points(model: CadModel) -> list[Fault]:
     """What is wrong with a model as one solid: arrays of points, which only the language takes."""
-    return [fault for name, d in model.inputs.items() if (fault := _of_points(name, d, vars(model)))]
-
-
-def _of_points(name: str, declared: Declaration, values: Mapping[str, Any]) -> Fault | None:
-    """The fault of an array where a model takes one number, or of a list of lists."""
-    if np.ndim(values.get(declared.attribute, 0.0)) <= int(isinstance(declared, Curve)):
-        return None
-    wanted = "one list of numbers" if isinstance(declared, Curve) else "a single value, not an array"
-    return Fault(name, "not_a_number", f"{declared.meaning.words}: a model takes {wanted}")
+    values, faults = vars(model), []
+    for name, declared in model.inputs.items():
+        takes_list = isinstance(declared, Curve)
+        if np.ndim(values.get(declared.attribute, 0.0)) > int(takes_list):
+            wanted = "one list of numbers" if takes_list else "a single value, not an array"
+            faults.append(Fault(name, "not_a_number", f"{declared.meaning.words}: a model takes {wanted}"))
+    return faults
 
 
 def mm(length: Array | float) -> float:

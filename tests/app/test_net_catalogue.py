@@ -11,6 +11,10 @@ TEMPLATES = sorted(CATALOGUES.templates.versions)
 MODELS = sorted(CATALOGUES.models.versions)
 
 
+EXACT = {"forced_torsion": {"crank_angle"}}
+"""Inputs that are refused unless they are exact: a cycle has 720 deg."""
+
+
 def quantities(cls):
     """The inputs of the example that may be any number."""
     return [
@@ -19,6 +23,7 @@ def quantities(cls):
         if not isinstance(cls.inputs[name], (Choice, Table))
         and not cls.inputs[name].meaning.integer
         and not is_single(cls.inputs[name])
+        and name not in EXACT.get(cls.id, ())
     ]
 
 
