@@ -30,8 +30,10 @@ def unit(text: str | None) -> str:
     return "" if text in (None, "1") else unit_symbol(str(text))
 
 
-def number(value: float | None) -> str:
-    """A number with five digits."""
+def number(value: float | list[float] | None) -> str:
+    """A number with five digits, or a list of them."""
+    if isinstance(value, list):
+        return f"[{', '.join(map(number, value))}]"
     return "none" if value is None else f"{value:.5g}"
 
 
