@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from cad.analysis.elastic import System, respond
-from cad.analysis.kinds import KINDS, Boundary, Kind
+from cad.analysis.kinds import LOADS, Boundary, Kind
 from cad.analysis.levels import LEVELS, Level
 from cad.analysis.mesh import Fineness, Grid, make_grid
 from cad.analysis.modes import torsional_mode
@@ -95,7 +95,7 @@ def outputs_by(grid: Grid, order: int, shaft: Shaft, outputs: Collection[str] = 
     """Outputs on one mesh: stiffnesses [N·m/rad], frequency [Hz]."""
     computed: Found = {}
     few = FREQUENCY not in outputs
-    for load in KINDS:
+    for load in LOADS:
         asked = {name: end for name, (kind, end) in ASKED.items() if kind == load and name in outputs}
         if not asked:
             continue

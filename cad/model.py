@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from cad.errors import GeometryError
+from cad.fillets import Crank
 from cad.lists import listed
 from cad.shaft import STEEL_DENSITY, Shaft
 from templates.core.errors import Fault, InvalidInputs
@@ -128,6 +129,15 @@ class CadModel(Template):
 
     def shaft(self) -> Shaft | None:
         """Where the solid is held and loaded when it is analysed; None if it is not a shaft."""
+        return None
+
+    @classmethod
+    def is_throw(cls) -> bool:
+        """Whether it is one throw of a crank, from mid-journal to mid-journal, which has `throw_sizes`."""
+        return False
+
+    def throw_sizes(self) -> Crank | None:
+        """Where pin and fillets of a throw are; None if it is not one throw."""
         return None
 
     def dimensions(self, seen: Mapping[str, Seen]) -> Mapping[str, Dimension]:

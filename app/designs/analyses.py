@@ -10,8 +10,8 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from app.designs.document import Model
 from app.reference import Reference
-from app.solids.questions import Question, faults, in_order, no_shaft, question
-from cad.analysis.kinds import KINDS
+from app.solids.questions import Question, faults, in_order, not_offered, question
+from cad.analysis.kinds import KINDS, TABLES
 from cad.inspect import MEASURES
 from cad.model import CadModel
 from templates.core.errors import Fault, unknown_name
@@ -31,6 +31,11 @@ def is_measured(reference: Reference, declared: Iterable[str]) -> bool:
     return reference.analysis in declared and reference.output in KINDS[reference.analysis]
 
 
+def is_table(reference: Reference) -> bool:
+    """Whether a name means an output of an analysis that is a table; others are single values."""
+    return reference.analysis in KINDS and reference.output in TABLES
+
+
 def measured_names(declared: Iterable[str]) -> Iterator[str]:
     """Every name of that sort."""
     yield from MEASURES
@@ -46,9 +51,9 @@ def questions(name: str, model: Model, cls: type[CadModel]) -> tuple[dict[str, Q
     unknown = model.analyses.keys() - declared.keys()
     wrong = [unknown_name(kind, KINDS, "analysis").within(place) for kind in unknown]
     for kind, options in declared.items():
-        wrong += [fault.within(f"{place}.{kind}") for fault in faults(options)]
-    if declared and (reason := no_shaft(cls)):
-        wrong.append(Fault(place, "no_shaft", reason))
+        wrong += [fault.within(f"{place}.{kind}") for fault in faults(kind, options)]
+    refused = [fault for kind in declared if (fault := not_offered(cls, kind))]
+    wrong += [Fault(place, fault.code, fault.detail) for fault in refused[:1]]
     return {kind: question(kind, options) for kind, options in declared.items()}, wrong
 
 

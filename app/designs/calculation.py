@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from app.designs.analyses import measured_unit
+from app.designs.analyses import is_table, measured_unit
 from app.designs.network import Graph, Node, SolidAnalysis
 from app.plain import Json
 from app.reference import Reference
@@ -66,29 +66,33 @@ class Calculation:
         with np.errstate(all="ignore"):
             return getattr(self.instance(reference.block), declared.attribute)  # type: ignore[no-any-return]
 
-    def measure(self, reference: Reference) -> float:
+    def measure(self, reference: Reference) -> Value:
         """What is measured or computed on a solid [SI], by its name in relations: `throw.torsion.stiffness`.
+
+        A number, or a table as an array [row, column].
 
         Raises
         ------
         FaultyText
             With code `no_value`, where an analysis has a reason instead.
         """
-        if reference.analysis is not None:
-            measured = self._computed(reference, reference.analysis)
-        else:
-            measured = self.measures[reference.block][reference.member]
-        return float(unit(measured_unit(reference)).to_si(measured))
+        scale = unit(measured_unit(reference))
+        if reference.analysis is None:
+            return float(scale.to_si(self.measures[reference.block][reference.member]))
+        computed = self._computed(reference, reference.analysis)
+        if is_table(reference):
+            return np.asarray(scale.to_si(np.asarray(computed, dtype=float)))
+        return float(scale.to_si(float(computed)))
 
     def outputs(self, model: str, kind: str) -> Outputs:
         """What is used and known of an analysis; nothing, while it is pending."""
         return self.analyses.get(model, {}).get(kind, {})
 
-    def _computed(self, reference: Reference, kind: str) -> float:
+    def _computed(self, reference: Reference, kind: str) -> Json:
         result = self.analyses[reference.block][kind][reference.output or ""]
         if result["value"] is None:
             raise FaultyText("no_value", f"{reference} has no value: {result['reason']}")
-        return float(result["value"])
+        return result["value"]
 
     def instance(self, block: str) -> Template:
         """The template of a step, or the model, with its values."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Set
 from dataclasses import replace
 
+from app.designs.analyses import is_table
 from app.designs.document import Document, WrittenCriterion
 from app.designs.network import Block, Demand, Network
 from app.reference import Reference
@@ -101,7 +102,7 @@ def _is_value(network: Network, reference: Reference) -> bool:
     """Whether a name means a number: no word, and no table."""
     if reference in network.assumed:
         return True
-    if network.node(reference) is None:
+    if network.node(reference) is None or is_table(reference):
         return False
     block = network.blocks.get(reference.block)
     declared = block and (block.cls.inputs.get(reference.member) or block.cls.formulas.get(reference.member))

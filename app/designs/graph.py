@@ -11,7 +11,7 @@ from itertools import filterfalse
 from typing import TypeVar
 
 from app.catalogue.catalogues import Catalogues
-from app.designs.analyses import is_measured, questions, remedy
+from app.designs.analyses import is_measured, is_table, questions, remedy
 from app.designs.choices import Choices
 from app.designs.demands import checked_demands, read_demands, unknown_names_in
 from app.designs.document import Document, Model, Step, Version
@@ -219,7 +219,10 @@ def _unknown(network: Network, links: Links) -> Iterator[Fault]:
         faults = unknown_names((name for _, name in unknown), network.names(), "name")
         yield from (replace(f, name=cell) for (cell, _), f in zip(unknown, faults, strict=True))
     for through in sorted(network.assumed, key=str):
-        if through.block not in models or not is_measured(through, models[through.block]):
+        if is_table(through):
+            detail = f"an iteration runs through one value; {through} is a table"
+            yield Fault("iterations", "not_a_number", detail)
+        elif through.block not in models or not is_measured(through, models[through.block]):
             detail = f"an iteration runs through a measure of a model, such as model.mass, not {through}"
             yield Fault("iterations", "unknown_name", remedy(through, models) or detail)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from app.designs.analyses import is_table
 from app.designs.calculation import Calculation
 from app.designs.network import Block, Cell, Graph
 from app.designs.row_design import Wanted
@@ -65,9 +66,11 @@ def through_solids(graph: Graph, wanted: Wanted) -> Mapping[Reference, Block]:
 
 
 def measures_behind(calculation: Calculation, wanted: Wanted) -> dict[Reference, float]:
-    """The measures of solids [SI] that values follow from, as far as they are known."""
+    """The measures of solids [SI] that values follow from, as far as they are known; no tables."""
     measures: dict[Reference, float] = {}
     for reference in _needs(calculation.graph, wanted).waiting:
+        if is_table(reference):
+            continue
         try:
             measures[reference] = float(calculation.value(reference))
         except (FaultyText, KeyError):  # not built, or not analysed

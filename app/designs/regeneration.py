@@ -181,7 +181,7 @@ def _lane(job: Job) -> Lane:
 
 def _measure(calculation: Calculation, iteration: Iteration) -> float:
     try:
-        return calculation.measure(Reference.parse(iteration.through))
+        return float(calculation.measure(Reference.parse(iteration.through)))
     except FaultyText as error:
         raise InvalidInputs([error.fault("iterations")]) from error
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from app.calculations.cost import EXPENSIVE
 from app.catalogue.catalogues import Catalogues
+from app.designs.analyses import is_table
 from app.designs.calculation import Calculation
 from app.designs.document import Document
 from app.designs.net import Net, Table
@@ -195,6 +196,8 @@ class Surroundings:
     def _missing(self, table: Table) -> str:
         """Why the design itself has no value."""
         waiting = self._net.design.needs(self.asked.wanted).waiting
+        if tables := sorted(str(reference) for reference in waiting if is_table(reference)):
+            return f"{self.asked.name} follows from {listed(tables)}, a table: its slopes are not computed"
         if waiting:
             return f"{self.asked.name} waits for {listed(sorted(map(str, waiting)))}"
         refusal = table.refusals.get(0)

@@ -130,9 +130,15 @@ def _analysed(kind: str, analysis: ModelAnalysis, name: str, output: AnalysisOut
         words=f"{kind}: {name.replace('_', ' ')}{under}",
         symbol="",
         value=cell(output.in_units(system)),
-        error=f"± {numbers.percent(output.error)}" if output.error is not None else "",
+        error=_error(output),
         origin=f"{held}, {level}{within}: {mesh.elements} elements of order {mesh.order}",
     )
+
+
+def _error(output: AnalysisOutput) -> str:
+    if output.error is not None:
+        return f"± {numbers.percent(output.error)}"
+    return "not estimated" if output.error_reason else ""
 
 
 def _rules(model: RevisionModel, cls: type[CadModel] | None) -> list[Rule]:

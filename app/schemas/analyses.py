@@ -34,8 +34,12 @@ class Span(Answer):
 class AnalysisOutput(Answer):
     """A quantity that an analysis computed; of the surface, where its file is."""
 
-    value: float | None = Field(None, description="null where the refinement did not settle")
+    value: float | list[list[float]] | None = Field(
+        None,
+        description="a number; of a table its rows; null where the refinement did not settle, say",
+    )
     unit: str | None = None
+    columns: list[str] | None = Field(None, description="of a table: what each number of a row is")
     error: float | None = Field(description="estimated relative error; null where it is not known")
     level: str | None = Field(description="how fine the mesh is; null where the mesh follows the stress")
     mesh: Mesh
@@ -43,6 +47,7 @@ class AnalysisOutput(Answer):
     point: Triple | None = Field(None, description="where the greatest stress is, in mm")
     searched: Span | None = Field(None, description="the part of the axis in which it was sought, in mm")
     reason: str | None = Field(None, description="why there is no value")
+    error_reason: str | None = Field(None, description="why no error is estimated")
     seconds: float | None = Field(None, description="time that it took, in s; in previews only")
     url: str | None = Field(None, description="where the surface is")
     sha256: str | None = None

@@ -78,6 +78,7 @@ class Analysable(Answer):
     """Results that finite elements can compute for a model's solid."""
 
     outputs: dict[str, str | None] = Field(description="outputs with their units; a surface has none")
+    tables: dict[str, list[str]] = Field({}, description="outputs that are tables, with their columns")
     boundaries: list[str]
     levels: list[str]
     default_level: str

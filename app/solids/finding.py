@@ -11,8 +11,9 @@ from app.solids.questions import Question
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.workers.base import Limits, Runner
-from cad.analysis.kinds import SURFACE
+from cad.analysis.kinds import DEFAULT_LEVEL, SURFACE, UNIT_LOADS
 from cad.errors import AnalysisError
+from cad.fillets import Crank
 from cad.model import CadModel
 from cad.regenerate import build_key
 from cad.shaft import Shaft
@@ -51,7 +52,13 @@ class Analysing:
             assert step is not None, "a build has its STEP file from its first moment"
             bytes_ = self.store.read(step.sha256)
             computed = context.run(
-                analyse_in_worker, bytes_, shaft_of(shape), question, unknown, limits=self.limits
+                analyse_in_worker,
+                bytes_,
+                shaft_of(shape),
+                throw_of(shape, question),
+                question,
+                unknown,
+                limits=self.limits,
             )
             new |= {name: self._stored(output) for name, output in computed.items()}
         self.database.write(lambda session: repository.add(session, build, question, new))
@@ -83,15 +90,37 @@ def shaft_of(shape: CadModel) -> Shaft:
     return shaft
 
 
+def throw_of(shape: CadModel, question: Question) -> Crank | None:
+    """Where pin and fillets are, for an analysis that has to know; None for others.
+
+    Raises
+    ------
+    AnalysisError
+        `no_throw`.
+    """
+    if question.kind != UNIT_LOADS:
+        return None
+    sizes = shape.throw_sizes()
+    if sizes is None:
+        raise AnalysisError("no_throw", f"{shape.id} is not one throw of a crank")
+    return sizes
+
+
 def analyse_in_worker(
-    step: bytes, shaft: Shaft, question: Question, outputs: tuple[str, ...]
+    step: bytes, shaft: Shaft, crank: Crank | None, question: Question, outputs: tuple[str, ...]
 ) -> dict[str, JsonObject]:
-    """`cad.analysis.analyse.analyse` with progress reported to the job; runs in the worker's process."""
+    """`cad.analysis.analyse.analyse` with progress reported to the job; runs in the worker's process.
+
+    Of a throw's tables all are answered, whichever are asked for: they cost the same together.
+    """
     # The server imports this module too, and needs no solver.
     from cad.analysis.analyse import AnalysisRequest, analyse
+    from cad.analysis.throw_tables import unit_load_tables
 
     request = AnalysisRequest(question.kind, question.boundary, question.level, question.tolerance)  # type: ignore[arg-type]
     try:
+        if crank is not None:
+            return unit_load_tables(step, shaft, crank, question.level or DEFAULT_LEVEL, report)
         computed = analyse(step, shaft, request, outputs, report).outputs
         return {name: _packed(output) if name == SURFACE else output for name, output in computed.items()}
     except (AnalysisError, MemoryError):

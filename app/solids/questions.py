@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Container, Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 
@@ -23,6 +23,8 @@ from cad.analysis.kinds import (
     LEVELS,
     STRESSES,
     SURFACE,
+    TABLES,
+    UNIT_LOADS,
     Boundary,
     Level,
 )
@@ -103,12 +105,27 @@ def load_of(raw: Raw) -> float:
     return float(read(raw, "N*m").si)
 
 
-def faults(options: Options) -> list[Fault]:
-    """What is wrong with options beside their types."""
+def faults(kind: str, options: Options) -> list[Fault]:
+    """What is wrong with the options of a kind beside their types."""
+    if kind == UNIT_LOADS:
+        return [*_faults_of_tables(options)]
     both = options.level is not None and options.tolerance is not None
     detail = "give either a level or a tolerance, which chooses the level"
     conflicts = [Fault("tolerance", "conflict", detail)] if both else []
     return conflicts + ([] if options.load is None else load_faults(options.load))
+
+
+def _faults_of_tables(options: Options) -> Iterator[Fault]:
+    """The options that tables under unit loads do not have."""
+    if options.boundary != "free_end":
+        held = "held at one end and borne by both mains: leave boundary out"
+        yield Fault("boundary", "not_offered", f"{UNIT_LOADS} has one way of holding the throw, {held}")
+    if options.tolerance is not None:
+        detail = f"the error of {UNIT_LOADS} is not estimated: give a level, {', '.join(LEVELS)}"
+        yield Fault("tolerance", "not_offered", detail)
+    if options.load is not None:
+        detail = f"the tables of {UNIT_LOADS} are under 1 kN and 1 kN*m: leave load out, and multiply them"
+        yield Fault("load", "not_offered", detail)
 
 
 def load_faults(raw: Raw) -> list[Fault]:
@@ -139,7 +156,7 @@ def _times(load: float, output: Mapping[str, Json]) -> JsonObject:
 
 def offered(kind: str) -> tuple[str, ...]:
     """All outputs of a kind that can be asked for."""
-    return (*KINDS[kind], SURFACE)
+    return (*KINDS[kind],) if kind == UNIT_LOADS else (*KINDS[kind], SURFACE)
 
 
 def in_order(kind: str, outputs: Container[str]) -> tuple[str, ...]:
@@ -154,14 +171,28 @@ def no_shaft(cls: type[CadModel]) -> str | None:
     return f"{cls.id} is not a shaft: it does not say by which ends it is held and loaded"
 
 
+def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
+    """Why solids of a model cannot be analysed in this way; None if they can."""
+    if reason := no_shaft(cls):
+        return Fault("model", "no_shaft", reason)
+    if kind != UNIT_LOADS or cls.is_throw():
+        return None
+    detail = f"{cls.id} is not one throw of a crank, from mid-journal to mid-journal, as crank_throw is"
+    return Fault("model", "no_throw", f"{UNIT_LOADS} is of a throw: {detail}")
+
+
 def what_can_be_asked(cls: type[CadModel]) -> JsonObject:
     """The kinds of analyses of a model, each with its outputs and their units; none unless it is a shaft."""
-    if no_shaft(cls):
-        return {}
-    options = {"boundaries": list(BOUNDARIES), "levels": list(LEVELS)}
     return {
-        kind: {"outputs": {**units, SURFACE: None}, **options, "default_level": DEFAULT_LEVEL}
-        for kind, units in KINDS.items()
+        kind: {
+            "outputs": {name: KINDS[kind].get(name) for name in offered(kind)},
+            "tables": {name: [*TABLES[name]] for name in KINDS[kind] if name in TABLES},
+            "boundaries": [*BOUNDARIES] if kind != UNIT_LOADS else [*BOUNDARIES[:1]],
+            "levels": [*LEVELS],
+            "default_level": DEFAULT_LEVEL,
+        }
+        for kind in KINDS
+        if not not_offered(cls, kind)
     }
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.designs.analyses import is_measured
+from app.designs.analyses import is_measured, is_table
 from app.designs.calculate import Calculation
 from app.designs.service import Designs
 from app.plain import JsonObject
@@ -20,17 +20,18 @@ def measured_in(designs: Designs, document: JsonObject) -> dict[str, float]:
 
 
 def _used(calculation: Calculation) -> set[Reference]:
-    """The measures and results of analyses that relations name."""
+    """The measures and results of analyses that relations name, but for tables."""
     blocks = calculation.graph.blocks
     used = {reference for cell in calculation.graph.cells() for reference in cell.uses.values()}
     models = {
         reference for reference in used if reference.block in blocks and blocks[reference.block].is_model
     }
-    return {reference for reference in models if is_measured(reference, blocks[reference.block].analyses)}
+    measured = {r for r in models if is_measured(r, blocks[r.block].analyses)}
+    return {reference for reference in measured if not is_table(reference)}
 
 
 def _value(calculation: Calculation, reference: Reference) -> float | None:
     try:
-        return calculation.measure(reference)
+        return float(calculation.measure(reference))
     except (FaultyText, KeyError):  # not built, or not analysed
         return None

@@ -12,6 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
+from app.designs.analyses import is_table
 from app.designs.document import Document
 from app.designs.net import Net, Refusal
 from app.designs.network import Block
@@ -102,6 +103,13 @@ def iterated(document: Document, measures: Sequence[Reference]) -> Iterator[Faul
         through = document.iterations[0].through
         detail = f"the design iterates through {through}; a study builds no solid for a row of such a design"
         yield Fault(str(measures[0]), "needs_solids", detail)
+
+
+def tables_among(measures: Sequence[Reference]) -> Iterator[Fault]:
+    """A fault for each table of an analysis on which a study depends: a row has single values of solids."""
+    for reference in filter(is_table, measures):
+        detail = "is a table of an analysis; a study takes single values of solids: write the table as values"
+        yield Fault(str(reference), "needs_solids", f"{reference} {detail}")
 
 
 @dataclass(frozen=True)

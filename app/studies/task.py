@@ -17,7 +17,7 @@ from app.plain import JsonObject
 from app.reference import Reference
 from app.storage.tables import canonical_json
 from app.studies.asking import Asked, asked_of
-from app.studies.row_solids import RowSolids, iterated, measures_of_rows
+from app.studies.row_solids import RowSolids, iterated, measures_of_rows, tables_among
 from app.studies.schemas import StudyIn
 from templates.core.errors import Fault, InvalidInputs
 
@@ -99,7 +99,7 @@ def _prepared(task: Task) -> Prepared:
     net = _net(document, catalogues, varied, measured_si, aside)
     asked = asked_of(body, task.varied, net)
     measures = measures_of_rows(net, body, asked.wanted, measured_si)
-    raise_if(list(iterated(document, measures)))
+    raise_if([*iterated(document, measures), *tables_among(measures)])
     nominal = {reference: measured_si[reference] for reference in measures if reference in measured_si}
     blocks, moving = net.graph.blocks, net.design.moving
     constant = {

@@ -123,7 +123,7 @@ def measures(design: Design, models: Sequence[ModelBlock]) -> Iterator[str]:
         yield from (f"{block.name}.{measure}" for measure in block.model.measures)
         for name, options in design.models[block.name].analyses.items():
             kind = block.model.analyses.get(options.kind or name)
-            outputs = kind.outputs if kind else {}
+            outputs = [one for one in kind.outputs if one not in kind.tables] if kind else []
             yield from (f"{block.name}.{name}.{output}" for output in outputs if output != "surface")
 
 

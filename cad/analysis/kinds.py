@@ -11,18 +11,35 @@ Kind = Literal["torsion", "bending"]
 Boundary = Literal["free_end", "guided_end"]
 Level = Literal["coarse", "default", "fine"]
 
+LOADS: tuple[Kind, ...] = get_args(Kind)
 BOUNDARIES: tuple[Boundary, ...] = get_args(Boundary)
 LEVELS: tuple[Level, ...] = get_args(Level)
 DEFAULT_LEVEL: Level = "default"
 
+UNIT_LOADS = "unit_loads"
+"""The kind whose outputs are tables: stress tensors at the fillets of a throw under unit loads."""
+
+_TENSOR = ("xx", "yy", "zz", "xy", "yz", "xz")
+_FORCE, _MOMENT = "MPa/kN", "MPa/(kN*m)"
+
 KINDS: dict[str, dict[str, str]] = {
     "torsion": {"stiffness": "N*m/rad", "torsional_frequency": "Hz", "maximum_stress": "MPa"},
     "bending": {"stiffness": "N*m/rad", "maximum_stress": "MPa"},
+    UNIT_LOADS: {
+        **dict.fromkeys(("stress_of_force_1", "stress_of_force_2"), _FORCE),
+        **dict.fromkeys(("stress_of_moment_1", "stress_of_moment_2", "stress_of_moment_3"), _MOMENT),
+        "points": "mm",
+    },
 }
 """The outputs of each kind with their units; stress is that under a torque or moment of 1 N·m."""
 
+TABLES: dict[str, tuple[str, ...]] = {
+    output: ("x", "y", "z") if output == "points" else _TENSOR for output in KINDS[UNIT_LOADS]
+}
+"""The columns of those outputs that are tables; they have a row for each point."""
+
 SURFACE = "surface"
-"""An output of every kind, the surface for a picture. It is not a quantity, so no relation can use it."""
+"""An output of torsion and bending, the surface for a picture. No relation can use it: it is no quantity."""
 
 STRESSES = frozenset({"maximum_stress"})
 """Outputs proportional to the load, computed on meshes of their own, whatever the level."""

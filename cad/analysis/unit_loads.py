@@ -18,7 +18,7 @@ Linear elasticity: the stress under any loads is the sum of these tensors, each 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import pi
 from typing import Any
@@ -31,67 +31,17 @@ from cad.analysis.mesh import Fineness, make_grid
 from cad.analysis.solid import FREE, LOADED, read_solid
 from cad.analysis.stress import recover
 from cad.errors import AnalysisError
+from cad.fillets import Crank, Ring
 from cad.shaft import Shaft
 from templates.core.arrays import Array, Integers
+
+__all__ = ["LOADS", "Crank", "LoadedThrow", "Ring", "UnitStresses", "fillet_stresses"]
 
 LOADS = ("force_1", "force_2", "moment_1", "moment_2", "moment_3")
 FINENESS = Fineness(size=0.7, curvature=0.8, turn=pi / 4)
 ORDER = 3
 
 _ON_PIN = 1e-3  # of its radius: so near to its cylinder a point lies on it
-_MARGIN = 0.1  # of its radius: a fillet is looked at so far beyond its ends
-_SECTORS = 24
-
-
-@dataclass(frozen=True)
-class Ring:
-    """A fillet round a cylinder beside a web: between two radii about an axis and two levels of z [mm]."""
-
-    axis: float  # x of the axis
-    inner: float
-    outer: float
-    low: float
-    high: float
-
-    def holds(self, points: Array) -> Array:
-        """Whether points [n, 3] lie in it."""
-        away = np.hypot(points[:, 0] - self.axis, points[:, 1])
-        inside = (away >= self.inner) & (away <= self.outer)
-        return np.asarray(inside & (points[:, 2] >= self.low) & (points[:, 2] <= self.high))
-
-    def sectors(self, points: Array) -> Integers:
-        """In which of the sectors round the axis points [n, 3] lie."""
-        angle = np.arctan2(points[:, 1], points[:, 0] - self.axis) % (2 * pi)
-        return np.asarray(np.minimum(angle * _SECTORS / (2 * pi), _SECTORS - 1).astype(int))
-
-
-@dataclass(frozen=True)
-class Crank:
-    """The plain sizes of a throw that tell where its pin and its fillets are [mm]; z = 0 is mid-pin."""
-
-    throw: float
-    pin_radius: float
-    pin_length: float
-    journal_radius: float
-    web_thickness: float
-    fillet: float
-
-    @property
-    def plain(self) -> float:
-        """The length of the pin between its fillets."""
-        return self.pin_length - 2 * self.fillet
-
-    def rings(self) -> tuple[Ring, ...]:
-        """The four fillets: of the pin and of the journals, at the lower and the upper web."""
-        margin = _MARGIN * self.fillet
-        half, outer = self.pin_length / 2, self.pin_length / 2 + self.web_thickness
-        spans = ((self.throw, self.pin_radius, half - self.fillet), (0.0, self.journal_radius, outer))
-        rings = []
-        for axis, radius, near in spans:
-            reach = (radius - margin, radius + self.fillet + margin)
-            low, high = near - margin, near + self.fillet + margin
-            rings += [Ring(axis, *reach, -high, -low), Ring(axis, *reach, low, high)]
-        return tuple(rings)
 
 
 @dataclass(frozen=True)
@@ -180,26 +130,33 @@ class LoadedThrow:
         return points, np.column_stack([np.ravel(part(where)) for part in recover(response)])
 
 
-def fillet_stresses(throw: LoadedThrow) -> UnitStresses:
+def fillet_stresses(throw: LoadedThrow, before: Callable[[str], None] | None = None) -> UnitStresses:
     """The tensors of all unit loads at the fillets: in each sector of each, at the point stressed most.
 
     "Most" is the largest von Mises stress under any of the loads, each as a share of its own largest one.
+    `before` is called with the name of each load before it is solved.
 
     Raises
     ------
     AnalysisError
         `no_fillet` if the throw has none.
     """
+    if throw.crank.fillet <= 0:
+        raise _no_fillet()
     everywhere = {}
     for load in LOADS:
+        if before:
+            before(load)
         points, everywhere[load] = throw.on_surface(throw.response({load: 1.0}))
     chosen = _chosen(points, everywhere, throw.crank.rings())
     if not len(chosen):
-        raise AnalysisError(
-            "no_fillet", "stress has no limit at a sharp inner corner; give the throw a fillet"
-        )
+        raise _no_fillet()
     tensors = {load: values[chosen] for load, values in everywhere.items()}
     return UnitStresses(points[chosen], tensors, throw.system.grid.mesh.ne)
+
+
+def _no_fillet() -> AnalysisError:
+    return AnalysisError("no_fillet", "stress has no limit at a sharp inner corner; give the throw a fillet")
 
 
 def _chosen(points: Array, tensors: dict[str, Array], rings: tuple[Ring, ...]) -> Integers:

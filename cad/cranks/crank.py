@@ -10,6 +10,7 @@ from cad.cranks.reading import Webs, counterweight, drilling, fillet, inclinatio
 from cad.cranks.rules import CrankRules
 from cad.cranks.throw import End, Throw
 from cad.cranks.volume import volume
+from cad.fillets import Crank
 from cad.model import Box, Part, mm
 from cad.shaft import Shaft
 from cad.surfaces import Seen, Y
@@ -67,6 +68,25 @@ class CrankModel(CrankRules):
         """Held by its end face at -z, loaded at +z."""
         box = self.bounding_box()
         return Shaft(box.low[2], box.high[2])
+
+    @classmethod
+    def is_throw(cls) -> bool:
+        """Whether nothing lies beyond the main journals, so that the solid ends mid-journal."""
+        return cls.ends is CrankModel.ends
+
+    def throw_sizes(self) -> Crank | None:
+        """The plain sizes of the throw, if it is one from mid-journal to mid-journal."""
+        drawn = self.drawn()
+        if not self.is_throw():
+            return None
+        return Crank(
+            drawn.outline.throw,
+            drawn.pin,
+            drawn.pin_length,
+            drawn.journal,
+            drawn.web_thickness,
+            drawn.fillet,
+        )
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
         """Every parameter; the angle of a counterweight only if there is one."""

@@ -25,7 +25,7 @@ from app.solids.questions import (
     in_order,
     load_faults,
     load_of,
-    no_shaft,
+    not_offered,
     offered,
     question,
 )
@@ -38,7 +38,9 @@ from templates.core.errors import Fault, InvalidInputs
 router = APIRouter(prefix="/api/v1", tags=["models"], route_class=StrictRoute)
 
 Id = Annotated[str, Path(max_length=64, examples=["crank_throw"])]
-Kind = Annotated[str, Path(max_length=64, examples=["torsion"], description="`torsion` or `bending`")]
+Kind = Annotated[
+    str, Path(max_length=64, examples=["torsion"], description="`torsion`, `bending` or `unit_loads`")
+]
 
 
 @router.post(
@@ -62,7 +64,8 @@ async def analyse_model(
 
     The shaft is held at one end; at the other acts a torque about z (`torsion`), or a moment about y in the
     plane of the throw (`bending`). Stress is the greatest von Mises stress under `load`, of 1 N·m if
-    none is given.
+    none is given. Of one throw, `unit_loads` are tables: the stress tensors at points of its fillets under
+    1 kN on the pin along and across the throw, and under torque and bending moments of 1 kN·m.
     """
     if kind not in KINDS:
         raise NotFound(f"there is no analysis {kind[:60]!r}; there are {', '.join(KINDS)}")
@@ -146,7 +149,7 @@ def _checked(cls: type[CadModel], kind: str, body: AnalysisIn) -> tuple[str, ...
     """The outputs to find, if nothing in the body is wrong beside its parameters."""
     asked = [name for name in KINDS[kind] if name not in ON_REQUEST] if body.outputs is None else body.outputs
     names = ", ".join(offered(kind))
-    wrong = faults(body)
+    wrong = faults(kind, body)
     wrong += [
         Fault("outputs", "unknown_name", f"{name[:40]!r} is none of {names}")
         for name in asked
@@ -154,8 +157,8 @@ def _checked(cls: type[CadModel], kind: str, body: AnalysisIn) -> tuple[str, ...
     ]
     if not asked:
         wrong.append(Fault("outputs", "empty", f"name at least one of {names}"))
-    if reason := no_shaft(cls):
-        wrong.append(Fault("model", "no_shaft", reason))
+    if refused := not_offered(cls, kind):
+        wrong.append(refused)
     if wrong:
         raise InvalidInputs(wrong)
     return in_order(kind, asked)

@@ -54,18 +54,18 @@ async function analysed(place) {
   const path = `${place.dataset.elements}/${ask(place, "kind").value}`, body = asked(place, built.parameters);
   const { payload: analysis, status, location } = await call("POST", path, body, { headers: { Prefer: "respond-async" } });
   if (status === 202) await finished(place, location);
-  const { payload: answer } = await call("GET", `/api/v1/analyses/${analysis.id}?units=${units()}&load=${encodeURIComponent(body.load)}`);
+  const { payload: answer } = await call("GET", `/api/v1/analyses/${analysis.id}?units=${units()}&load=${encodeURIComponent(body.load ?? "1 N*m")}`);
   return { ...answer, newtonMetres: analysis.load.value };
 }
 
 function asked(place, parameters) {
-  const level = ask(place, "level").value, outputs = ask(place, "kind").selectedOptions[0].dataset.outputs.split(" ");
+  const level = ask(place, "level").value, kind = ask(place, "kind").selectedOptions[0].dataset;
+  const load = ask(place, "load").value.replaceAll("·", "*"), boundary = ask(place, "boundary").value;
   return {
     parameters: Object.fromEntries(Object.entries(parameters).map(([name, { value, unit }]) => [name, unit ? { value, unit } : value])),
-    boundary: ask(place, "boundary").value,
-    load: ask(place, "load").value.replaceAll("·", "*"),
+    ...("tables" in kind ? {} : { boundary, load }), // tables are under unit loads, held in one way
     ...(Number(level) ? { tolerance: Number(level) } : { level }),
-    outputs: outputs.filter((name) => name !== EXTRA || ask(place, EXTRA).checked),
+    outputs: kind.outputs.split(" ").filter((name) => name !== EXTRA || ask(place, EXTRA).checked),
   };
 }
 
@@ -80,10 +80,14 @@ async function finished(place, job) {
 
 async function show(place, analysis) {
   showAnalysis(place.querySelector("[data-analyses]"), analysis);
+  const view = place.querySelector("[data-deformed]"), colour = place.querySelector("[data-colour]");
+  if (!analysis.outputs.surface) {
+    view.hidden = true;
+    return;
+  }
   const { payload: stored } = await call("GET", `${analysis.outputs.surface.url}?units=${units()}`);
   const { drawDeformed, fieldsOf, under } = await import("./deformed.js");
   const surface = under(stored, analysis.newtonMetres, written(analysis.load));
-  const view = place.querySelector("[data-deformed]"), colour = place.querySelector("[data-colour]");
   const names = Object.keys(fieldsOf(surface)), before = colour.value;
   colour.replaceChildren(...names.map((name) => new Option(name, name, false, name === before)));
   view.hidden = false;

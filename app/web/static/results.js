@@ -52,7 +52,7 @@ export function cells(quantity, axis) {
   return [value, Object.assign(document.createElement("td"), { className: "unit", textContent: unit(quantity.unit) })];
 }
 
-function numberOf(value) {
+export function numberOf(value) {
   const parts = aligned(value).map((text, place) => part(["whole", "rest"][place], text));
   const number = part("number", "");
   number.append(...parts);

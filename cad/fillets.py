@@ -1,0 +1,67 @@
+"""The plain sizes of a throw, and from them where its pin and its fillets are.
+
+It needs no kernel, so that finite elements, which bring one of their own, are not loaded with two.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from templates.core.arrays import Array, Integers
+
+_MARGIN = 0.1  # of its radius: a fillet is looked at so far beyond its ends
+_SECTORS = 24
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A fillet round a cylinder beside a web: between two radii about an axis and two levels of z [mm]."""
+
+    axis: float  # x of the axis
+    inner: float
+    outer: float
+    low: float
+    high: float
+
+    def holds(self, points: Array) -> Array:
+        """Whether points [n, 3] lie in it."""
+        away = np.hypot(points[:, 0] - self.axis, points[:, 1])
+        inside = (away >= self.inner) & (away <= self.outer)
+        return np.asarray(inside & (points[:, 2] >= self.low) & (points[:, 2] <= self.high))
+
+    def sectors(self, points: Array) -> Integers:
+        """In which of the sectors round the axis points [n, 3] lie."""
+        angle = np.arctan2(points[:, 1], points[:, 0] - self.axis) % (2 * pi)
+        return np.asarray(np.minimum(angle * _SECTORS / (2 * pi), _SECTORS - 1).astype(int))
+
+
+@dataclass(frozen=True)
+class Crank:
+    """The plain sizes of a throw that tell where its pin and its fillets are [mm]; z = 0 is mid-pin."""
+
+    throw: float
+    pin_radius: float
+    pin_length: float
+    journal_radius: float
+    web_thickness: float
+    fillet: float
+
+    @property
+    def plain(self) -> float:
+        """The length of the pin between its fillets."""
+        return self.pin_length - 2 * self.fillet
+
+    def rings(self) -> tuple[Ring, ...]:
+        """The four fillets: of the pin and of the journals, at the lower and the upper web."""
+        margin = _MARGIN * self.fillet
+        half, outer = self.pin_length / 2, self.pin_length / 2 + self.web_thickness
+        spans = ((self.throw, self.pin_radius, half - self.fillet), (0.0, self.journal_radius, outer))
+        rings = []
+        for axis, radius, near in spans:
+            reach = (radius - margin, radius + self.fillet + margin)
+            low, high = near - margin, near + self.fillet + margin
+            rings += [Ring(axis, *reach, -high, -low), Ring(axis, *reach, low, high)]
+        return tuple(rings)
