@@ -119,6 +119,14 @@ def _orbit(values: Values, declared: Members) -> Iterator[Picture]:
         )
 
 
+def _star(values: Values, declared: Members) -> Iterator[Picture]:
+    """The crankpins of an engine, of one cylinder too."""
+    angles = values["crankpin_angles"].value if "crankpin_angles" in values else None
+    if isinstance(angles, list) and angles and all(isinstance(angle, (int, float)) for angle in angles):
+        names = {"angles": "crankpin_angles"}
+        yield Picture("star", "Throw star: crankpins with their cylinders, seen from the flywheel", names)
+
+
 def _campbell(values: Values, declared: Members) -> Iterator[Picture]:
     if _have(values, "natural_frequencies", "engine_orders"):
         names = {"frequencies": "natural_frequencies", "orders": "engine_orders", "range": "speed_range"}
@@ -174,4 +182,4 @@ def _is_given(value: UsedInput | Output) -> bool:
     return isinstance(value, UsedInput) and value.source == "given"
 
 
-TABLE: tuple[Rule, ...] = (_clearance, _pressure, _polar, _orbit, _campbell, _modes, _curves)
+TABLE: tuple[Rule, ...] = (_clearance, _pressure, _star, _polar, _orbit, _campbell, _modes, _curves)

@@ -11,6 +11,7 @@ from app.presentation import numbers
 from app.reports.charts import Chart, Series, svg
 from app.reports.content import Plot
 from app.reports.pictures import Declaring, Picture, pictures
+from app.reports.throw_star import throw_star
 from app.schemas.designs import PreviewedStep
 from app.schemas.evaluations import Output, UsedInput
 from templates.core.language.levels import accuracy
@@ -36,11 +37,13 @@ def drawn(declared: Declaring, step: PreviewedStep) -> list[Plot]:
     """The pictures of a step's values."""
     used = {name: value for name, value in step.inputs.items() if isinstance(value, UsedInput)}
     values: Values = {**used, **step.outputs}
-    plots = [_plot(picture, values) for picture in pictures(declared, step) if picture.kind in KINDS]
+    plots = [_plot(picture, values) for picture in pictures(declared, step) if picture.kind in DRAWN]
     return [plot for plot in plots[:MOST] if plot.svg]
 
 
 def _plot(picture: Picture, values: Values) -> Plot:
+    if picture.kind == STAR:
+        return Plot(picture.title, throw_star(_numbers(values[_name(picture, "angles")])))
     return Plot(picture.title, svg(KINDS[picture.kind](picture, values)))
 
 
@@ -116,6 +119,10 @@ KINDS: Mapping[str, Callable[[Picture, Values], Chart]] = {
     "orbit": _orbit,
     "campbell": _campbell,
 }
+
+
+STAR = "star"
+DRAWN = frozenset({*KINDS, STAR})
 
 
 def _accuracy(cls: type[Template]) -> Iterator[Plot]:

@@ -65,14 +65,14 @@ GALLERY = {
     ),
     "engine": Example(
         title="All bearings of a four-cylinder engine",
-        text="From gas pressure to the load of every main and big end, a film in each of them, and the "
-        "crankshaft: change the bore of the cylinders, and see which bearing governs.",
+        text="From gas pressure to a film in every main and big end, the crankshaft, its torsion and its "
+        "life: change the bore of the cylinders, and see what governs.",
         document=FOUR_CYLINDERS,
     ),
     "v8": Example(
         title="All bearings of a cross-plane V8",
-        text="Two rods on each pin, five mains and eight big ends, and a crankshaft whose pins stand as the "
-        "firing order wants them.",
+        text="Two rods on each pin, five mains and eight big ends, a crankshaft whose pins stand as the "
+        "firing order wants them, its torsion and its life.",
         document=V8,
     ),
     "crank": Example(

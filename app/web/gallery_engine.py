@@ -1,10 +1,18 @@
-"""Designs to start from: an in-line four and a V8, a film in each of their bearings, their crankshafts."""
+"""Designs to start from: an in-line four and a V8, from the bore of their cylinders to verdicts.
+
+Loads, a film in each bearing, shells, crankshaft, torsion of the train, life of the shaft's fillets.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from pydantic import JsonValue
 
-_FOUR: dict[str, JsonValue] = {
+from app.web import gallery_fillets, gallery_train
+from app.web.gallery_train import THROWS, Train
+
+FOUR: dict[str, JsonValue] = {
     "speed": "4500 rpm",
     "strokes": 4,
     "crank_angle_step": "5 deg",
@@ -39,8 +47,8 @@ _FOUR: dict[str, JsonValue] = {
     "web_thickness": "18 mm",
     "web_width": "80 mm",
 }
-_V8: dict[str, JsonValue] = {
-    **_FOUR,
+V_EIGHT: dict[str, JsonValue] = {
+    **FOUR,
     "firing_order": [1, 8, 4, 3, 6, 5, 7, 2],
     "bank_angles": {"value": [45, -45] * 4, "unit": "deg"},
     "throws": [1, 1, 2, 2, 3, 3, 4, 4],
@@ -86,15 +94,50 @@ def _bearings(mains: int, cylinders: int) -> dict[str, JsonValue]:
     return {**{f"main_{n}": {"bearing": f"{n}"} for n in range(1, mains + 1)}, **big_ends}
 
 
+def _places(between: str, cylinders: Sequence[float], webs: float) -> dict[str, JsonValue]:
+    """Where cylinders, mains and webs stand: a wider bore makes the engine longer.
+
+    A throw is as long as a bore and what is `between` two bores. Cylinders stand `cylinders` [mm] off the
+    middle of their throw, webs `webs` [mm] before and behind it.
+    """
+    middle = [f"= {2 * k + 1} * pitch / 2" for k in range(THROWS)]
+    return {
+        "pitch": f"= bore + {between}",
+        "cylinder_positions": [f"{at} + {off:g} mm" for at in middle for off in cylinders],
+        "main_positions": [f"= {k} * pitch" for k in range(THROWS + 1)],
+        "web_positions": [f"{at} + {off:g} mm" for at in middle for off in (-webs, webs)],
+    }
+
+
 def _document(
-    name: str, engine: dict[str, JsonValue], shaft: dict[str, JsonValue], bearings: dict[str, JsonValue]
+    name: str,
+    places: dict[str, JsonValue],
+    engine: dict[str, JsonValue],
+    shaft: dict[str, JsonValue],
+    bearings: dict[str, JsonValue],
+    train: Train,
 ) -> dict[str, JsonValue]:
-    """A design: the engine, a film in one bearing with its shell, the crankshaft; a variant per bearing."""
+    """A design: the engine, a film in one bearing with its shell, the crankshaft, torsion, life.
+
+    A variant for each bearing.
+    """
+    placed = {name: value for name, value in places.items() if name != "pitch"}
     return {
         "name": name,
-        "parameters": {"bore": "86 mm", "bearing": "3"},
+        "parameters": {
+            "bore": "86 mm",
+            "pitch": places["pitch"],
+            "bearing": "3",
+            **gallery_train.parameters(train),
+        },
         "steps": {
-            "engine": {"template": "engine", "version": 2, "inputs": engine, "outputs": _OUTPUTS},
+            "engine": {
+                "template": "engine",
+                "version": 2,
+                "inputs": {**engine, **placed},
+                "outputs": _OUTPUTS,
+                "limits": {"permissible_main_load": "60 kN", "permissible_crankpin_load": "60 kN"},
+            },
             "film": {
                 "template": "oil_film_cycle",
                 "version": 2,
@@ -112,6 +155,7 @@ def _document(
                     "permissible_film": "1 um",
                 },
             },
+            **gallery_train.steps(train),
         },
         "models": {
             "shell": {
@@ -130,20 +174,36 @@ def _document(
 
 
 FOUR_CYLINDERS = _document(
-    "bearings of a four-cylinder engine",
-    _FOUR,
+    "four-cylinder engine",
+    _places("8 mm", [0], 25),
+    FOUR,
     {
         "pin_angles": "= engine.crankpin_angles",
         "counterweight_radius": {"value": [72, 0, 0, 72, 72, 0, 0, 72], "unit": "mm"},
     },
     _bearings(5, 4),
+    Train(
+        bank="0 deg",
+        per_throw=1,
+        ring="0.02 kg*m**2",
+        flywheel="0.14 kg*m**2",
+        tensors=gallery_fillets.FOUR,
+    ),
 )
 V8 = _document(
-    "bearings of a V8",
-    _V8,
+    "cross-plane V8",
+    _places("28 mm", [-11, 11], 33),
+    V_EIGHT,
     {
         "pin_angles": [f"= engine.crankpin_angles[{n}]" for n in (1, 3, 5, 7)],
         "counterweight_radius": {"value": [76, 60, 60, 76, 76, 60, 60, 76], "unit": "mm"},
     },
     _bearings(5, 8),
+    Train(
+        bank="engine.bank_angles[1]",
+        per_throw=2,
+        ring="0.03 kg*m**2",
+        flywheel="0.18 kg*m**2",
+        tensors=gallery_fillets.V_EIGHT,
+    ),
 )

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from engines import bearings_of, four_cylinders
 from serving import API, created, revision
 
 from app.web.gallery import GALLERY
 
-ENGINE = GALLERY["engine"].document
+ENGINE = bearings_of(GALLERY["engine"].document)
 FILM = "film.minimum_film_thickness"
 
 
@@ -64,7 +65,7 @@ def test_an_item_beyond_the_mains_is_refused_by_name(http, index):
     ],
 )
 def test_contradictions_of_an_engine_are_refused_by_name(http, change, names):
-    inputs = {**ENGINE["steps"]["engine"]["inputs"], "bore": "86 mm", **change}
+    inputs = four_cylinders(bore="86 mm", **change)["inputs"]
     answer = http.post(f"{API}/templates/engine/versions/2/evaluate", json={"inputs": inputs})
     assert answer.status_code == 422, answer.text
     assert names <= {error["name"] for error in answer.json()["errors"]}

@@ -5,9 +5,8 @@ The design is the example of docs/forced_torsion.md.
 
 import numpy as np
 import pytest
+from engines import four_cylinders
 from serving import created, revision
-
-from app.web.gallery import GALLERY
 
 TRAIN = {
     "inertias": {"value": [0.02, 0.008, 0.012, 0.012, 0.012, 0.012, 0.14, 0.05], "unit": "kg*m**2"},
@@ -28,7 +27,6 @@ TRAIN = {
     " - engine.crankpin_load_x[1] * sin(turn)) - gas_torque",
     "inertia_speed": "= engine.speed",
 }
-ENGINE = GALLERY["engine"].document["steps"]["engine"]
 DESIGN = {
     "name": "torsion of a four-cylinder engine",
     "parameters": {
@@ -43,7 +41,7 @@ DESIGN = {
         " * (sin(turn) + cos(turn) * lean / sqrt(1 - lean**2))",
     },
     "steps": {
-        "engine": {**ENGINE, "outputs": ["torque", "firing_intervals"]},
+        "engine": {**four_cylinders(), "outputs": ["torque", "firing_intervals"]},
         "torsion": {
             "template": "forced_torsion",
             "version": 1,

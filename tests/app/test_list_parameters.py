@@ -1,6 +1,7 @@
 """Parameters of a model that are lists, by the live interface: a shaft whose pins follow from an engine."""
 
 import pytest
+from engines import bearings_of, four_cylinders
 from serving import API, created, faults, patched, problem, revision
 from study_helpers import done, rows
 
@@ -12,8 +13,7 @@ WAIT = {"Prefer": "wait=60"}
 
 
 def engine(**inputs):
-    example = GALLERY["engine"].document["steps"]["engine"]
-    return {**example, "inputs": {**example["inputs"], "bore": "86 mm", **inputs}}
+    return four_cylinders(bore="86 mm", **inputs)
 
 
 def design(relation, **more):
@@ -129,7 +129,7 @@ def test_variants_may_have_pins_of_their_own(http):
     ("example", "pins", "journal"), [("engine", [0, 180, 180, 0], 26), ("v8", [45, 135, 315, 225], 28)]
 )
 def test_engines_of_the_gallery_have_their_crankshaft(http, example, pins, journal):
-    document = GALLERY[example].document
+    document = bearings_of(GALLERY[example].document)
     saved = created(http, {**document, "variants": {}})
     assert saved["state"] == "current", saved
     shaft = revision(http, saved)["models"]["crankshaft"]
@@ -145,7 +145,8 @@ def test_engines_of_the_gallery_have_their_crankshaft(http, example, pins, journ
 
 
 def test_all_thirteen_bearings_of_the_v8_are_variants(http):
-    document = {name: value for name, value in GALLERY["v8"].document.items() if name != "models"}
+    whole = bearings_of(GALLERY["v8"].document)
+    document = {name: value for name, value in whole.items() if name != "models"}
     table = http.get(f"{API}/designs/{created(http, document)['id']}/variants").json()
     assert len(table["variants"]) == 13, table
     assert table["governing"]["criterion"].startswith("film."), table["governing"]

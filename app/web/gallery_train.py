@@ -1,0 +1,166 @@
+"""Torsion and life of the gallery's engines: the train of inertias, and the crank throw beside the flywheel.
+
+Stiffness of the throws follows from their dimensions by `crank_stiffness` 2, their inertia from the solid and
+from the masses on their pins. Nose, flywheel, clutch and damper are our own numbers, of usual size for such
+an engine. The stress tensors of unit loads are by finite elements (`gallery_fillets`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from pydantic import JsonValue
+
+from app.web.gallery_fillets import Tensors
+
+THROWS = 4
+FIRST = 3  # number of the inertia of throw 1, behind the damper's ring and its hub
+_SHAFTS = THROWS + 3
+_MASS_ON_PIN = (
+    "engine.rod_mass * (1 - engine.rod_centre / engine.rod_length)"
+    " + (engine.piston_mass + engine.rod_mass * engine.rod_centre / engine.rod_length) / 2"
+)
+
+
+@dataclass(frozen=True)
+class Train:
+    """What an engine has of its own."""
+
+    bank: str  # of cylinder 1 [a relation]
+    per_throw: int  # cylinders on each pin
+    ring: str  # inertia of the damper's ring
+    flywheel: str  # inertia
+    tensors: Tensors  # at the fillets of a throw
+
+    def on(self, throw: int) -> Sequence[int]:
+        """The cylinders on a throw, counted from 1."""
+        return [self.per_throw * (throw - 1) + n + 1 for n in range(self.per_throw)]
+
+
+def parameters(train: Train) -> dict[str, JsonValue]:
+    """What the two steps have in common: torque of cylinder 1, loads of the throws, twisting moments."""
+    last = THROWS
+    torques = {f"torque_{k}": _torque(train, k) for k in range(1, last)}
+    front = " + ".join(torques)
+    return {
+        "damping": "6 N*m*s/rad",
+        "radius": "= engine.stroke / 2",
+        "throw_inertia": f"= crankshaft.polar_inertia / {THROWS} + {train.per_throw} * ({_MASS_ON_PIN})"
+        " * radius**2",
+        "turn": "= engine.crank_angle + engine.crankpin_angles[1]",
+        "swing": f"= turn - {train.bank}",
+        "lean": "= radius / engine.rod_length * sin(swing)",
+        "gas_torque": "= (engine.gas_pressure[1] - engine.crankcase_pressure) * pi / 4 * engine.bore**2"
+        " * radius * (sin(swing) + cos(swing) * lean / sqrt(1 - lean**2))",
+        "inertia_torque": "= radius * (engine.crankpin_load_y[1] * cos(turn)"
+        " - engine.crankpin_load_x[1] * sin(turn)) - gas_torque",
+        **torques,
+        "front_torque": f"= {front}",
+        "torque_swing": f"= torsion.largest_torque[{FIRST + last - 2}]"
+        " / ((max(front_torque) - min(front_torque)) / 2)",
+        "pin_turn": f"= engine.crank_angle + engine.crankpin_angles[{train.on(last)[0]}]",
+        "pin_x": f"= {_load('x', train.on(last))}",
+        "pin_y": f"= {_load('y', train.on(last))}",
+    }
+
+
+def _load(axis: str, cylinders: Sequence[int]) -> str:
+    """Load of the rods on a pin."""
+    return " + ".join(f"engine.crankpin_load_{axis}[{n}]" for n in cylinders)
+
+
+def _torque(train: Train, throw: int) -> str:
+    """Torque of the rods on a pin about the shaft, over the cycle."""
+    cylinders = train.on(throw)
+    angle = f"engine.crank_angle + engine.crankpin_angles[{cylinders[0]}]"
+    x, y = _load("x", cylinders), _load("y", cylinders)
+    return f"= radius * (({y}) * cos({angle}) - ({x}) * sin({angle}))"
+
+
+def steps(train: Train) -> dict[str, JsonValue]:
+    """Stiffness of a throw, forced torsion of the train, life of the throw beside the flywheel."""
+    return {"throw": _stiffness(), "torsion": _torsion(train), "life": _life(train)}
+
+
+def _stiffness() -> dict[str, JsonValue]:
+    return {
+        "template": "crank_stiffness",
+        "version": 2,
+        "inputs": {
+            "journal_length": "= engine.main_positions[2] - engine.main_positions[1] - engine.crankpin_length"
+            " - 2 * engine.web_thickness",
+            "journal_diameter": "= engine.journal_diameter",
+            "pin_length": "= engine.crankpin_length",
+            "pin_diameter": "= engine.crankpin_diameter",
+            "web_thickness": "= engine.web_thickness",
+            "web_width": "= engine.web_width",
+            "throw": "= engine.stroke / 2",
+            "shear_modulus": "81 GPa",
+        },
+        "outputs": ["recommended_stiffness", "recommended", "reason"],
+    }
+
+
+def _torsion(train: Train) -> dict[str, JsonValue]:
+    throws: list[JsonValue] = ["= throw.recommended_stiffness"] * (THROWS - 1)
+    still: list[JsonValue] = ["0 N*m*s/rad"] * (_SHAFTS - 2)
+    section = "= pi / 16 * engine.crankpin_diameter**3"
+    cylinders: list[JsonValue] = [FIRST + k - 1 for k in range(1, THROWS + 1) for _ in train.on(k)]
+    return {
+        "template": "forced_torsion",
+        "version": 1,
+        "inputs": {
+            "inertias": [
+                train.ring, "0.008 kg*m**2", *["= throw_inertia"] * THROWS, train.flywheel, "0.05 kg*m**2",
+            ],
+            "shaft_from": list(range(1, _SHAFTS + 1)),
+            "shaft_to": list(range(2, _SHAFTS + 2)),
+            "shaft_stiffness": [
+                "0 kN*m/rad", "300 kN*m/rad", *throws, "= 2 * throw.recommended_stiffness", "1 kN*m/rad",
+            ],
+            "shaft_damping": ["= damping", *still, "2 N*m*s/rad"],
+            "loss_factors": [0, *[0.005] * (_SHAFTS - 2), 0.1],
+            "section_moduli": ["0 cm**3", *[section] * (_SHAFTS - 2), "0 cm**3"],
+            "absolute_damping": {"value": [0, 0, *[0.3] * THROWS, 0, 0.5], "unit": "N*m*s/rad"},
+            "excited_inertias": cylinders,
+            "firing_angles": "= engine.ignition_angles",
+            "crank_angle": "= engine.crank_angle",
+            "gas_torque": "= gas_torque",
+            "inertia_torque": "= inertia_torque",
+            "inertia_speed": "= engine.speed",
+            "highest_order": 12,
+            "speeds": {"value": list(range(1000, 6001, 100)), "unit": "rpm"},
+        },
+        "limits": {"permissible_vibratory_stress": "60 MPa", "permissible_shaft_heat": "800 W"},
+        "outputs": [
+            "natural_frequencies", "engine_orders", "mode_shapes", "torque_envelope", "stress_envelope",
+            "largest_torque", "largest_stress", "worst_speed", "worst_order", "largest_shaft_heat",
+            "power_balance_error",
+        ],
+    }  # fmt: skip
+
+
+def _life(train: Train) -> dict[str, JsonValue]:
+    return {
+        "template": "fatigue_life",
+        "version": 2,
+        "inputs": {
+            "force_1": "= pin_x * cos(pin_turn) + pin_y * sin(pin_turn)",
+            "force_2": "= pin_y * cos(pin_turn) - pin_x * sin(pin_turn)",
+            "moment_1": "= mean(front_torque) + (front_torque - mean(front_torque)) * torque_swing",
+            "stress_of_force_1": {"value": train.tensors.force_1, "unit": "MPa/kN"},
+            "stress_of_force_2": {"value": train.tensors.force_2, "unit": "MPa/kN"},
+            "stress_of_moment_1": {"value": train.tensors.moment_1, "unit": "MPa/(kN*m)"},
+            "ultimate_strength": "850 MPa",
+            "yield_strength": "600 MPa",
+            "surface": "ground",
+            "diameter": "= engine.crankpin_diameter",
+            "reliability": 0.99,
+        },
+        "limits": {"required_safety_factor": 1.3, "required_cycles": 1e9},
+        "outputs": [
+            "safety_factor", "damage", "life", "governing_point", "endurance_limit", "equivalent_amplitude",
+            "greatest_von_mises",
+        ],
+    }  # fmt: skip

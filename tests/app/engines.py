@@ -1,0 +1,17 @@
+"""The gallery's engines for tests that ask for a part of them."""
+
+from app.web.gallery_engine import FOUR
+
+
+def four_cylinders(**inputs):
+    """A step with the loads of the four-cylinder engine, its places as numbers; its bore is a parameter."""
+    return {"template": "engine", "version": 2, "inputs": {**FOUR, **inputs}}
+
+
+def bearings_of(document):
+    """An engine's loads, films, shells and crankshaft, without torsion and life."""
+    return {
+        **document,
+        "parameters": {name: document["parameters"][name] for name in ("bore", "pitch", "bearing")},
+        "steps": {name: document["steps"][name] for name in ("engine", "film")},
+    }

@@ -1,0 +1,135 @@
+"""Engines of the gallery, whole: from the bore of their cylinders to verdicts on film, torsion and life."""
+
+import json
+import os
+import sys
+import time
+from functools import cache
+
+import numpy as np
+import pytest
+from patience import until
+from serving import API, revision
+
+from app.designs.calculate import calculate
+from app.designs.document import Document
+from app.designs.graph import Catalogues, build_graph
+from app.designs.judging import judged
+from app.designs.service import resolved
+from app.reference import Reference
+from app.web.gallery import GALLERY
+from cad.catalogue import models
+from templates.door import built_in
+
+ENGINES = {"engine": 9, "v8": 13}  # with how many bearings
+VERDICTS = {
+    "engine.main_load", "engine.crankpin_load", "film.film", "torsion.stress", "torsion.heat", "life.safety",
+    "life.life", "life.strength",
+}  # fmt: skip
+IGNITION, TORQUE = Reference.parse("engine.ignition_angles"), Reference.parse("engine.torque")
+SHAFT = {"mass": 15.0, "polar_inertia": 0.03}  # kg, kg m²: stands in for the solid
+
+
+@cache
+def calculated(name, bore="86 mm"):
+    """An engine calculated without a server and without geometry."""
+    document = GALLERY[name].document
+    raw = {**document, "parameters": {**document["parameters"], "bore": bore}, "variants": {}}
+    catalogues = Catalogues(built_in(), models())
+    graph, faults = build_graph(resolved(Document.model_validate(raw), catalogues), catalogues)
+    assert not faults
+    result = calculate(graph, lambda shape: SHAFT, lambda *question: None)
+    assert not result.faults
+    return result
+
+
+def output(result, step, name):
+    return np.asarray(result.evaluations[step].outputs[name].value, dtype=float)
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_every_step_has_its_verdicts(name):
+    result = calculated(name)
+    found = {one.name: one.verdict for one in judged(result) if one.verdict != "not_checked"}
+    assert found.keys() >= VERDICTS
+    assert output(result, "torsion", "power_balance_error") < 1e-8
+    assert found["life.safety"] == ("met" if output(result, "life", "safety_factor") >= 1.3 else "not_met")
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_the_torques_of_all_throws_are_that_of_the_engine(name):
+    """Two ways to the engine's torque: cylinder 1 repeated where each fires, and the throws' own loads."""
+    result = calculated(name)
+    values = result.values
+    one = values["gas_torque"] + values["inertia_torque"]
+    fires = np.rint(result.value(IGNITION) * one.size / (4 * np.pi)).astype(int)
+    each = [np.roll(one, shift - fires[0]) for shift in fires]
+    torque = result.value(TORQUE)
+    assert sum(each) == pytest.approx(torque, abs=1e-9 * np.abs(torque).max())
+    per_throw = len(each) // 4
+    assert values["front_torque"] == pytest.approx(sum(each[:-per_throw]), abs=1e-9 * np.abs(torque).max())
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_the_moment_swings_as_forced_torsion_says(name):
+    result = calculated(name)
+    moment = result.values["life.moment_1"]
+    swing = (moment.max() - moment.min()) / 2
+    assert swing == pytest.approx(output(result, "torsion", "largest_torque")[4], rel=1e-9)
+    assert moment.mean() == pytest.approx(result.values["front_torque"].mean(), rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_a_wider_bore_loads_the_crank_more(name):
+    narrow, wide = (calculated(name, bore) for bore in ("86 mm", "90 mm"))
+    for step, measure in (("engine", "crankpin_load_max"), ("torsion", "largest_stress")):
+        assert output(wide, step, measure).max() > 1.02 * output(narrow, step, measure).max()
+    assert output(wide, "life", "safety_factor") < output(narrow, "life", "safety_factor")
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_an_engine_is_a_document_that_its_reader_can_send(name):
+    document = GALLERY[name].document
+    assert json.loads(json.dumps(document)) == document
+    assert len(document["variants"]) == ENGINES[name]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ENGINES)
+def test_another_bore_brings_a_new_step_file_and_all_verdicts(http, name):
+    """Every bearing and the shaft again: a wider bore raises the loads and makes the engine longer."""
+    answer = http.post(f"{API}/designs", json=GALLERY[name].document)
+    assert answer.status_code in (201, 202), answer.text
+    address = f"{API}/designs/{answer.json()['id']}"
+    design = current(http, address)
+    before, began, used = revision(http, design), time.monotonic(), _used()
+    change = {"parameters": {"bore": "88 mm"}}
+    answer = http.patch(address, json=change, headers={"If-Match": f'"{design["revision"]}"'})
+    assert answer.status_code in (200, 202), answer.text
+    changed = current(http, address)
+    sys.stdout.write(f"{name}: {time.monotonic() - began:.1f} s, {_used() - used:.1f} s of processor time\n")
+    after = revision(http, changed)
+    assert after["models"]["crankshaft"]["build"] != before["models"]["crankshaft"]["build"]
+    step = http.get(f"{address}/models/crankshaft/model.step")
+    assert step.content.startswith(b"ISO-10303-21;")
+    verdicts = {one["name"]: one["verdict"] for one in after["criteria"] if one["verdict"] != "not_checked"}
+    assert verdicts.keys() >= VERDICTS
+    inertia = after["steps"]["torsion"]["inputs"]["inertias"]["value"]
+    assert inertia[2] > before["steps"]["torsion"]["inputs"]["inertias"]["value"][2]
+    table = http.get(f"{address}/variants").json()
+    assert len(table["variants"]) == ENGINES[name]
+    assert table["governing"], table
+    assert "failed" not in json.dumps(table["variants"])
+
+
+def _used():
+    """Processor time of this process and of those of its children that have ended [s]."""
+    times = os.times()
+    return sum(times[:4])
+
+
+def current(http, address):
+    """The design once it is calculated."""
+    design = until(lambda: http.get(address).json(), lambda now: now["state"] != "regenerating", 180)
+    assert design["state"] == "current", design
+    return design
