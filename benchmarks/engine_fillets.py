@@ -4,7 +4,8 @@
 
 One throw of each engine, without drilling and counterweight. Of the points that `unit_loads` finds, 96 of
 them, the file keeps the POINTS that bear the largest share of their endurance limit under the engine's own
-loads, with the torque's swing as large as torsion makes it; the others cannot govern unless the loads change in kind. Numbers have four digits.
+loads, with the torque's swing as large as torsion makes it; the others cannot govern unless the loads change
+in kind. Numbers have four digits.
 """
 
 from pathlib import Path
