@@ -16,15 +16,15 @@ _SAME = 0.05  # deg, pins nearer than this are drawn as one
 
 def rays(angles: Sequence[float]) -> list[tuple[float, list[int]]]:
     """Angles of pins [deg] from 0 up to 360, and which cylinders, counted from 1, are at each."""
-    found: list[tuple[float, list[int]]] = []
+    star: list[tuple[float, list[int]]] = []
     for cylinder, angle in enumerate(angles, 1):
-        for at, cylinders in found:
+        for at, cylinders in star:
             if abs((angle - at + 180) % 360 - 180) < _SAME:
                 cylinders.append(cylinder)
                 break
         else:
-            found.append((angle % 360, [cylinder]))
-    return found
+            star.append((angle % 360, [cylinder]))
+    return star
 
 
 def throw_star(angles: Sequence[float]) -> str:
