@@ -30,7 +30,7 @@ _data = click.option(
 
 @click.group("audit")
 def audit_command() -> None:
-    """Who did what: list the rows, verify the chain that they are sealed in."""
+    """List who did what; verify the chain in which these rows are sealed."""
 
 
 @audit_command.command("list")

@@ -40,7 +40,7 @@ data_option = click.option(
 
 @click.group("keys")
 def keys_command() -> None:
-    """Who may use the service: add, list, revoke, disable, enable. The first key makes it ask for keys."""
+    """Manage access: add, list, revoke, disable, enable keys. With the first, the service asks for keys."""
 
 
 @keys_command.command("add")

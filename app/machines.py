@@ -1,4 +1,4 @@
-"""Where jobs may run by CRANKWRIGHT_ENGINE, on this machine or on those of a Dask scheduler; where traces go.
+"""Choose by CRANKWRIGHT_ENGINE where jobs run: this machine or those of a Dask scheduler; export traces.
 
 What Dask sends is pickle, so whoever can connect can run code: beyond this machine, TLS proves who connects.
 """
@@ -47,7 +47,7 @@ def check_engine(engine: str) -> str:
 
 
 def is_installed() -> bool:
-    """Whether there is Dask."""
+    """Whether Dask is installed."""
     return find_spec("distributed") is not None
 
 
@@ -74,7 +74,7 @@ def check_collector(url: str | None) -> str | None:
 
 
 def has_traces() -> bool:
-    """Whether there is OpenTelemetry with its exporter."""
+    """Whether OpenTelemetry and its exporter are installed."""
     try:
         return find_spec("opentelemetry.sdk") is not None and find_spec(EXPORTER) is not None
     except ModuleNotFoundError:  # of a package above the exporter

@@ -24,7 +24,7 @@ class SettableCommands(click.Group):
 
 
 def _wrong_settings(error: ValueError) -> str:
-    """What is wrong with the settings; empty for another error."""
+    """A sentence on wrong settings; empty for another error."""
     # Pydantic is imported here: a command without settings, such as `--version`, does without it.
     from pydantic import ValidationError
     from pydantic_settings import SettingsError

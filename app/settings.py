@@ -1,4 +1,4 @@
-"""What an operator may set: environment variables that begin with CRANKWRIGHT_, such as CRANKWRIGHT_PORT."""
+"""Settings of the operator: environment variables that begin with CRANKWRIGHT_, such as CRANKWRIGHT_PORT."""
 
 from pathlib import Path
 from typing import Annotated, Literal

@@ -96,7 +96,7 @@ def _pair(text: str) -> tuple[str, Raw]:
 
 @click.group("template")
 def template_command() -> None:
-    """What templates there are."""
+    """List the templates."""
 
 
 @template_command.command("list", cls=CatalogueCommand)

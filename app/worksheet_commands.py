@@ -217,7 +217,7 @@ def _say(sheet: Sheet) -> None:
 
 
 def _doubt(sheet: Sheet | SheetSummary, sign: str) -> str:
-    """That nobody proved the name of the reviewer, where that is so."""
+    """A remark that nobody proved the name of the reviewer, where that is so."""
     return "" if sheet.review_verified else f"{sign}review not verified"
 
 

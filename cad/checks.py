@@ -1,4 +1,4 @@
-"""Whether a finished solid is the one requested: OpenCASCADE calls wrong solids valid, these do not."""
+"""Check that a finished solid is the one requested: OpenCASCADE calls wrong solids valid."""
 
 from __future__ import annotations
 

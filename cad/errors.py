@@ -1,4 +1,4 @@
-"""What can go wrong with a shape after its parameters have passed their checks.
+"""Errors of a shape whose parameters have passed their checks.
 
 Wrong parameters are refused earlier, as `templates.core.errors.InvalidInputs`.
 """

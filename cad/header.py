@@ -23,7 +23,7 @@ _TITLE = re.compile(r"Crankwright ([a-z][a-z0-9_]{0,63}) version ([1-9][0-9]{0,8
 
 @dataclass(frozen=True)
 class Header:
-    """What a STEP file of ours says of itself; parameters as text, such as `{"inner_diameter": "50 mm"}`."""
+    """The header of a STEP file of ours; parameters as text, such as `{"inner_diameter": "50 mm"}`."""
 
     model: str
     version: int
@@ -53,7 +53,7 @@ def write_header(header: Header, schema: str, kernel: str) -> str:
 
 
 def read_header(step: bytes) -> Header | None:
-    """What a STEP file says of itself, or None if it is not one of ours."""
+    """Read the header of a STEP file, or None if it is not one of ours."""
     strings = [plain(string) for string in description(step[:LONGEST_HEADER].decode("latin-1"))]
     title = _TITLE.fullmatch(strings[0]) if strings else None
     pairs = _joined(strings[1:])

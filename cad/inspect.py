@@ -1,4 +1,4 @@
-"""What a finished STEP file measures: the same bytes that a user gets are read again, and measured there.
+"""Measure a finished STEP file: the same bytes that a user gets are read again, and measured there.
 
 Nothing here trusts the shape that was built. A part that stands at several places is measured once.
 """
@@ -125,7 +125,7 @@ def _stand(one: Measured, place: Location, density: float) -> tuple[float, Array
 
 
 def _steiner(mass: float, arm: Array) -> Array:
-    """What a mass at the end of an arm adds to the inertia (parallel axes)."""
+    """The inertia that a mass at the end of an arm adds (parallel axes)."""
     return mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
 
 

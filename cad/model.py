@@ -128,7 +128,7 @@ class CadModel(Template):
         raise NotImplementedError
 
     def shaft(self) -> Shaft | None:
-        """Where the solid is held and loaded when it is analysed; None if it is not a shaft."""
+        """The places at which an analysis holds and loads the solid; None if it is not a shaft."""
         return None
 
     @classmethod
@@ -165,7 +165,7 @@ class CadModel(Template):
 
 
 def arrays_of_points(model: CadModel) -> list[Fault]:
-    """What is wrong with a model as one solid: arrays of points, which only the language takes."""
+    """The faults of a model as one solid: arrays of points, which only the language takes."""
     values, faults = vars(model), []
     for name, declared in model.inputs.items():
         takes_list = isinstance(declared, Curve)

@@ -1,4 +1,4 @@
-"""What a design's file is called: `{design}_{model}_r{revision}`, in ASCII and in its user's letters."""
+"""Names of a design's files: `{design}_{model}_r{revision}`, in ASCII and in its user's letters."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ MADE_BY = f"{KERNEL}, recipe {RECIPE}"
 
 
 def made_by(cls: type[CadModel]) -> str:
-    """What a build's key holds beside model and parameters, for people; of a team's model its code too."""
+    """The part of a build's key beside model and parameters, for people; of a team's model its code too."""
     return ", code ".join([MADE_BY, *(code[:12] for code in _code(cls))])
 
 

@@ -1,4 +1,4 @@
-"""What an analysis has to know of a solid beside its shape: its material, and how it is held and loaded.
+"""The data of a solid that an analysis needs beside its shape: its material, and how it is held and loaded.
 
 It needs no kernel, so that finite elements, which bring one of their own, are not loaded with two.
 """
@@ -33,7 +33,7 @@ class Shaft:
 
 @dataclass(frozen=True)
 class PinPlace:
-    """Where the pin of a throw is [mm]: its axis at (throw, 0), its middle at z = 0."""
+    """Place of the pin of a throw [mm]: its axis at (throw, 0), its middle at z = 0."""
 
     throw: float
     radius: float

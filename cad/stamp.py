@@ -1,4 +1,4 @@
-"""What a downloaded file says of the design that it belongs to: a stamp on a STEP file or a drawing.
+"""The stamp on a downloaded STEP file or drawing, which names the design that it belongs to.
 
 A build is shared by all designs of equal parameters, so its files name none. A stamp is written into a copy
 when it is downloaded: into the names of products and the time of a STEP file, into the title block of a
@@ -34,7 +34,7 @@ _SVG_LINE = re.compile(r'(<text data-stamp="([a-z]+)"[^>]*>)[^<]*')
 
 @dataclass(frozen=True)
 class Stamp:
-    """Whose file it is; `model` is its name in the design, `date` when the revision was made (ISO 8601).
+    """Owner of a file; `model` is its name in the design, `date` when the revision was made (ISO 8601).
 
     `materials` are those of the parts by name, empty where they are not known. A file of a variant is named
     after that, and after the model only where the design has several (`is_only` is false).
@@ -50,7 +50,7 @@ class Stamp:
 
     @property
     def called(self) -> str:
-        """What the model is called in names of files."""
+        """The name of the model in names of files."""
         if self.variant is None:
             return self.model
         return self.variant if self.is_only else f"{self.variant}_{self.model}"

@@ -1,4 +1,4 @@
-"""What a finished solid shows of itself: planes, cylinders, spheres, tori; dimensions are read from them."""
+"""Surfaces of a finished solid: planes, cylinders, spheres, tori; dimensions are read from them."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Seen:
     tori: tuple[float, ...] = ()  # radii of their tubes [mm]
 
     def levels(self, axis: Vector) -> list[float]:
-        """Where planes cross the axis at a right angle [mm], ascending."""
+        """The coordinates [mm] at which planes cross the axis at a right angle, ascending."""
         return _distinct(plane.point.dot(axis) for plane in self.planes if plane.along(axis))
 
     def length(self, axis: Vector) -> float:

@@ -14,7 +14,7 @@ Member = tuple[str, Callable[[], bytes]]
 
 
 class _Sink:
-    """What a ZIP is written to; it is emptied after every file."""
+    """The stream to which a ZIP is written; it is emptied after every file."""
 
     def __init__(self) -> None:
         self._parts: list[bytes] = []
@@ -28,7 +28,7 @@ class _Sink:
         """There is nothing to flush."""
 
     def taken(self) -> bytes:
-        """What was written since the last time."""
+        """Return the bytes written since the last call, and empty the stream."""
         whole, self._parts = b"".join(self._parts), []
         return whole
 

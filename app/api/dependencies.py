@@ -101,7 +101,7 @@ async def get_once(
         str | None, Header(min_length=1, max_length=200, description="the same key, the same change: once")
     ] = None,
 ) -> Once:
-    """How to recognise a repeated request."""
+    """The service that recognises a repeated request."""
     return Once(idempotency_key, f"{request.method} {request.url.path}", await fingerprint(request), client)
 
 

@@ -94,7 +94,7 @@ def _declare_preconditions(method: str, operation: dict[str, Any]) -> None:
 
 
 def _declare_problems(operation: dict[str, Any]) -> None:
-    """What every operation refuses that takes a body or a parameter, or works with stored rows."""
+    """Declare the refusals of every operation that takes a body or a parameter, or uses stored rows."""
     if "requestBody" in operation:
         _refused(operation, 408, 413, 415, 422)
     if operation.get("parameters"):

@@ -40,7 +40,7 @@ class Readiness:
         self._kept: tuple[float, dict[str, str | None]] | None = None
 
     async def failures(self) -> dict[str, str | None]:
-        """What is wrong, by check; None where nothing is."""
+        """The state of each check: what is wrong, or None where nothing is."""
         async with self._lock:
             if self._kept is None or time.monotonic() - self._kept[0] > KEPT:
                 said = await asyncio.gather(*(check() for check in self._checks.values()))
@@ -123,7 +123,7 @@ class Answering(Protocol):
     """Has processes that may be alive or not."""
 
     def answers(self) -> bool:
-        """Whether one is; see `Worker.answers`."""
+        """Whether a worker answers; see `Worker.answers`."""
         ...
 
 

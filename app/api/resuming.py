@@ -41,7 +41,7 @@ Still = Callable[[], Awaitable[bool]]
 
 
 async def always() -> bool:
-    """Where nothing asks for a key."""
+    """Where nothing asks for a key: the stream may always go on."""
     return True
 
 
@@ -68,7 +68,7 @@ def identity(number: int | None) -> str | None:
 
 @dataclass(frozen=True)
 class Whole:
-    """What a stream shows whole at every event, as it stands after the event of a number."""
+    """The whole content that a stream shows at every event, and the number of that event."""
 
     number: int
     state: str
@@ -77,14 +77,14 @@ class Whole:
 
     @property
     def event(self) -> ServerSentEvent:
-        """As it is sent."""
+        """The content as an event to be sent."""
         return ServerSentEvent(id=identity(self.number), event=self.state, data=self.data)
 
 
 async def as_it_stands(
     events: Subscription, still: Still, read: Callable[[], Whole], last: int | None, **more: str
 ) -> AsyncIterator[ServerSentEvent]:
-    """What is read, whenever it has changed, and its progress with `more`, until it has ended.
+    """Yield the content whenever it has changed, and its progress with `more`, until it has ended.
 
     A client that has got how it stands now hears only of what comes.
     """

@@ -1,4 +1,4 @@
-"""All that the routes use, made once in `app.assembly` and kept in `app.state.services`."""
+"""The services that the routes use, created once in `app.assembly` and kept in `app.state.services`."""
 
 from __future__ import annotations
 

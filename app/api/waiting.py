@@ -20,7 +20,7 @@ LATER: Responses = {
 
 
 def later(answer: type[Answer]) -> Responses:
-    """What a route says of its answers whose 202 holds as much of the answer as there is."""
+    """Describe an answer whose 202 holds as much of the result as there is."""
     described = "the answer as far as it goes: the work goes on, and its job is in the header Location"
     return {202: {"description": described, "model": answer}}
 

@@ -1,4 +1,4 @@
-"""What a signature covers: document, results and files of a revision, who signs and when, the step before."""
+"""The content that a signature covers: document, results, files, signer, time, and the step before."""
 
 from __future__ import annotations
 

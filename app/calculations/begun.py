@@ -62,5 +62,5 @@ def fingerprint(inputs: Mapping[str, Raw]) -> bytes:
 
 
 def _plain(value: object) -> object:
-    """What JSON does not know: a quantity that was read already is what its user typed."""
+    """A value as JSON; a quantity that was read already becomes the text that its user typed."""
     return [value.value, value.unit, value.extra] if isinstance(value, Typed) else repr(value)

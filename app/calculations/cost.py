@@ -1,4 +1,4 @@
-"""How long a calculation will take, from what the levels were measured to cost and from the points asked for.
+"""Estimate how long a calculation will take, from measured costs of the levels and the number of points.
 
 An order of magnitude, known before anything is calculated, and rather too high than too low: what is
 expensive leaves the server's process (see `app.calculations.pool`). `benchmarks/service_flood.py` holds the

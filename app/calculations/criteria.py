@@ -26,7 +26,7 @@ def rendered(ordered: Sequence[Judgement]) -> JsonObject:
 
 
 def criterion(judgement: Judgement) -> JsonObject:
-    """One criterion; what does not apply is left out."""
+    """One criterion as JSON, without the members that do not apply."""
     unit, value, limit, margin = judgement.unit, judgement.value, judgement.limit, judgement.margin
     parts = {
         "value": None if value is None else _quantity(value, unit),

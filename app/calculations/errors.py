@@ -18,7 +18,7 @@ from app.jobs.errors import QueueFull
 
 
 class TooManyCalculations(QueueFull):
-    """As many calculations wait as may; it may be worth another try after some time [s]."""
+    """The queue of calculations is full; the client may try again after some time [s]."""
 
     def __str__(self) -> str:
         return f"Too many calculations are waiting. Try again in {self.retry_after} s."
@@ -56,5 +56,5 @@ class InvalidBody(Exception):
         return cls([{**entry, "ctx": {"error": reason}}])
 
     def errors(self) -> list[ErrorDetails]:
-        """What is wrong, one by one."""
+        """The faults, one by one."""
         return self._listed

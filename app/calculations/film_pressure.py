@@ -29,7 +29,7 @@ TYPICAL: JsonObject = {
 
 
 class Film(Template):
-    """What the pressure of a film follows from."""
+    """The inputs that determine the pressure of a film."""
 
     example = TYPICAL
 

@@ -162,5 +162,5 @@ class CalculationJobs:
 
 
 def place_of_answer(job: str, sha: str) -> str:
-    """Where the answer of a job is read."""
+    """The address at which the answer of a job is read."""
     return f"/api/v1/evaluations/{job}?sha256={sha}"

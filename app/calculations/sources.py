@@ -1,4 +1,4 @@
-"""Where a process finds a template: the file, or the worksheet, that declares it, as the server read it."""
+"""How a process finds a template: by the file, or the worksheet, that declares it, as the server read it."""
 
 from __future__ import annotations
 

@@ -43,12 +43,12 @@ class Turns:
 
 
 def first(waiting: Collection[W], running: Counter[str]) -> W | None:
-    """Who comes next: the lowest turn, of equal ones that of whom fewest run, of these who came first."""
+    """The next to run: the lowest turn; of equal ones, the client that runs fewest; of those, the first."""
     return min(waiting, key=lambda w: (w.turn, running[w.client]), default=None)
 
 
 def last_of_the_greediest(waiting: Collection[W], newcomer: str) -> W | None:
-    """Who gives way to a newcomer: the latest of the client that has most waiting, if that is more.
+    """The one that gives way to a newcomer: the latest of the client that has most waiting, if that is more.
 
     None if the newcomer itself has as many waiting, with this one, as anybody.
     """

@@ -1,4 +1,4 @@
-"""What calculation processes are forked from: importing this module calculates every template's example once.
+"""The module from which calculation processes are forked: it calculates every template's example once.
 
 Tables are read and formulas compiled at first use; processes forked after that share them. Nothing else may
 import it.

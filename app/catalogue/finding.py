@@ -1,4 +1,4 @@
-"""Which templates there are: the built-in ones, and those in a team's own folders beside its models."""
+"""Find templates: the built-in ones, and those in a team's own folders beside its models."""
 
 from __future__ import annotations
 

@@ -95,7 +95,7 @@ class TeamFiles:
         return list(self._files.values())
 
     def _current(self, folder: Path, signature: Signature, path: Path) -> TeamFile:
-        """What is known of a file, if its content is the same; else it is checked and loaded."""
+        """The stored result for a file if its content is unchanged; else check and load it."""
         cached = self._files.get(path)
         if cached is not None and cached.signature == signature:
             return cached

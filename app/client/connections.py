@@ -35,7 +35,7 @@ class _Message(TypedDict):
 
 
 class _Connection:
-    """Where a client connects to, and under which name."""
+    """Address and name with which a client connects."""
 
     def __init__(
         self, url: str, *, timeout: float = 60.0, name: str | None = None, key: str | None = None

@@ -45,7 +45,7 @@ from app.schemas.networks import DesignNetwork
 
 
 class Wanted(TypedDict, total=False):
-    """Which designs are listed."""
+    """The filter of a list of designs."""
 
     name: str
     state: State
@@ -171,7 +171,7 @@ def auto_map(id: str) -> Exchange[list[Proposal]]:
 
 
 def explain(id: str, name: str, *, units: System = "si") -> Exchange[Explanation]:
-    """Where a model parameter, such as `model.inner_diameter`, or the verdict of a criterion comes from.
+    """Explain where a model parameter, such as `model.inner_diameter`, or a criterion's verdict comes from.
 
     The quantities of the answer are in `units`, "si" or "us".
     """

@@ -68,7 +68,7 @@ Values = Mapping[str, object]
 
 
 class SolveOptions(TypedDict, total=False):
-    """How a template is evaluated at a solution."""
+    """Options of `solve`: how a template is evaluated at a solution."""
 
     outputs: list[str]
     level: str
@@ -78,13 +78,13 @@ class SolveOptions(TypedDict, total=False):
 
 
 class Options(SolveOptions, total=False):
-    """How a template is evaluated."""
+    """Options of `evaluate`: level, tolerance and the like."""
 
     per_point: bool
 
 
 class AnalysisOptions(TypedDict, total=False):
-    """How a solid is analysed."""
+    """Options of the analysis of a solid."""
 
     boundary: str
     level: str

@@ -112,7 +112,7 @@ def ended(id: str) -> Exchange[Study | None]:
 
 
 def filters(columns: Sequence[str] | None, where: Where | None, sort: str | None) -> list[tuple[str, str]]:
-    """Which rows and columns, as a query."""
+    """The chosen rows and columns as parameters of a query."""
     given = {"columns": ",".join(columns) if columns else None, "where": where, "sort": sort}
     return [(name, value) for name, value in given.items() if value is not None]
 

@@ -42,7 +42,7 @@ def worksheet_text(id: str, version: int | None = None) -> Exchange[str]:
 
 
 def check_worksheet(text: str, id: str | None = None) -> Exchange[SheetCheck]:
-    """Everything that is wrong with a text, or every line on paper with the example's numbers."""
+    """Check a text: return all that is wrong with it, or every line on paper with the example's numbers."""
     return answered(SheetCheck, post(f"{_PATH}/check", {"text": text, **({"id": id} if id else {})}))
 
 

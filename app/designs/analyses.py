@@ -58,7 +58,7 @@ def questions(name: str, model: Model, cls: type[CadModel]) -> tuple[dict[str, Q
 
 
 def remedy(reference: Reference, models: Mapping[str, Mapping[str, Question]]) -> str | None:
-    """What to do about an unknown name that means an analysis; None if it does not."""
+    """A sentence on how to correct an unknown name that means an analysis; None if it does not mean one."""
     model, kind, output = reference.block, reference.analysis, reference.output
     if model not in models or kind not in KINDS or not output:
         return None

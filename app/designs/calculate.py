@@ -86,7 +86,7 @@ def recalculated(
     again: Collection[str] = (),
     outputs: Mapping[str, tuple[str, ...]] | None = None,
 ) -> Calculation:
-    """What follows from outputs of steps if these have other values [SI]; solids stay as they are.
+    """Calculate again from given outputs of steps [SI]; solids stay as they are.
 
     Steps are calculated at the `levels` given by their names, so that no other level makes a difference.
     Those to calculate `again` are calculated whatever they follow from, and compute the `outputs` named.
@@ -314,7 +314,7 @@ def _solid(result: Calculation, model: Block, measured: Measured) -> None:
 
 
 def _analysis(result: Calculation, node: SolidAnalysis, model: Block, kind: str, analysed: Analysed) -> None:
-    """What is known of an analysis that somebody uses; it waits for its solid, and then for its job."""
+    """Take the results of an analysis that a relation uses; it waits for its solid, and then for its job."""
     wanted = result.graph.wanted(model.name, kind)
     if not wanted:
         return

@@ -67,7 +67,7 @@ class Calculation:
             return getattr(self.instance(reference.block), declared.attribute)  # type: ignore[no-any-return]
 
     def measure(self, reference: Reference) -> Value:
-        """What is measured or computed on a solid [SI], by its name in relations: `throw.torsion.stiffness`.
+        """A measure of a solid, or output of its analyses [SI], by its name: `throw.torsion.stiffness`.
 
         A number, or a table as an array [row, column].
 
@@ -85,7 +85,7 @@ class Calculation:
         return float(scale.to_si(float(computed)))
 
     def outputs(self, model: str, kind: str) -> Outputs:
-        """What is used and known of an analysis; nothing, while it is pending."""
+        """The outputs of an analysis that are used and calculated; empty while it is pending."""
         return self.analyses.get(model, {}).get(kind, {})
 
     def _computed(self, reference: Reference, kind: str) -> Json:

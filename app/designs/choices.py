@@ -50,7 +50,7 @@ class Choices:
         return relation.decided(words)
 
     def _choice(self, name: str) -> tuple[Choice, Raw]:
-        """What a choice declares, and what the document has for it."""
+        """The declaration of a choice, and its value in the document."""
         reference = Reference.parse(name)
         cls, values = self._block(name, reference.block)
         declared = cls.inputs.get(reference.member) if cls else None

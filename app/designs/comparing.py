@@ -1,4 +1,4 @@
-"""All that differs between two stored revisions, of one design or of two; nothing is calculated."""
+"""List all that differs between two stored revisions, of one design or of two; nothing is calculated."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Pair:
-    """Which revisions are compared; where a number is missing, a rule finds it."""
+    """The two revisions to compare; a rule chooses a revision where a number is missing."""
 
     design: str
     revision: int | None
@@ -73,7 +73,7 @@ def compare(session: Session, pair: Pair) -> Comparison:
 
 @dataclass(frozen=True)
 class _Parts:
-    """What a revision holds, by dotted names."""
+    """The parts of a revision by their dotted names."""
 
     parameters: dict[str, str]
     versions: dict[str, str]
@@ -176,7 +176,7 @@ def _verdicts(old: Mapping[str, VerdictOf], new: Mapping[str, VerdictOf]) -> lis
 
 
 def _measured(session: Session, row: RevisionRow) -> Iterator[tuple[str, Json]]:
-    """What was measured on the solids of a revision, where they are built."""
+    """Yield the measures of a revision's solids, where they are built."""
     for model in row.models:
         build = rows.build(session, model.build_key) if model.build_key else None
         if build is not None:

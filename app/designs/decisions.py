@@ -28,7 +28,7 @@ LONGEST_BUDGET = 600.0  # s
 
 @dataclass(frozen=True)
 class Asked:
-    """Which criteria of a design are to be decided (all, if None), and how long that may take [s].
+    """The criteria of a design to decide (all, if None), and the time that may take [s].
 
     The answer has its quantities in `units`.
     """
@@ -115,7 +115,7 @@ class Decisions(LongAnswers):
 
 
 def _pending(calculation: Calculation) -> deciding.Decision:
-    """What is known while the design itself is still calculated."""
+    """The answer while the design itself is still calculated."""
     judgements = sorted(Judging(calculation).all(), key=lambda judgement: judgement.name)
     return deciding.Decision(judgements, (), (), (), "pending")
 

@@ -131,5 +131,5 @@ def _meaning(network: Network, kinds: Mapping[str, Kind], name: str, reference: 
 
 
 def fault_of(name: str, error: FaultyText) -> Fault:
-    """What is wrong with a criterion, by its place in the document."""
+    """The fault of a criterion, by its place in the document."""
     return error.fault(f"criteria.{name}")

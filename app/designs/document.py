@@ -98,7 +98,7 @@ class Iteration(Bounded):
 
 
 class WrittenCriterion(Bounded):
-    """What a design demands, or what it says of a criterion of one of its templates."""
+    """A criterion of the design itself, or changes to a criterion of one of its templates."""
 
     model_config = _STRICT
 
@@ -115,7 +115,7 @@ class WrittenCriterion(Bounded):
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
-        """What is not said is not mentioned."""
+        """The document without members that are null or empty."""
         return _without_nothing(plain(self), *type(self).model_fields)
 
 
@@ -125,7 +125,7 @@ def _in_natural_order(variants: dict[str, dict[str, Raw]]) -> dict[str, dict[str
 
 
 class Document(Bounded):
-    """All that a revision keeps of its user's words."""
+    """The words of the user that a revision keeps."""
 
     model_config = _STRICT
 

@@ -70,7 +70,7 @@ def _relations(graph: Graph, columns: Columns) -> Iterator[NetworkRelation]:
 
 
 def _sources(cell: Cell) -> Mapping[str, Reference]:
-    """What a cell uses: quantities, and the choices that it tests."""
+    """The references of a cell: quantities, and the choices that it tests."""
     return {**cell.uses, **cell.tests}
 
 
@@ -108,7 +108,7 @@ def _name(name: str, role: Role, words: str, unit_text: str) -> NetworkName:
 
 
 def _words(measure: Reference) -> str:
-    """What a measure is called: `throw.torsion.stiffness` is the stiffness of the analysis torsion."""
+    """A measure in words: `throw.torsion.stiffness` is the stiffness of the analysis torsion."""
     origin = f"{measure.analysis} analysis" if measure.analysis else "measured"
     return f"{measure.own_name.replace('_', ' ')}, {origin}"
 

@@ -130,7 +130,7 @@ def shown(si: Value, unit_name: str) -> JsonObject:
 
 
 def _measured_by(node: Solid | SolidAnalysis) -> JsonObject:
-    """Whether a value is measured on a solid, or computed by which analysis."""
+    """The origin of a value: measured on a solid, or computed by an analysis."""
     if isinstance(node, Solid):
         return {"kind": "measured"}
     return {"kind": "analysis", "analysis": node.model.analyses[node.kind].shown()}

@@ -87,7 +87,7 @@ class _Sides:
         return self._limit(self.subject.criterion.limits_by_name[name])
 
     def _limit(self, limit: Limit) -> JsonObject:
-        """Who gave a limit that the calculation does not take: the step, a row, a default, or nobody."""
+        """The origin of a limit that the calculation does not take: the step, a row, a default, or nobody."""
         block = self.subject.block
         assert block is not None, "a criterion of the design declares no limits"
         typed = self.document.steps[block.name].limits

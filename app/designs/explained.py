@@ -15,7 +15,7 @@ from app.schemas.designs import Explanation
 def explained(
     document: Document, calculation: Calculation, catalogues: Catalogues, name: str, system: System = "si"
 ) -> Explanation:
-    """Where a parameter of a model, or the verdict of a criterion, comes from, with sensitivities.
+    """Explain where a parameter of a model, or the verdict of a criterion, comes from, with sensitivities.
 
     Quantities and slopes are in a system of units; what was typed stays as it is.
 

@@ -22,7 +22,7 @@ TEMPLATE = r"^[A-Za-z0-9_]{1,100}(/[1-9][0-9]{0,8})?$"
 
 @dataclass(frozen=True)
 class DesignFilter:
-    """Which designs a list holds; a field that is None lets every design pass."""
+    """Filter of a list of designs; a field that is None lets every design pass."""
 
     name: str | None = None  # part of the design's name, in upper or lower case
     state: str | None = None  # of the newest revision

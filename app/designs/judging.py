@@ -43,7 +43,7 @@ def judged(calculation: Calculation) -> list[Judgement]:
 
 @dataclass(frozen=True)
 class Judging:
-    """One calculated design, judged."""
+    """A calculated design with its verdicts."""
 
     calculation: Calculation
     _steps: dict[str, Evaluated | None] = field(default_factory=dict)

@@ -15,7 +15,7 @@ from templates.core.units.units import compatible, unit
 
 
 def checked_kinds(network: Network, cells: Iterable[Cell]) -> tuple[dict[str, Kind], list[Fault]]:
-    """What each parameter is measured in, and the relations whose units do not fit.
+    """The kind of unit of each parameter, and a fault for each relation whose units do not fit.
 
     The cells come in order, so that a parameter's unit is known before its use.
     """

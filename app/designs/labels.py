@@ -44,7 +44,7 @@ class LabelsIn(Bounded):
 
 
 def key_of(tag: str) -> str:
-    """What two spellings of one tag have in common: `Main  bearing` and `main bearing` are one."""
+    """The common key of all spellings of a tag: `Main  bearing` and `main bearing` are one."""
     return clean(tag).casefold()
 
 
@@ -125,7 +125,7 @@ class _UsualWay(Exception):
 
 
 def _carried(head: RevisionRow, name: str, note: str | None) -> Written:
-    """What a revision holds, under another name."""
+    """The content of a revision under another name."""
     models = [
         ModelState(m.name, m.model, m.model_version, m.parameters, m.relations, (), m.build_key)
         for m in (*head.models, *head.variant_models)

@@ -272,5 +272,5 @@ class Net:
 
 
 def _all_used(graph: Graph) -> list[Reference]:
-    """Everything that relations use."""
+    """All references of all relations."""
     return [reference for cell in graph.cells() for reference in cell.uses.values()]

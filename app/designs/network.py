@@ -168,7 +168,7 @@ class Network:
 
     @cached_property
     def used(self) -> Mapping[str, tuple[Reference, ...]]:
-        """What relations, iterations and criteria use of each block, in the order of the names."""
+        """References of relations, iterations and criteria to each block, in the order of the names."""
         names = {str(reference): reference for reference in self.assumed}
         for cell in self.cells():
             names.update(cell.uses)

@@ -13,7 +13,7 @@ from app.storage import event_log
 
 @dataclass(frozen=True)
 class Standing:
-    """How the regeneration of a design stands, and the newest event that this includes."""
+    """The state of a design's regeneration, and the newest event that it includes."""
 
     number: int
     revision: int

@@ -1,4 +1,4 @@
-"""Where values of a design begin: the literal quantities behind them, and the solids on the way."""
+"""Trace values of a design to their origins: the literal quantities behind them, the solids on the way."""
 
 from __future__ import annotations
 

@@ -143,7 +143,7 @@ def _outputs(steps: Mapping[str, RevisionStep]) -> dict[str, Output]:
 
 
 def _analysed(calculation: Calculation) -> dict[str, AnalysisOutput | None]:
-    """What relations use of analyses, by its name there; null while it is pending."""
+    """The outputs of analyses that relations use, by their names there; null while pending."""
     outputs: dict[str, AnalysisOutput | None] = {}
     for block in calculation.graph.blocks.values():
         for kind in block.analyses:
@@ -163,7 +163,7 @@ def _warnings(steps: Mapping[str, RevisionStep]) -> list[Warning]:
 
 
 def _values(new: Calculation) -> dict[str, Shown]:
-    """What the parameters of the design come to, in SI; those that wait for a solid are left out."""
+    """The values of the design's parameters in SI, without those that wait for a solid."""
     names = (name for name in new.graph.parameters if name in new.values)
     return {
         name: Shown(

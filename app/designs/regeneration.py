@@ -175,7 +175,7 @@ class Regeneration:
 
 
 def _lane(job: Job) -> Lane:
-    """Where a job calculates: whoever changes a bearing does not wait for calculations of minutes."""
+    """The lane of a job: whoever changes a bearing does not wait for calculations of minutes."""
     return "answers" if job.kind == REGENERATE else "jobs"
 
 

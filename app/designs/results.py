@@ -37,7 +37,7 @@ class ModelState:
 def stored(
     calculation: Calculation, rounds: list[JsonObject], criteria: Sequence[Judgement] | None = None
 ) -> JsonObject:
-    """All that a revision keeps of a calculation beside its models; its `criteria`, if they are judged."""
+    """The results that a revision keeps beside its models, with its `criteria` if they are judged."""
     criteria = judged(calculation) if criteria is None else criteria
     return {
         "steps": steps(calculation, criteria),

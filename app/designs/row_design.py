@@ -79,7 +79,7 @@ class RowDesign:
         return [block for block in blocks if block.name in due and not block.is_model]
 
     def faults(self, wanted: Collection[Reference], levels: Levels) -> Iterator[Fault]:
-        """What is wrong with the names of what is wanted, and with levels."""
+        """Yield the faults of the wanted names and of levels."""
         unknown = [str(r) for r in wanted if r not in self.varied and self.graph.node(r) is None]
         yield from unknown_names(unknown, self.graph.names(), "name")
         for reference in wanted:
@@ -100,7 +100,7 @@ class RowDesign:
         return block.cls.inputs.get(reference.member) or block.cls.formulas.get(reference.member)
 
     def question(self, wanted: Wanted, levels: Levels) -> tuple[Question, RowPass]:
-        """What is calculated, and of it what is one for all rows; kept for the next call."""
+        """Prepare a calculation: its question, and the part that all rows share; kept for the next call."""
         pinned = self._pinned(wanted, levels)
         key = wanted, pinned
         if key not in self._prepared:

@@ -33,7 +33,7 @@ COLUMNS = ("value", "limit", "low", "high", "utilisation", "margin")
 
 @dataclass(frozen=True)
 class JudgedColumn:
-    """What a criterion compares [SI], of each row at its worst place; NaN where there is none.
+    """The sides of a criterion [SI] in each row, at its worst place; NaN where there is none.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ def _columns(whole: JudgedColumn | None, count: int) -> dict[str, Array]:
 
 @dataclass(frozen=True)
 class RowJudging:
-    """One chunk of rows, judged."""
+    """The verdicts of one chunk of rows."""
 
     rows: RowPass
 

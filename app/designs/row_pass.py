@@ -27,7 +27,7 @@ NOT_FINITE_GIVEN = "the value of this row is not finite"
 
 @dataclass(frozen=True)
 class Question:
-    """What is calculated: of which design, for which values, from which measures, at which levels.
+    """A calculation to do: of which design, for which values, from which measures, at which levels.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class RowPass:
 
     @classmethod
     def constants(cls, question: Question) -> RowPass:
-        """What is one for all rows, calculated once."""
+        """Calculate what all rows share, once."""
         result = cls(question, 1)
         result._run(node for node in question.graph.order if node not in question.moving)
         return result

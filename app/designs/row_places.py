@@ -64,7 +64,7 @@ def _declared(graph: Graph, reference: Reference) -> Input | None:
 def place_faults(
     graph: Graph, varied: Collection[Reference], set_aside: Collection[Reference] = ()
 ) -> Iterator[Fault]:
-    """What is wrong with the places that are to vary, and with those whose relations are set aside."""
+    """Yield the faults of the places that are to vary, and of those whose relations are set aside."""
     for reference in set_aside:
         cell = graph.cell(reference)
         if reference not in varied:

@@ -69,7 +69,7 @@ class RowShifting:
         return self._estimates[reference]
 
     def beneath(self, reference: Reference) -> Origins:
-        """What a value follows from, without the error of its own step."""
+        """The origins of a value, without the error of its own step."""
         if not self._beneath:
             for node in self.rows.question.graph.order:  # in order, so that no chain is too long to follow
                 if isinstance(node, Cell) and node in self.rows.cells:
@@ -137,7 +137,7 @@ class RowShifting:
         return reference.analysis is None and reference.member in block.cls.formulas
 
     def _of_block(self, block: Block, member: str) -> Origins:
-        """What an input or output of a block follows from: the cells on which it depends."""
+        """The origins of an input or output of a block: the cells on which it depends."""
         step = self.rows.steps.get(block.name)
         declared = block.cls.inputs.get(member) or block.cls.formulas[member]
         if step is None or not step.parts:

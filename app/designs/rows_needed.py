@@ -1,4 +1,4 @@
-"""What a design has to calculate for some of its values, and what of it differs from row to row.
+"""Find what a design must calculate for some of its values, and which of that differs from row to row.
 
 Pure functions over the network: no value is calculated here.
 """
@@ -43,7 +43,7 @@ def needs(
     measured: Collection[Reference],
     inside: Iterable[Reference] = (),
 ) -> Needs:
-    """All that some values follow from; what lies behind `known` values is not needed.
+    """All nodes on which some values depend, except those that lie behind `known` values.
 
     Of inputs `inside` steps the steps are needed too, with what they take these inputs for.
     """
@@ -91,7 +91,7 @@ def is_member(graph: Graph, reference: Reference) -> bool:
 
 @dataclass(frozen=True)
 class Varying:
-    """Which nodes follow from varied places, and from which node each of them does."""
+    """The nodes that depend on varied places, each with the node through which it does."""
 
     because: Mapping[Node, Node | None]
 

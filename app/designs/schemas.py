@@ -78,7 +78,7 @@ class CopyIn(Bounded):
 
 
 class DecideIn(Bounded):
-    """Which criteria to decide, and how long that may take."""
+    """The criteria to decide, and the time that may take."""
 
     model_config = ConfigDict(
         strict=True,

@@ -39,7 +39,7 @@ STEP = 1e-4  # of the value of a place, or of its unit where it is 0
 
 @dataclass(frozen=True)
 class Asked:
-    """What is looked at: the value of a name, or what a criterion of this name compares.
+    """The subject of the question: a value by its name, or the comparison of a criterion by its name.
 
     Slopes are those between units of `system`.
     """
@@ -117,7 +117,7 @@ def _rank(item: Sensitivity) -> tuple[int, float]:
 
 
 def _left_out(places: int, through: int, shown: int) -> str | None:
-    """Which of so many places the list leaves out."""
+    """A sentence on the places that the list leaves out; None if it has all."""
     if places > MOST_VARIED:
         return (
             f"only the first {MOST_VARIED} of {places + through} places were varied; {MOST_SHOWN} are listed"

@@ -227,7 +227,7 @@ class Designs:
         )
 
     def faulty_variants(self, raw: Mapping[str, Raw]) -> list[Fault]:
-        """Everything that a save would refuse in the variants of a document.
+        """All faults for which a save would refuse the variants of a document.
 
         Raises
         ------
@@ -270,7 +270,7 @@ class Designs:
 
 
 def _with_builds(session: Session, draft: _Draft) -> _Draft:
-    """What to write, its builds renewed; if one was deleted since they were looked up, it has to be built."""
+    """The draft with its builds renewed: one that was deleted since it was looked up must be built again."""
     if renew(session, [model.build for model in draft.written.models if model.build]):
         return draft
     return replace(draft, written=replace(draft.written, results=None, state="regenerating"))

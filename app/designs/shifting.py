@@ -83,7 +83,7 @@ class Shifting:
     _seconds: float = 0.0  # that the calculations so far were estimated to take
 
     def beneath(self, reference: Reference) -> Upstream:
-        """What a value follows from, without the error of its own step."""
+        """The origins of a value, without the error of its own step."""
         if not self._is_carried_on:
             return NOTHING
         if not self._beneath:
@@ -134,7 +134,7 @@ class Shifting:
         return self._of_block(block, reference.member)
 
     def behind(self, reference: Reference) -> Upstream:
-        """What somebody who uses a value depends on: the error of its own step, and those beneath it."""
+        """The origins of a value for those who use it: the error of its own step, and those beneath it."""
         return self.beneath(reference) | self._own(reference)
 
     def _behind(self, reference: Reference) -> Upstream:
@@ -152,7 +152,7 @@ class Shifting:
         return NOTHING if estimate.is_exact else Upstream(uncertain=here)
 
     def _of_block(self, block: Block, member: str) -> Upstream:
-        """What an input or output of a block follows from: the cells on which it depends here."""
+        """The origins of an input or output of a block: the cells on which it depends here."""
         declared = block.cls.inputs.get(member) or block.cls.formulas[member]
         try:
             beneath = self.calculation.instance(block.name).depends_on(declared.attribute)
@@ -164,7 +164,7 @@ class Shifting:
         return upstream.stopped() if upstream != NOTHING and self._is_expensive(block) else upstream
 
     def _of_model(self, name: str) -> Upstream:
-        """What is measured on a solid follows from all its parameters; no error is carried through it."""
+        """The origins of a measure of a solid: all its parameters. No error is carried through a solid."""
         cells = self.calculation.graph.blocks[name].cells.values()
         return _joined(self._upstream(cell.reference) for cell in cells).stopped()
 

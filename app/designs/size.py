@@ -1,4 +1,4 @@
-"""How much a design asks for, counted before anything of it is read or calculated."""
+"""Count the size of a design before anything of it is read or calculated."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ MOST_JUDGED = 8  # roots of which the criteria are judged: each is a calculation
 
 
 class SolveDesignIn(Bounded):
-    """Which value of one parameter or input gives a wanted output."""
+    """The question which value of one parameter or input gives a wanted output."""
 
     model_config = ConfigDict(
         strict=True,

@@ -51,7 +51,7 @@ class Part:
 
 @dataclass
 class StepRows:
-    """What a step gives for `count` rows.
+    """The results of a step for `count` rows.
 
     Attributes
     ----------

@@ -30,7 +30,7 @@ class Subject:
 
     @cached_property
     def instead(self) -> tuple[tuple[Missing, Subject], ...]:
-        """What is judged where a value is missing."""
+        """The comparisons to judge where a value is missing."""
         every = self.criterion.absent.values()
         return tuple((one, Subject(one.instead, self.block, None)) for one in every if one.instead)
 

@@ -92,13 +92,13 @@ def revision(session: Session, row: RevisionRow) -> Revision:
 
 
 def _signed(session: Session, row: RevisionRow) -> dict[str, str | int]:
-    """Which released revision one replaces, and how far its approval is; what there is."""
+    """The revision that a released one replaces, and the progress of its approval, as far as they exist."""
     said = {"supersedes": row.supersedes, "approval": releases.state_of(session, row)}
     return {name: value for name, value in said.items() if value is not None}
 
 
 def author(session: Session, id: str | None) -> Author | None:
-    """Who did something, by the name that they have now; None where nobody noted it."""
+    """The author of an action, by their present name; None where nobody noted it."""
     return None if id is None else Author(id=id, name=names(session, [id]).get(id, id))
 
 

@@ -102,7 +102,7 @@ def _retyped(used: UsedInput) -> Raw:
 
 
 class _Question(NamedTuple):
-    """What a revision's step was asked, as it can be asked again."""
+    """The inputs and options of a revision's step, ready to be calculated again."""
 
     inputs: dict[str, Raw]
     outputs: tuple[str, ...]

@@ -13,7 +13,7 @@ from app.storage.tables import AuditRow
 
 @dataclass(frozen=True)
 class AuditFilter:
-    """Which rows a list holds; a field that is None lets every row pass."""
+    """Filter of a list of rows; a field that is None lets every row pass."""
 
     object: str | None = None  # its path, or that of what it belongs to: designs/<id>
     principal: str | None = None  # id or name

@@ -38,7 +38,7 @@ START = Link(0, None)
 
 @dataclass(frozen=True)
 class Verified:
-    """What a walk along the chain has come to."""
+    """The result of a walk along the chain."""
 
     head: Link  # the last sound row
     unsealed: int  # rows that have not been sealed yet

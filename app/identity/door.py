@@ -1,4 +1,4 @@
-"""Who a request comes from: by its key, or by the session of a browser.
+"""Identify the sender of a request: by its key, or by the session of a browser.
 
 Until there is a principal, everybody is LOCAL; from then on keys are asked for, and that never ends. What was
 verified is trusted for `FRESH` seconds: so long a revoked key may live on another server.
@@ -43,7 +43,7 @@ class Door:
         self._asked_at = -FRESH
 
     async def is_open(self) -> bool:
-        """Whether nothing asks for a key; nobody passes before that is read.
+        """Whether the service asks nobody for a key; nobody passes before that is read.
 
         Raises
         ------
@@ -62,7 +62,7 @@ class Door:
         return await self._guest(digest(key), lambda: self._holder(key))
 
     async def by_session(self, token: str) -> Guest | None:
-        """Who has signed in by the session of this cookie; None if it is not valid."""
+        """The guest who has signed in by the session of this cookie; None if it is not valid."""
         hash = digest(token)
         return await self._guest(hash, lambda: self._signed_in(hash))
 
@@ -78,7 +78,7 @@ class Door:
         self._rate.take(guest.principal, limits.requests_per_minute)
 
     async def _guest(self, hash: str, find: Callable[[], Guest | None]) -> Guest | None:
-        """What is known by this hash, or what is found; it is kept in the cache that there was before."""
+        """The guest of this hash, from the cache or from `find`; kept in the cache that there was before."""
         cache = self._by_key
         if (guest := cache.get(hash)) is not None:
             return guest

@@ -34,7 +34,7 @@ class RoleNeeded(IdentityError):
 
 
 class NotOwn(IdentityError):
-    """What belongs to another principal is left to that, or to an administrator."""
+    """Only the principal to whom it belongs, or an administrator, may do this."""
 
 
 class KeyInAddress(IdentityError):

@@ -29,7 +29,7 @@ class NewKey:
 
     @property
     def hash(self) -> str:
-        """What is stored of it."""
+        """The hash of the key that is stored."""
         return digest(self.text)
 
 

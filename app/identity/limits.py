@@ -1,4 +1,4 @@
-"""How much a principal may use: the limits of the settings, or its own where they differ."""
+"""Limits of a principal: those of the settings, or its own where they differ."""
 
 from __future__ import annotations
 

@@ -41,14 +41,14 @@ class Begun:
 
     @property
     def challenge(self) -> str:
-        """What the provider learns of the verifier (RFC 7636, S256)."""
+        """The hash of the verifier that the provider receives (RFC 7636, S256)."""
         hashed = hashlib.sha256(self.verifier.encode()).digest()
         return base64.urlsafe_b64encode(hashed).rstrip(b"=").decode()
 
 
 @dataclass(frozen=True)
 class Person:
-    """Who the provider says has signed in; `subject` names this person for ever, with the provider."""
+    """The person who the provider says has signed in; `subject` names them for ever, with the provider."""
 
     subject: str
     name: str
@@ -70,7 +70,7 @@ class Provider:
         self._transport = transport
 
     async def address(self, begun: Begun, back: str) -> str:
-        """Where the browser goes to sign in; the provider sends it to `back`.
+        """The address at which the browser signs in; the provider sends it to `back`.
 
         Raises
         ------
@@ -92,7 +92,7 @@ class Provider:
         return f"{place}{'&' if '?' in place else '?'}{urlencode(query)}"
 
     async def person(self, begun: Begun, state: str, code: str, back: str) -> Person:
-        """Who has signed in, by the code that the browser brought back.
+        """The person who has signed in, by the code that the browser brought back.
 
         Raises
         ------
@@ -168,7 +168,7 @@ class Provider:
 async def _asked(
     http: httpx.AsyncClient, method: str, place: str, sent: Mapping[str, str] | None = None
 ) -> Mapping[str, object]:
-    """What the provider answers; nothing of it is quoted."""
+    """The provider's answer; nothing of it is quoted."""
     try:
         answer = await http.request(method, place, data=sent)
         content: object = answer.json() if answer.is_success else None

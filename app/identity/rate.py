@@ -1,4 +1,4 @@
-"""How often a principal sends requests to this server: a bucket of tokens each, which a minute fills."""
+"""Limit the rate of a principal's requests to this server: a bucket of tokens each, which a minute fills."""
 
 from __future__ import annotations
 
@@ -45,6 +45,6 @@ class Rate:
         self._counts[who.id] += 1
 
     def counted(self) -> Counter[str]:
-        """What was let through since the last call."""
+        """The requests let through since the last call."""
         counts, self._counts = self._counts, Counter()
         return counts

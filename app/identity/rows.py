@@ -46,7 +46,7 @@ def holder(session: Session, prefix: str, key: str) -> Guest | None:
 
 
 def signed_in(session: Session, hash: str) -> Guest | None:
-    """Who has signed in by a session; None if it, or the key by which it began, is not valid."""
+    """The guest of a session; None if it, or the key by which it began, is not valid."""
     query = select(SessionRow, PrincipalRow, ApiKeyRow).join(
         PrincipalRow, SessionRow.principal_id == PrincipalRow.id
     )
@@ -74,7 +74,7 @@ def _by_key(row: PrincipalRow, key: ApiKeyRow) -> Principal:
 
 
 def is_over(moment: str | None) -> bool:
-    """Whether a moment has passed; none never does."""
+    """Whether a moment has passed; None never passes."""
     return moment is not None and moment <= now()
 
 

@@ -1,4 +1,4 @@
-"""What principals use: rows by day, raised in the unit of work that uses something. LOCAL has no limits."""
+"""Usage of principals: rows by day, raised in the unit of work that uses something. LOCAL has no limits."""
 
 from __future__ import annotations
 

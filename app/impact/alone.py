@@ -70,7 +70,7 @@ def _parameters(calculation: Calculation) -> Iterator[tuple[str, tuple[float, st
 
 
 def _waiting(calculation: Calculation) -> Iterator[str]:
-    """What waits for solids: steps and values that follow from them, and what iterations run through."""
+    """Yield all that waits for solids: steps, values that follow from them, and iterations through them."""
     for node in calculation.pending:
         if isinstance(node, Cell) or (isinstance(node, Block) and not node.is_model):
             yield node.name

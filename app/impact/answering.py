@@ -40,7 +40,7 @@ def impact_of(
 
 
 def described(design: DesignAt, document: Document, template: str, version: int) -> dict[str, object]:
-    """Which design it is, and its steps that use another version."""
+    """The design, and its steps that use another version."""
     return {
         "design": design.id,
         "name": document.name,
@@ -88,7 +88,7 @@ def _refusals(pairs: Pairs) -> Iterator[UpgradeRefused]:
 
 
 def _remedies(batch: Batch, document: Document, pairs: Pairs, catalogues: Catalogues) -> dict[str, list[str]]:
-    """What the version needs and what it does not have."""
+    """The names that the version needs, and those that it lacks."""
     cls = catalogues.templates.get(batch.template, batch.version)
     steps = [use.step for use in used_steps(document, batch.template, batch.version)]
     remove = [name for step in steps for name in _left_over(step, document.steps[step], cls)]

@@ -1,4 +1,4 @@
-"""One design, or variant, with its own versions and with the new one: what is not the same."""
+"""Compare one design, or variant, calculated with its own versions and with the new one."""
 
 from __future__ import annotations
 
@@ -170,7 +170,7 @@ def _shown(before: Outcome, after: Outcome, name: str, variant: str | None) -> O
 
 
 def _place(one: Array, other: Array) -> tuple[np.intp, ...]:
-    """Where two arrays differ most; a value that one of them lacks counts most."""
+    """The place where two arrays differ most; a value that one of them lacks counts most."""
     steps = np.where(np.isnan(one) != np.isnan(other), INFINITE, np.abs(other - one))
     return np.unravel_index(int(np.argmax(np.nan_to_num(steps, nan=-1.0, posinf=INFINITE))), one.shape)
 

@@ -10,7 +10,7 @@ NO_LONGER_MET, NOT_MET, REFUSED, OPEN, MOVED, UNKNOWN = range(6)
 
 
 def severity(moved: VerdictMoved) -> int:
-    """How bad a change of a verdict is: the least is the worst."""
+    """Rank a change of a verdict; the worst change has the least rank."""
     if moved.new == "not_met":
         return NO_LONGER_MET if moved.old == "met" else NOT_MET
     if moved.old == "met":

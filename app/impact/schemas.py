@@ -14,7 +14,7 @@ PRINTABLE = r"^[^\x00-\x1f\x7f]*$"
 
 
 class ImpactIn(Bounded):
-    """Which designs are held against the version, and how many of them the answer lists."""
+    """The designs to compare, and how many of them the answer lists."""
 
     model_config = ConfigDict(
         strict=True, extra="forbid", json_schema_extra={"examples": [{"tags": ["main"], "limit": 50}]}

@@ -45,7 +45,7 @@ class Asked:
 
 @dataclass
 class _Tally:
-    """What was found so far: the worst designs, and how many there are of each kind."""
+    """The result so far: the worst designs, and how many there are of each kind."""
 
     limit: int
     worst: list[DesignImpact] = field(default_factory=list)
@@ -109,7 +109,7 @@ class Survey:
         ]
 
     def _of_page(self, ids: Sequence[str], seen: int, total: int) -> Iterator[Compared]:
-        """What is found of some designs, batch by batch."""
+        """Yield the comparisons of some designs, batch by batch."""
         concerned = self._concerned(ids)
         usable: list[At] = []
         for design, document in concerned:
@@ -122,7 +122,7 @@ class Survey:
             yield from self._of_batch(batch, _Share(seen / total, len(ids) / total, total))
 
     def _of_batch(self, batch: Sequence[At], share: _Share) -> Iterator[Compared]:
-        """What is found of a batch; where its process ends, of smaller ones, down to one design."""
+        """Yield the comparisons of a batch; where its process ends, of smaller ones, down to one design."""
         try:
             yield self._compared(batch, share)
         except LOST as error:
@@ -165,7 +165,7 @@ class _Share:
     total: int
 
     def at(self, fraction: float) -> float:
-        """How far the job is when so much of the page is done."""
+        """The progress of the job when so much of the page is done."""
         return self.begin + self.width * fraction
 
     def text(self, fraction: float) -> str:

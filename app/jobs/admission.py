@@ -1,4 +1,4 @@
-"""Which jobs the queue still takes, and when a refused client may try again."""
+"""Decide which jobs the queue still takes, and when a refused client may try again."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ class Running:
 
 @dataclass(frozen=True)
 class Kind:
-    """What to do with jobs of a kind, and in which lane."""
+    """A kind of jobs: the function that runs them, and their lane."""
 
     handler: Handler
     on_failure: FailureHook

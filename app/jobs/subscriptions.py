@@ -1,4 +1,4 @@
-"""How a reader gets the events of a topic: those that come, and from the rows those that did not."""
+"""Subscribe to the events of a topic: new ones as they come, missed ones from the rows."""
 
 from __future__ import annotations
 

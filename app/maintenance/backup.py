@@ -35,7 +35,7 @@ EVERY = 500  # artifacts between two lines of progress
 
 @dataclass
 class Contents:
-    """What went into a backup: how many artifacts and bytes, and which files could not be taken along."""
+    """Contents of a backup: the number of artifacts and bytes, and files that could not be taken along."""
 
     artifacts: int = 0
     size: int = 0  # bytes
@@ -106,7 +106,7 @@ class DatabaseFile(TypedDict):
 
 
 class Manifest(TypedDict):
-    """What a backup says of itself."""
+    """The manifest of a backup, which describes it."""
 
     format: int
     program: str
@@ -158,7 +158,7 @@ def _add_artifact(tar: tarfile.TarFile, row: Named, source: Path, data: Path, co
 
 
 def manifest(form: int, snapshot: Path, schema: str, artifacts: int) -> Manifest:
-    """What a backup says of itself: its format, when and by what it was made, the hash of the database."""
+    """The manifest of a backup: its format, when and by what it was made, the hash of the database."""
     with snapshot.open("rb") as file:
         sha = hashlib.file_digest(file, "sha256").hexdigest()
     size = snapshot.stat().st_size

@@ -66,7 +66,7 @@ class Findings:
 
 
 def check(data: Path, url: str | None, *, in_use: bool, files: Files | None = None) -> Findings:
-    """What is wrong in a data folder; `in_use` if a service runs on it, whose newest files may lack rows.
+    """Find the faults of a data folder; `in_use` if a service runs on it, whose newest files may lack rows.
 
     The files are those in the folder, if no others are given.
 

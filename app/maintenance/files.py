@@ -1,4 +1,4 @@
-"""Where the files of a service lie, as `check` reads them: it changes nothing, not even what is damaged."""
+"""The files of a service, as `check` reads them: it changes nothing, not even what is damaged."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Files(Protocol):
         ...
 
     def fault(self, row: Named) -> str | None:
-        """What is wrong with the file of a row, if anything is."""
+        """The fault of a row's file, or None."""
         ...
 
     def size(self, sha: str) -> int:
@@ -91,7 +91,7 @@ class FolderFiles:
         return seconds
 
     def fault(self, row: Named) -> str | None:
-        """What is wrong with the file of a row, if anything is."""
+        """The fault of a row's file, or None."""
         return fault_of(self.path(row.sha), row)
 
     def size(self, sha: str) -> int:
@@ -119,7 +119,7 @@ class BucketFiles:
         return {key: modified for key, modified in self._listed.items() if SHA256.fullmatch(key)}
 
     def fault(self, row: Named) -> str | None:
-        """What is wrong with the object of a row, if anything is."""
+        """The fault of a row's object, or None."""
         try:
             answer = self._bucket.get(row.sha)
         except ArtifactsUnreachable as error:
@@ -154,7 +154,7 @@ class BucketFiles:
 
 
 def fault_of(path: Path, row: Named) -> str | None:
-    """What is wrong with the file of a row, if anything is; its size is in bytes."""
+    """The fault of a row's file, or None; its size is in bytes."""
     try:
         size = path.stat().st_size
         if row.size is not None and size != row.size:

@@ -41,7 +41,7 @@ OTHER_DATABASE = {
 
 @dataclass
 class Restored:
-    """What came out of a backup of a format."""
+    """The result of restoring a backup."""
 
     form: int = FORMAT
     manifest: JsonObject = field(default_factory=dict)

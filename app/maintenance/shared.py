@@ -30,7 +30,7 @@ class Rows:
 
 
 def check_shared(url: str, files: Files) -> Findings:
-    """What is wrong with references and files; newest files of running servers may lack their rows.
+    """Find faulty references and files; the newest files of running servers may lack their rows.
 
     Raises
     ------

@@ -46,7 +46,7 @@ _CARRIER = TraceContextTextMapPropagator()
 
 
 class QueuedJob(Protocol):
-    """What a span says of a job."""
+    """The attributes of a job in a span."""
 
     @property
     def id(self) -> str:
@@ -54,11 +54,11 @@ class QueuedJob(Protocol):
 
     @property
     def kind(self) -> str:
-        """What is to be done."""
+        """The kind of the job."""
 
     @property
     def attempt(self) -> int:
-        """How often it was claimed."""
+        """The number of times that the job was claimed."""
 
 
 class Traces:

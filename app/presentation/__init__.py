@@ -1,1 +1,1 @@
-"""How values are shown to people: numbers, systems of units, formulas."""
+"""Show values to people: numbers, systems of units, formulas."""

@@ -149,7 +149,7 @@ def step_of(criterion: Judged) -> str:
 
 
 def title(criterion: Judged) -> str:
-    """What is judged, in words; of what is calculated within a criterion, its own name."""
+    """The subject of the criterion in words; of a value calculated within it, its own name."""
     left = sides(criterion.require)[0]
     return plain_name(left if _ONE_NAME.fullmatch(left) else criterion.name)
 
@@ -172,7 +172,7 @@ def _sign(criterion: Judged, value: Amount, limit: Amount) -> str:
 
 
 def margin(criterion: Judged) -> str:
-    """What is left to the limit, with the ends that the error allows; negative if the limit is passed."""
+    """The margin to the limit, with the ends that the error allows; negative if the limit is passed."""
     if criterion.margin is None:
         return ""
     left = numbers.in_line(criterion.margin)
@@ -193,7 +193,7 @@ def _ends(criterion: Judged) -> tuple[float, float] | None:
 
 
 def error(criterion: Judged) -> str:
-    """How far off the value may be."""
+    """The error of the value, in words."""
     if criterion.value is None:
         return ""
     if not criterion.error_stated or criterion.relative_error is None:
@@ -202,7 +202,7 @@ def error(criterion: Judged) -> str:
 
 
 def missing(criterion: Judged) -> str:
-    """What to give, or what is needed, for a verdict; empty where there is one."""
+    """The input to give, or the result that is needed, for a verdict; empty where there is one."""
     if criterion.give:
         return f"give {', '.join(map(plain_name, criterion.give))}"
     if criterion.verdict == "undecided" and criterion.needs is not None:
@@ -211,7 +211,7 @@ def missing(criterion: Judged) -> str:
 
 
 def remarks(criterion: Judged) -> tuple[str, ...]:
-    """What restricts the verdict: an error not stated, a limit not verified, a waiver, the worst place."""
+    """Restrictions of the verdict: an error not stated, a limit not verified, a waiver, the worst place."""
     said = (
         NOT_STATED if criterion.value is not None and not criterion.error_stated else "",
         f"unverified: {criterion.unverified}" if criterion.unverified else "",
@@ -256,5 +256,5 @@ _WHY = {
 
 
 def headline_of(state: str, *, is_judged: bool) -> str:
-    """What stands in place of a verdict: the design has no criteria, or they were not judged, and why."""
+    """The headline in place of a verdict: the design has no criteria, or they were not judged, and why."""
     return NO_CRITERIA if is_judged else _WHY.get(state, NOT_JUDGED)

@@ -51,7 +51,7 @@ def percent(relative: float) -> str:
 
 
 def share(used: float) -> str:
-    """What of an allowance is used: in two digits; about 100 % and above in four, to tell on which side."""
+    """The used share of an allowance: in two digits; near 100 % and above in four, to see on which side."""
     return percent(used) if used < ALMOST_ALL else f"{plain(float(f'{used * 100:.4g}'))} %"
 
 
@@ -126,7 +126,7 @@ def size(values: object) -> int:
 
 
 def counted(values: list[object]) -> str:
-    """How many values there are: `720`, or `3 × 24` of a table."""
+    """The number of values in words: `720`, or `3 × 24` of a table."""
     inside = values[0] if values else None
     return f"{len(values)} × {counted(inside)}" if isinstance(inside, list) else str(len(values))
 

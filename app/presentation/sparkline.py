@@ -12,7 +12,7 @@ MOST_POINTS = 240
 
 @dataclass(frozen=True)
 class Course:
-    """What a cell says of a long array."""
+    """A long array as a cell shows it."""
 
     ends: str  # `-5.3 … 12.1`
     count: str

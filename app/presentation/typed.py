@@ -10,7 +10,7 @@ from pydantic_core import from_json
 
 
 def value_of(text: str) -> JsonValue:
-    """What a field means: a text as it is; a list `[1, 2] mm`, or an object of JSON, as such."""
+    """Read a field: a text as it is; a list `[1, 2] mm`, or an object of JSON, as such."""
     stripped = text.strip()
     if not stripped.startswith(("[", "{")):
         return stripped
@@ -25,7 +25,7 @@ def value_of(text: str) -> JsonValue:
 
 
 def text_of(value: object) -> str:
-    """How a value as typed stands in a field."""
+    """A value, as its user typed it, as the text of a field."""
     if value is None:
         return ""
     if isinstance(value, Mapping) and set(value) == {"value", "unit"}:

@@ -52,7 +52,7 @@ class _Axis:
     logarithmic: bool
 
     def share(self, value: float) -> float:
-        """Where a value lies between the ends of the axis, 0 to 1."""
+        """The position of a value between the ends of the axis, 0 to 1."""
         low, high = self._scaled(self.low), self._scaled(self.high)
         return (self._scaled(value) - low) / (high - low)
 
@@ -151,7 +151,7 @@ class _Frame:
         yield f'<rect x="{LEFT}" y="{self.top}" {size} fill="none" stroke="#7b8894"/>'
 
     def labels(self, x: str, y: str) -> Iterator[str]:
-        """What the axes measure."""
+        """Yield the labels of the axes."""
         across = _text(LEFT + self.width / 2)
         yield f'<text x="{across}" y="{self.height - 8}" text-anchor="middle">{escape(x)}</text>'
         middle = _text(self.top + self.depth / 2)

@@ -91,7 +91,7 @@ class Warned:
 
 @dataclass(frozen=True)
 class Identity:
-    """Which version of a template or model, and the digest of its code."""
+    """Version and digest of the code of a template or model."""
 
     id: str
     version: int
@@ -225,7 +225,7 @@ class Signature:
 
 @dataclass(frozen=True)
 class Signatures:
-    """Who calculated, checked and released the revision."""
+    """The people who calculated, checked and released the revision."""
 
     words: str  # how far its approval is
     is_released: bool

@@ -101,7 +101,7 @@ def _measures(measured: Measurements, system: System) -> Iterator[Line]:
 
 
 def _measured(measured: Measurements) -> Iterator[tuple[str, Quantity]]:
-    """What a report shows of the measurements, in their own units, with its words."""
+    """Yield the measurements that a report shows, in their own units and words."""
     for name in MEASURES:
         quantity: Quantity | None = getattr(measured, name)
         if quantity is not None:

@@ -1,4 +1,4 @@
-"""Which pictures a calculation gets: one table, by what its outputs are called and whether they are curves.
+"""Choose the pictures of a calculation: one table, by the names of its outputs and whether they are curves.
 
 `static/pictures.js` draws them in the page, `plots.py` in a report, from the same answer of the interface.
 """
@@ -21,7 +21,7 @@ MOST_LINES = 6  # in one picture
 
 @dataclass(frozen=True)
 class Picture:
-    """What to draw (`kind`), of which values (by API name), and how it is called."""
+    """A picture to draw: its `kind`, its values by their API names, and its title."""
 
     kind: str
     title: str
@@ -38,7 +38,7 @@ Rule = Callable[[Values, Members], Iterable[Picture]]
 
 
 class Declaring(Protocol):
-    """What declares inputs and outputs."""
+    """A declaration of inputs and outputs."""
 
     @property
     def inputs(self) -> Schema:
@@ -154,7 +154,7 @@ def _curves(values: Values, declared: Members) -> Iterator[Picture]:
 
 
 def _axis(values: Values, declared: Members, name: str) -> str | None:
-    """What a curve is drawn over: what it goes along, the crank angle, or the input that is an array."""
+    """The name over which a curve is drawn: its own axis, the crank angle, or the input that is an array."""
     if not _is_curve(values, name) or declared[name].unit is None:
         return None
     length = _length(values[name])

@@ -102,7 +102,7 @@ class Reports:
         return replace(report, verdict=verdict, variants=table, signatures=signatures)
 
     def gather(self, id: str, number: int, system: System, *, pending: bool) -> Report:
-        """All that the report says; `pending` if a job still draws its pictures."""
+        """Gather the content of the report; `pending` if a job still draws its pictures."""
         worked = self.worksheet(id, number, system)
         with self.database.read() as session:
             row = repository.revision(session, id, number)

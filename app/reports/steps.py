@@ -63,7 +63,7 @@ def step_of(name: str, step: PreviewedStep, document: JsonObject, catalogues: Ca
 
 
 def review_of(sheet: ReleasedSheet | None) -> str:
-    """Who stands for a worksheet; empty for a template from a file."""
+    """The author and reviewer of a worksheet; empty for a template from a file."""
     if sheet is None:
         return ""
     author = f"written by {sheet.author}" if sheet.author else "its author is not named"

@@ -44,7 +44,7 @@ def _called(row: VariantResult) -> str:
 
 
 def _sentence(first: VariantResult | None) -> str:
-    """Which variant governs, and by what."""
+    """A sentence that names the governing variant and its criterion."""
     criterion = _governing(first)
     if first is None or criterion is None:
         return ""

@@ -18,7 +18,7 @@ Item = TypeVar("Item")
 
 
 class Answer(BaseModel):
-    """What the interface answers; a name that the model does not know is a fault of the program."""
+    """An answer of the interface; a name that the model lacks is a fault of the program."""
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 

@@ -18,7 +18,7 @@ Files = dict[str, dict[str, str]]
 
 
 class Signed(Answer):
-    """What a signature covers; `digest` of its step is the SHA-256 of this as canonical JSON.
+    """The signed content; `digest` of its step is the SHA-256 of this as canonical JSON.
 
     Canonical: names sorted, no blanks, letters beyond ASCII as they are, UTF-8; `reason` only where there is
     one.
@@ -50,7 +50,7 @@ class Approval(Answer):
 
 
 class Present(Answer):
-    """What a revision holds now, to be compared with what was signed."""
+    """The present content of a revision, to be compared with the signed one."""
 
     document: str
     results: str

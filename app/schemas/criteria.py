@@ -13,14 +13,14 @@ Word = Literal["met", "not_met", "undecided", "not_checked"]
 
 
 class Band(Measured):
-    """Where the truth lies: the lower and the upper bound; null where it is open."""
+    """Bounds of the true value, lower and upper; null where it is open."""
 
     value: list[float | None] = Field(min_length=2, max_length=2)
     unit: str
 
 
 class Criterion(Answer):
-    """One criterion, held against its value; what does not apply is absent.
+    """One criterion with its value and verdict; what does not apply is absent.
 
     Over several points, or along a curve, the numbers are those of the worst place.
     """

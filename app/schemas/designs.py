@@ -35,7 +35,7 @@ class DesignStep(Answer):
 
 
 class AnalysisOptions(Answer):
-    """How an analysis is done of which a relation uses an output."""
+    """Options of an analysis of which a relation uses an output."""
 
     kind: str | None = Field(None, description="absent where the name says it")
     boundary: str = "free_end"
@@ -63,7 +63,7 @@ class DesignIteration(Answer):
 
 
 class DesignCriterion(Answer):
-    """What a design demands, or what it says of a criterion of one of its templates."""
+    """A criterion of the design itself, or changes to a criterion of one of its templates."""
 
     require: str | None = Field(None, description="absent where that of the template holds")
     words: str | None = None

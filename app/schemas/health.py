@@ -1,4 +1,4 @@
-"""Whether the service lives, and whether it can work."""
+"""State of the service: whether it lives, and whether it can work."""
 
 from __future__ import annotations
 

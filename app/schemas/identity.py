@@ -16,7 +16,7 @@ Roles = Annotated[list[Role], Field(max_length=4)]
 
 
 class Author(Answer):
-    """Who did something."""
+    """The author of an action."""
 
     id: str
     name: str

@@ -72,7 +72,7 @@ Responses = dict[int | str, dict[str, object]]
 
 
 class RouteOptions(TypedDict):
-    """What the routes of several paths say of themselves alike."""
+    """Options that the routes of several paths share."""
 
     response_class: type[Response]
     responses: Responses

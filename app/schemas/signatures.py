@@ -22,7 +22,7 @@ class BlockStep(Answer):
 
 
 class Block(Answer):
-    """Which revision a report is of, and how far its approval was."""
+    """The revision of a report, and the progress of its approval."""
 
     format: Literal[1]
     design: str = Field(pattern=r"^[A-Za-z0-9_]{1,64}$")

@@ -94,7 +94,7 @@ class TradePlace(Answer):
 
 
 class Trade(TradePlace):
-    """What one level of fidelity promises: its optimum, or along `front` if there are several objectives."""
+    """The promise of one level of fidelity: its optimum, or along `front` if there are several objectives."""
 
     level: dict[str, str] = Field(description="by step")
     front: list[TradePlace] | None = Field(
@@ -116,7 +116,7 @@ class Best(Answer):
 
 
 class Index(Answer):
-    """How much an output follows from a place; what the kind does not tell is absent."""
+    """The influence of a place on an output; an index that the kind does not give is absent."""
 
     slope: Quantity | None = Field(None, description="change of the output by that of the place")
     elasticity: float | None = Field(None, description="relative change by relative change")

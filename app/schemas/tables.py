@@ -22,7 +22,7 @@ class TableField(Bounded):
 
 
 class ChosenColumn(Bounded):
-    """What the user chose for a column: the field that takes it (empty for none), and its unit."""
+    """The choice of the user for a column: the field that takes it (empty for none), and its unit."""
 
     model_config = _STRICT
 

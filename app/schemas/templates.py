@@ -14,7 +14,7 @@ Schema = dict[str, JsonValue]
 
 
 class SheetMark(Answer):
-    """What stands beside a template that is a worksheet: who wrote it, and who reviewed it."""
+    """The mark of a template that is a worksheet: who wrote it, and who reviewed it."""
 
     state: Literal["released", "withdrawn"]
     author: str | None

@@ -76,14 +76,14 @@ class Yield(Answer):
 
 
 class Histogram(Answer):
-    """How many of the sampled products lie between two edges."""
+    """Numbers of sampled products between pairs of edges."""
 
     edges: list[float] = Field(description="in the unit of the output")
     counts: list[int]
 
 
 class OutputScatter(Answer):
-    """One output, whose numbers are in `unit`; what it does not have is absent."""
+    """Scatter of one output, in `unit`; what does not apply is absent."""
 
     model_config = ConfigDict(populate_by_name=True)
 

@@ -1,4 +1,4 @@
-"""How the description of the interface describes a value that a user gives.
+"""Describe, in the description of the interface, values that a user gives.
 
 Only its form: which units fit, and which names a choice has, is in the schema of each template and model.
 """

@@ -36,7 +36,7 @@ class SheetOrigin(Answer):
 
 
 class ImportedRegion(Answer):
-    """One region of the sheet: what it was, what stands for it, and how the values compare."""
+    """One region of the sheet: its original, the lines that replace it, and both values compared."""
 
     region: str = Field(description="its number in the sheet")
     kind: str = Field(description="math, text, plot, picture, solve block, area, page break, other")

@@ -12,7 +12,7 @@ from app.storage.database import Database
 
 @contextmanager
 def alone(database: Database, work: str) -> Iterator[bool]:
-    """Whether no other server does this work, while the block runs; a server's death ends its turn."""
+    """Yield whether no other server does this work while the block runs; a server's death ends its turn."""
     if not database.is_shared:
         yield True
         return

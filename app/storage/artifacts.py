@@ -45,7 +45,7 @@ class Stored:
 
 
 class Artifacts(Protocol):
-    """What every store of artifacts can do.
+    """A store of artifacts: the operations that each offers.
 
     A store that cannot be reached raises ArtifactsUnreachable; it never takes its own silence for a missing
     file.
@@ -53,7 +53,7 @@ class Artifacts(Protocol):
 
     @property
     def is_shared(self) -> bool:
-        """Whether it may be used by others than the one server of a data folder."""
+        """Whether more servers than the one of a data folder may use the store."""
         ...
 
     def put(self, *parts: bytes | memoryview) -> str:
@@ -97,7 +97,7 @@ class Artifacts(Protocol):
         ...
 
     def read_note(self, name: str) -> str | None:
-        """What the store says under a name that is not a hash; None if nothing."""
+        """Read the note of a name that is not a hash; None if there is none."""
         ...
 
     def write_note(self, name: str, text: str) -> None:
@@ -150,7 +150,7 @@ class ArtifactStore:
         return sha
 
     def fetch(self, sha: str) -> Path:
-        """Where a verified artifact lies.
+        """The path of a verified artifact.
 
         Raises
         ------
@@ -233,7 +233,7 @@ class ArtifactStore:
         return (self.read_note(OWNER) or "").strip()
 
     def read_note(self, name: str) -> str | None:
-        """What the folder says under a name; None if nothing."""
+        """Read the note of a name; None if there is none."""
         try:
             return (self.folder / name).read_text(errors="replace")
         except FileNotFoundError:

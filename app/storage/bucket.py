@@ -59,7 +59,7 @@ class BucketStore:
         return sha
 
     def fetch(self, sha: str) -> Path:
-        """Where a verified copy lies; it stays there for a minute. Raises as `open` does."""
+        """The path of a verified copy; it stays there for a minute. Raises as `open` does."""
         with self.open(sha):
             return self._copies.path(sha)
 
@@ -156,7 +156,7 @@ class BucketStore:
         return owner
 
     def read_note(self, name: str) -> str | None:
-        """What the bucket says under a name; None if nothing."""
+        """Read the note of a name; None if there is none."""
         answer = self._bucket.get(name)
         return None if answer is None else answer[0].decode(errors="replace")
 
@@ -200,7 +200,7 @@ class BucketStore:
         return True
 
     def _is_put_back(self, sha: str) -> bool:
-        """Whether this machine had a good copy of what the bucket has lost, which is there again now."""
+        """Put back an object that the bucket has lost, from a good copy here; whether that was possible."""
         data = self._copies.read(sha)
         if data is None:
             return False

@@ -81,7 +81,7 @@ class OperationClock:
         self._counted += seconds
 
     def close(self) -> None:
-        """Nothing: the writer stores what is left when it is closed."""
+        """Do nothing: the writer stores the remaining rows when it is closed."""
 
 
 class SharedClock:

@@ -52,7 +52,7 @@ class Copies:
         return data
 
     def path(self, sha: str) -> Path:
-        """Where a copy lies that was used just now; it stays there for a minute."""
+        """The path of a copy that was used just now; it stays there for a minute."""
         return self._files.fetch(sha)
 
     def put(self, *parts: bytes | memoryview) -> None:

@@ -43,7 +43,7 @@ class DatabaseCopied(StorageError):
 
 @dataclass(frozen=True)
 class _Mark:
-    """What the store says: the number of the last collection, and since when it is known to have copies."""
+    """The mark in the store: the number of the last collection, and since when it is known to have copies."""
 
     number: int
     copied: str | None = None

@@ -1,4 +1,4 @@
-"""Where the kinds of database differ: engines that read and engines that write, for SQLite and PostgreSQL."""
+"""Differences between kinds of database: engines that read and that write, for SQLite and PostgreSQL."""
 
 import sqlite3
 from pathlib import Path

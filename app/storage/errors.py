@@ -1,4 +1,4 @@
-"""What can go wrong in storage.
+"""Errors of storage.
 
 StorageError
  ├── DataFolderInUse     another process holds the data folder

@@ -32,7 +32,7 @@ class Once:
     client: str = ""  # two clients may choose the same key
 
     def find(self, session: Session) -> JsonObject | None:
-        """What this request led to before, if it did.
+        """The stored answer of an equal earlier request; None if there was none.
 
         Raises
         ------
@@ -45,7 +45,7 @@ class Once:
         return None if row is None else self._answer(row)
 
     def begin(self, session: Session) -> JsonObject | None:
-        """What this request led to before; if nothing, reserve its key for this unit, which calls `keep`.
+        """The stored answer of an equal earlier request; else reserve its key and let `keep` follow.
 
         It comes first in a unit of work: while another server carries out the same request, this waits.
 

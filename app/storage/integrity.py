@@ -1,4 +1,4 @@
-"""Whether a SQLite file is whole: its pages, its indexes, and the JSON in its rows.
+"""Check that a SQLite file is whole: its pages, its indexes, and the JSON in its rows.
 
 SQLite keeps no checksums. A page that was overwritten shows by a broken tree, an index that disagrees with
 its table, or a text that is not JSON; a changed digit inside a text does not show.
@@ -56,7 +56,7 @@ def marker_of(path: Path) -> Path:
 
 
 def _faults_now(path: Path) -> list[str]:
-    """What is wrong with a file of which damage is noted already; its own state names the pages."""
+    """The faults of a file of which damage is noted already; its own state names the pages."""
     if not path.is_file():
         return [f"{path.name} is missing"]
     try:
@@ -74,7 +74,7 @@ def _noted(marker: Path) -> str:
 
 
 def faults(path: Path, most: int = MOST, mode: str = "rw") -> list[str]:
-    """What is wrong with a SQLite file, at most this many lines; `ro` leaves its log as it is."""
+    """The faults of a SQLite file, at most this many lines; `ro` leaves its log as it is."""
     with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode={mode}", uri=True)) as connection:
         connection.execute("PRAGMA busy_timeout = 10000")
         # A page on which SQLite stops takes the lines before it along, unless only one was wanted.
@@ -114,7 +114,7 @@ def _collected(lines: Iterator[str], path: Path) -> list[str]:
 
 
 def _unreadable_schema(path: Path) -> str:
-    """Which page keeps SQLite from reading the schema: the first one, or one of those that it refers to.
+    """Name the page that keeps SQLite from reading the schema: the first one, or one that it refers to.
 
     The layout is that of SQLite's file format: a tree of tables has pages of type 5 (inner) and 13 (leaf).
     """

@@ -1,4 +1,4 @@
-"""What errors of PostgreSQL mean: a conflict with others, a connection that is lost, or a fault of ours."""
+"""Classify errors of PostgreSQL: a conflict with others, a lost connection, or a fault of ours."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the files are, by the settings: a folder of this server, one that servers share, or a bucket."""
+"""Open the store of files by the settings: a folder of this server, one that servers share, or a bucket."""
 
 from __future__ import annotations
 

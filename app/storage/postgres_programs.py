@@ -1,4 +1,4 @@
-"""Where the programs of PostgreSQL are: Debian keeps those of each version in a folder of its own."""
+"""Find the programs of PostgreSQL: Debian keeps those of each version in a folder of its own."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ Asked = Callable[[str, str, float], object]
 
 @dataclass(frozen=True)
 class Entry:
-    """What a bucket says of an object: its tag, its size [bytes], when it was put [s since 1970]."""
+    """The bucket's entry of an object: its tag, its size [bytes], when it was put [s since 1970]."""
 
     tag: str | None
     size: int
@@ -77,7 +77,7 @@ class Bucket:
         return time.monotonic() < self._silent_until
 
     def head(self, key: str) -> Entry | None:
-        """What is there under a key; None if nothing is."""
+        """The entry of a key; None if there is none."""
         with self._asked("head"):
             seen = obstore.head(self._questions, key)
             return Entry(seen["e_tag"], seen["size"], seen["last_modified"].timestamp())
@@ -164,12 +164,12 @@ class Bucket:
 
 
 def seconds_of_upload(size: int, silence: float) -> float:
-    """How long an upload of a size [bytes] may take [s]; few different times, each of which has a client."""
+    """The time limit of an upload of a size [bytes] [s]; few different times, each of which has a client."""
     return silence + 2.0 ** math.ceil(math.log2(max(1.0, size / _UPLOAD))) - 1
 
 
 def _options(endpoint: str | None, seconds: float, silence: float) -> ClientConfig:
-    """How requests are sent that may take so long in all, and so long without a further byte [s]."""
+    """Options of requests: their time limits in all, and without a further byte [s]."""
     return {
         "allow_http": endpoint is not None and endpoint.startswith("http://"),
         "connect_timeout": timedelta(seconds=2),
@@ -179,7 +179,7 @@ def _options(endpoint: str | None, seconds: float, silence: float) -> ClientConf
 
 
 def _retries(seconds: float) -> RetryConfig:
-    """Which failures are tried again: none that came after so long [s], as silence does."""
+    """Options of retries: no failure is tried again that came after so long [s], as silence does."""
     return {
         "max_retries": 2,
         "retry_timeout": timedelta(seconds=seconds),

@@ -1,4 +1,4 @@
-"""Which files have been hashed already, by what the file system says of them."""
+"""Remember which files have been hashed already, by their stamps in the file system."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _RACY = 1_000_000_000  # a change within this time of the last one may show the 
 
 @dataclass(frozen=True)
 class Stamp:
-    """What changes when a file is changed: inode, size [bytes], times of contents and of inode [ns]."""
+    """The properties that change with a file: inode, size [bytes], times of contents and of inode [ns]."""
 
     inode: int
     size: int
@@ -54,7 +54,7 @@ T = TypeVar("T")
 
 
 class Newest(Generic[T]):
-    """What was noted last by name, for a bounded number of names."""
+    """The latest notes by name, for a bounded number of names."""
 
     def __init__(self, most: int = REMEMBERED) -> None:
         self._most = most

@@ -1,4 +1,4 @@
-"""What a study asks, read against the design: places with their units, rows by number, objectives."""
+"""Read the question of a study against the design: places with their units, rows by number, objectives."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Asked:
 
     @property
     def objectives(self) -> list[str]:
-        """What is minimised, then what is maximised."""
+        """The outputs that are minimised, then those that are maximised."""
         return directions(self.body)[0]
 
 
@@ -57,7 +57,7 @@ def asked_of(body: StudyIn, varied: Sequence[str], net: Net) -> Asked:
 
 
 def _contradictions(body: StudyIn, varied: Sequence[str]) -> Iterator[Fault]:
-    """What is missing for the method, or means nothing with it."""
+    """Yield a fault for what the method lacks, and for what means nothing with it."""
     if not varied and body.method == "table":
         yield Fault("rows", "missing", "give `rows`: columns by name, or a list of rows")
     elif not varied:
@@ -169,7 +169,7 @@ def _around(space: Space, net: Net) -> Local:
 
 
 def _too_many(body: StudyIn, space: Space) -> list[Fault]:
-    """What would be more rows than the method takes, before any of them is made."""
+    """A fault if the method would make more rows than it takes, counted before any row is made."""
     count = 0
     match body.method:
         case "grid":

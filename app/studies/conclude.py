@@ -1,4 +1,4 @@
-"""What a study found, once its rows are calculated: the best row, the front, sensitivities."""
+"""Conclude a study once its rows are calculated: the best row, the front, sensitivities."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def _answered(**fields: object) -> StudyResult:
 
 
 def _trade(run: Run, stored: Stored, explored: Integers, confirmed: Integers, *, several: bool) -> Trade:
-    """What the levels of the exploration promised in some rows, and what is true of it."""
+    """The promise of each level of the exploration in some rows, and the true value there."""
     pairs = zip(
         rows_found(run, stored, explored, confirmed=False),
         rows_found(run, stored, confirmed, confirmed=True),

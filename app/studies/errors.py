@@ -1,4 +1,4 @@
-"""What is wrong with studies, beside wrong inputs."""
+"""Errors of studies, beside wrong inputs."""
 
 from __future__ import annotations
 

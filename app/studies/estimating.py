@@ -1,4 +1,4 @@
-"""How much processor time a study will take, from a few rows that are calculated before it is accepted.
+"""Estimate the processor time of a study from a few rows, calculated before it is accepted.
 
 The tables of levels know neither criteria nor a heat balance. The size of chunks still follows from them: a
 measured one would make equal studies unequal.
@@ -26,7 +26,7 @@ IN_CALL = 4096  # rows
 
 @dataclass(frozen=True)
 class Pace:
-    """What a call takes beside its rows, and what a row takes [s of processor time]."""
+    """The time of a call beside its rows, and of a row [s of processor time]."""
 
     call: float
     row: float

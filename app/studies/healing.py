@@ -96,7 +96,7 @@ class Healing:
             pass
 
     def lost(self, id: str) -> Exception:
-        """What to raise when rows of a study cannot be read: where they are calculated again, or why not."""
+        """The error to raise when rows of a study are lost: where they are calculated again, or why not."""
         with self._lock:
             if refused := self._refused.get(id):
                 return refused

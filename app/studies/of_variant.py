@@ -1,4 +1,4 @@
-"""Which variant of a design a study is of: its document, and the revision that a chosen row makes."""
+"""The variant of a design that a study concerns: its document, and the revision that a chosen row makes."""
 
 from __future__ import annotations
 

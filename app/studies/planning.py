@@ -1,4 +1,4 @@
-"""What a study will do, fixed before it begins: levels, size of a chunk, units, estimate. In a process."""
+"""Plan a study before it begins: levels, size of a chunk, units, estimate. In a process."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ SHARE = 0.95  # of the rows, at which a level must be within the tolerance
 
 @dataclass(frozen=True)
 class Plan:
-    """What does not change while a study runs; kept in its row."""
+    """The fixed part of a study, kept in its row."""
 
     places: list[str]
     outputs: list[str]

@@ -34,7 +34,7 @@ class New:
 
 @dataclass(frozen=True)
 class Progress:
-    """How many rows of a study were calculated, and how many of them were refused, by reason."""
+    """Number of calculated rows of a study, and of those refused, by reason."""
 
     rows: int
     refused: dict[str, int]
@@ -81,7 +81,7 @@ def chunks(session: Session, id: str) -> list[StudyChunkRow]:
 
 
 def done(session: Session, id: str, until: int | None = None) -> Progress:
-    """How far a study is, counting chunks with a number below `until`."""
+    """The progress of a study, counting chunks with a number below `until`."""
     which = [StudyChunkRow.study_id == id]
     if until is not None:
         which.append(StudyChunkRow.number < until)

@@ -1,4 +1,4 @@
-"""Which solid each row of a study needs, and what was measured on it as columns. In a calculation process.
+"""Find the solid of each row of a study, and put its measures into columns. In a calculation process.
 
 A row waits for its solids: until all are known, a chunk answers which ones it lacks. A model may take a
 measure of another, so its parameters are known only once that one is built.
@@ -43,7 +43,7 @@ class Wanting:
 
 @dataclass(frozen=True)
 class Measured:
-    """What was measured on a solid [SI], by its name in relations, or why it has no measures."""
+    """The measures of a solid [SI], by their names in relations, or why it has none."""
 
     model: str
     texts: Texts
@@ -126,7 +126,7 @@ class RowSolids:
         return [node for node in self.net.graph.order if isinstance(node, Block) and node.name in names]
 
     def measures_of(self, model: str) -> list[Reference]:
-        """What is measured on a model."""
+        """The references to measures of a model."""
         return [reference for reference in self.measures if reference.block == model]
 
     def drivers(self, model: Block) -> list[Reference]:

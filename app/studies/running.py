@@ -68,7 +68,7 @@ Started = Callable[[int], Calculation]
 
 @dataclass(frozen=True)
 class Parts:
-    """What of the service a run uses."""
+    """The services that a run uses."""
 
     database: Database
     store: Artifacts
@@ -110,7 +110,7 @@ class Run:
         return self.parts.pool.submit(f"study:{self.row.id}", function, *args, lane="jobs")
 
     def result_of(self, calculation: Calculation) -> object:
-        """What a calculation returns; raises JobCancelled once the study is cancelled."""
+        """The result of a calculation; raises JobCancelled once the study is cancelled."""
         while not wait([calculation.future], GLANCE).done:
             if self.context.is_cancelled:
                 self.parts.pool.cancel(calculation)

@@ -1,4 +1,4 @@
-"""What the calls of studies take."""
+"""Bodies of the calls of studies."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Places = Annotated[list[Place], Field(max_length=MOST_OUTPUTS)]
 
 
 class Vary(Bounded):
-    """What one place takes: anything between two bounds, or one of a list."""
+    """The values of one place: anything between two bounds, or one of a list."""
 
     model_config = _STRICT
 
@@ -49,7 +49,7 @@ class Vary(Bounded):
 
 
 class StageAccuracy(Bounded):
-    """How accurate a level must be."""
+    """Accuracy that a level must reach."""
 
     model_config = _STRICT
 

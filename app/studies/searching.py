@@ -37,7 +37,7 @@ CALL_SECONDS = 0.03  # that a call takes beside its rows
 
 @dataclass(frozen=True)
 class Search:
-    """What is searched: at which levels, holding which criteria, for how many rows at most.
+    """A search to do: at which levels, holding which criteria, for how many rows at most.
 
     `trade` are further levels, each of which is searched alone once.
     """
@@ -50,7 +50,7 @@ class Search:
 
 @dataclass(frozen=True)
 class Promised:
-    """What a level promised at its best place, or along its front [SI], and what is true of it."""
+    """The promise of a level at its best place, or along its front [SI], and the true values there."""
 
     level: int
     places: tuple[Round, ...]
@@ -60,7 +60,7 @@ class Promised:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a search found: places that were confirmed, best first or along a front."""
+    """The result of a search: places that were confirmed, best first or along a front."""
 
     state: str
     places: tuple[Array, ...]
@@ -126,7 +126,7 @@ def _outcome(ready: Prepared, problem: Problem, search: Search, book: _Book) -> 
 def _compared(
     problem: Problem, search: Search, book: _Book, seed: int, first: Promised, notes: tuple[str, ...]
 ) -> tuple[tuple[Promised, ...], tuple[str, ...]]:
-    """What each level promises, and the notes with one more if there are not rows enough for all levels."""
+    """The promise of each level, and the notes with one more if there are not rows enough for all levels."""
     others: list[Promised] = []
     try:
         for level in range(CONFIRM + 1, len(search.levels)):
@@ -138,7 +138,7 @@ def _compared(
 
 
 def _alone(problem: Problem, book: _Book, level: int, seed: int) -> list[Promised]:
-    """What one level finds by itself, confirmed once; nothing of a level that lacks a result."""
+    """The result of one level by itself, confirmed once; nothing of a level that lacks a result."""
     answer, confirm = book.answer(level), book.answer(CONFIRM)
     try:
         if len(problem.objectives) > 1:
@@ -154,7 +154,7 @@ def _alone(problem: Problem, book: _Book, level: int, seed: int) -> list[Promise
 
 @dataclass(frozen=True)
 class _Call:
-    """One call of a search: its level, its rows, and what came out, as a chunk keeps it."""
+    """One call of a search: its level, its rows, and its results, as a chunk keeps it."""
 
     level: int
     arrays: Mapping[str, AnyArray]

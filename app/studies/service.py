@@ -1,4 +1,4 @@
-"""What can be done with studies: begin, look, choose a row, cancel, remove."""
+"""Operations on studies: begin, look, choose a row, cancel, remove."""
 
 from __future__ import annotations
 

@@ -91,7 +91,7 @@ class StudySolids:
 
     @property
     def measured(self) -> Solids:
-        """What was measured so far."""
+        """The measures so far."""
         return tuple(self._measures.values())
 
     def is_known(self, wanting: Wanting) -> bool:
@@ -137,7 +137,7 @@ class StudySolids:
                 return
 
     def _analysed(self, wanting: Wanting, shape: CadModel, runner: Runner) -> dict[str, float]:
-        """What finite elements compute on a solid [SI]."""
+        """The results of finite elements on a solid [SI]."""
         references = [Reference.parse(f"{wanting.model}.{name}") for name in wanting.measures]
         values: dict[str, float] = {}
         for kind in dict.fromkeys(r.analysis for r in references if r.analysis is not None):

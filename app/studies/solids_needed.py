@@ -1,4 +1,4 @@
-"""How many solids a study needs, counted before it begins; what would be too much, in solids and hours."""
+"""Count the solids of a study before it begins; refuse too many solids or hours."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SEARCHES = "a search asks for its rows one after another; sample these places fi
 
 @dataclass(frozen=True)
 class Needed:
-    """How many solids a study needs, at most; and how many of them are analysed by finite elements."""
+    """Number of solids that a study needs at most, and of those that finite elements analyse."""
 
     solids: int = 0
     analysed: int = 0
@@ -66,7 +66,7 @@ def _refused(ready: Prepared, rows: int, solids: int, seconds: float, why: str) 
 
 
 def _of_model(ready: Prepared, model: Block, count: int, given: Array | None, levels: Levels) -> int:
-    """How many solids of a model the rows need; at most, if it is not known before other solids are built."""
+    """Number of solids of a model; at most, if it is not known before other solids are built."""
     places = [ready.asked.places.index(place) for place in ready.solids.drivers(model)]
     chosen = _distinct(ready, places, count, given)
     if len(chosen) > MOST_COMPARED:

@@ -1,4 +1,4 @@
-"""What a calculation process needs to know of a study: the design, what its steps are made of, the body."""
+"""The task of a calculation process for a study: the design, the sources of its steps, the body."""
 
 from __future__ import annotations
 

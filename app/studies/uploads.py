@@ -61,7 +61,7 @@ class _Headings:
         self._places, self._seen = places, set[str]()
 
     def fault(self, name: str, given: str) -> Fault | None:
-        """What is wrong with a column: its name, or its unit, which is empty where it has none."""
+        """The fault of a column: of its name, or of its unit, which is empty where it has none."""
         if name in self._seen:
             return Fault(name, "twice", f"{excerpt(name)} names two columns; keep one of them")
         self._seen.add(name)

@@ -67,7 +67,7 @@ def study(session: Session, row: Row) -> Study:
 
 
 def estimate(plan: Plan) -> StudyEstimate:
-    """What a study would do that is not begun."""
+    """The estimate of a study that is not begun."""
     return StudyEstimate(
         rows=plan.rows,
         criteria=plan.required,
@@ -91,7 +91,7 @@ def _share(session: Session, row: Row, plan: Plan, rows: int) -> float:
 
 @dataclass(frozen=True)
 class Wanted:
-    """Which rows and columns are listed, in which order."""
+    """The rows and columns to list, and their order."""
 
     columns: tuple[str, ...] = ()  # all, if none is named
     where: Where | None = None

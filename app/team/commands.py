@@ -36,7 +36,7 @@ class Command:
 
     @property
     def lives(self) -> bool:
-        """Whether its process has not ended."""
+        """Whether its process still runs."""
         return self._process is not None and self._process.lives
 
     @property
@@ -82,7 +82,7 @@ class Server(Command):
 
     @property
     def url(self) -> str:
-        """Where it answers."""
+        """The address at which it answers."""
         return f"http://{LOOPBACK}:{self.port}"
 
     def ready(self, others: Sequence[Command] = (), seconds: float = START) -> None:
@@ -107,7 +107,7 @@ class Scheduler(Command):
 
     @property
     def address(self) -> str:
-        """What `CRANKWRIGHT_ENGINE` names."""
+        """The address that `CRANKWRIGHT_ENGINE` names."""
         return f"tcp://{LOOPBACK}:{self.port}"
 
     def ready(self) -> None:

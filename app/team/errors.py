@@ -1,4 +1,4 @@
-"""What keeps the processes of a team from running."""
+"""Errors that keep the processes of a team from running."""
 
 
 class Missing(Exception):

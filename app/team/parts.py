@@ -26,7 +26,7 @@ Say = Callable[[str], object]
 
 @dataclass(frozen=True)
 class Team:
-    """What runs; `environment` has the settings that its servers share."""
+    """The running parts; `environment` has the settings that its servers share."""
 
     database: Cluster
     store: ObjectStore
@@ -42,7 +42,7 @@ class Team:
 
 
 def missing() -> list[str]:
-    """What is not installed, a sentence each with the command that installs it."""
+    """The parts that are not installed, a sentence each with the command that installs it."""
     lacking = [] if postgres_program("initdb") else [postgres.MISSING]
     if absent := [what for module, what in EXTRA.items() if find_spec(module) is None]:
         lacking.append(f"{', '.join(absent)}: pip install 'crankwright[team]'")

@@ -63,7 +63,7 @@ class Cluster:
 
     @property
     def lives(self) -> bool:
-        """Whether its first process has not ended."""
+        """Whether its first process still runs."""
         return self._process is not None and self._process.lives
 
     def url(self, database: str = "postgres") -> str:

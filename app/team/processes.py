@@ -85,7 +85,7 @@ class Tied:
 
     @property
     def lives(self) -> bool:
-        """Whether the process has not ended."""
+        """Whether the process still runs."""
         return self._process.poll() is None
 
     def until(self, answers: Callable[[], bool], seconds: float = START) -> None:

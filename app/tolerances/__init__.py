@@ -1,1 +1,1 @@
-"""What the tolerances of a design do to its results: limits, scatter, shares and yields."""
+"""Effects of a design's tolerances on its results: limits, scatter, shares and yields."""

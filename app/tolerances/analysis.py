@@ -41,7 +41,7 @@ LONGEST = 600.0
 
 @dataclass(frozen=True)
 class Findings:
-    """What an analysis found, in SI."""
+    """The results of an analysis, in SI."""
 
     nominal: Table
     worst: Worst
@@ -204,7 +204,7 @@ def _stacked(table: Table, outputs: Sequence[Reference]) -> Array:
 
 
 def _faults(graph: Graph, question: Question, every: Mapping[str, Demanded]) -> Iterator[Fault]:
-    """What is wrong with the names and numbers of a question."""
+    """Yield the faults of the names and numbers of a question."""
     unknown = [name for name in question.criteria or () if name not in every]
     yield from (fault.within("criteria") for fault in unknown_names(unknown, every, "criterion"))
     wanted = [name for name in question.outputs or () if not _is_quantity(graph, Reference.parse(name))]

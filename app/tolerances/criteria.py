@@ -19,7 +19,7 @@ class Demanded:
 
     @property
     def criterion(self) -> Criterion:
-        """What is compared."""
+        """The criterion to compare."""
         return self.subject.criterion
 
     @property

@@ -42,7 +42,7 @@ class Factor:
 
 
 def inverse(distribution: Distribution, share: Array) -> Array:
-    """Where, from −1 to 1 between the limits, a share (0 to 1) of the values lies below.
+    """The place, from −1 to 1 between the limits, below which a share (0 to 1) of the values lies.
 
     Normal: limits at ±3 standard deviations, cut there. Triangular: the peak is in the middle.
     """

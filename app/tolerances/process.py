@@ -1,4 +1,4 @@
-"""What a calculation process does for a tolerance analysis."""
+"""The work of a calculation process for a tolerance analysis."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is asked of a tolerance analysis, as a calculation process takes it."""
+"""The question of a tolerance analysis, as a calculation process takes it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Question:
-    """What is asked: outputs and criteria by name (None: those that the design suggests), points, seed.
+    """Outputs and criteria by name (None: those that the design suggests), number of points, seed.
 
     Without `points`, there are as many as bring every standard error of a yield to that aimed at.
 

@@ -26,7 +26,7 @@ BINS = 40
 
 @dataclass(frozen=True)
 class Rows:
-    """What rows of factors lead to.
+    """The results of rows of factors.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class Yield:
 
 @dataclass(frozen=True)
 class Scatter:
-    """What eight scramblings show; None of an output or criterion that has no value in any row."""
+    """The scatter over eight scramblings; None of an output or criterion that has no value in any row."""
 
     spreads: Sequence[Spread | None]
     yields: Mapping[str, Yield | None]

@@ -1,4 +1,4 @@
-"""What the call of a tolerance analysis takes."""
+"""Body of the call of a tolerance analysis."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Whole = BeforeValidator(_whole)
 
 
 class ToleranceIn(Bounded):
-    """What to analyse, and how many products to sample."""
+    """The outputs and criteria to analyse, and how many products to sample."""
 
     model_config = ConfigDict(
         strict=True,

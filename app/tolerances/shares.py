@@ -1,4 +1,4 @@
-"""Which toleranced value causes how much of the variance of each output: Sobol' indices.
+"""Shares of each toleranced value in the variance of each output: Sobol' indices.
 
 Eight scrambled Sobol' sequences of twice as many dimensions give pairs of independent samples A and B, and
 for each factor a sample AB that has this factor from B. First-order shares are estimated after Saltelli 2010

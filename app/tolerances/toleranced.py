@@ -1,4 +1,4 @@
-"""Which values of a design have tolerances, and which of these an analysis can vary."""
+"""Find the values of a design that have tolerances, and those of them that an analysis can vary."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def _factor(cell: Cell, typed: Typed) -> Factor | str:
 
 
 def faults(chosen: Sequence[Varied], warnings: Sequence[Warning]) -> Iterator[Fault]:
-    """What is wrong if nothing, or too much, varies."""
+    """Yield a fault if nothing, or too much, varies."""
     if not chosen:
         others = "; ".join(f"{w.name}: {w.detail}" for w in warnings[:3])
         detail = f"nothing that was asked for follows from a value with a tolerance{others and ': ' + others}"

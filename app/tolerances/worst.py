@@ -65,7 +65,7 @@ def worst(factors: Sequence[Factor], outputs: Outputs, seed: int) -> Worst:
 
 
 def _position(factor: Factor) -> float:
-    """Where the value itself lies, from −1 to 1; outside, where both limits lie on one side of it."""
+    """Position of the value itself, from −1 to 1; outside, where both limits lie on one side of it."""
     half = (factor.high - factor.low) / 2
     return float(np.clip((factor.nominal - (factor.high + factor.low) / 2) / half, -1, 1))
 

@@ -37,7 +37,7 @@ class _Cost(BaseModel):
 
 
 class _Measured(BaseModel):
-    """What was measured of one level: errors by output, of every cell of the plane."""
+    """The measured errors of one level by output, of every cell of the plane."""
 
     cost: _Cost | None = None
     errors: dict[str, JsonValue]

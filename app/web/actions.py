@@ -1,4 +1,4 @@
-"""What forms do: each is a call of the REST interface, then the page that shows what came of it.
+"""Actions of forms: each calls the REST interface, then shows the page with the result.
 
 Without a script in the browser these are all actions there are; with one, `static/design.js` saves by itself.
 `app.api.gate.guard` refuses a form of another site: a browser would send it without asking anyone.
@@ -133,7 +133,7 @@ async def add(id: Id, request: Request, api: TheApi) -> Response:
 
 
 async def _add_step(id: str, request: Request, api: Api, typed: Mapping[str, str]) -> Response:
-    """One more step; its form, where that is not filled in, or refused."""
+    """Add a step; show its form where that is not filled in, or was refused."""
     step, design = await new_step(api, typed), await api.get(f"/designs/{id}", Design)
     patch: Patch = {"steps": {step.name: step.plain()}}
     try:

@@ -25,7 +25,7 @@ _CLIENT = "crankwright.client"
 
 
 def with_related(detail: str, also: Sequence[str]) -> str:
-    """What is wrong, and the other inputs that it is about; `static/api.js` writes the same."""
+    """A fault's sentence and the other inputs that it concerns; `static/api.js` writes the same."""
     return f"{detail}. See also {', '.join(also)}" if also else detail
 
 
@@ -44,7 +44,7 @@ class Refused(Exception):
 
     @property
     def faults(self) -> dict[str, str]:
-        """What is wrong, by the name of the input, with the other inputs that it is about."""
+        """The faults by the name of the input, with the other inputs that they concern."""
         return {fault.name: with_related(fault.detail, fault.also) for fault in self.problem.errors}
 
 
@@ -55,7 +55,7 @@ class Api:
         self._http, self._client = http, client
 
     async def get(self, path: str, kind: type[Kind], **query: Scalar) -> Kind:
-        """What a GET answers, as a model.
+        """The answer of a GET, as a model.
 
         Raises
         ------
@@ -65,7 +65,7 @@ class Api:
         return read(await self.send("GET", path, params=query), kind)
 
     async def find(self, path: str, kind: type[Kind], **query: Scalar) -> Kind | None:
-        """What a GET answers, or None where there is nothing."""
+        """The answer of a GET, or None where there is nothing."""
         try:
             return await self.get(path, kind, **query)
         except Refused as refused:
@@ -74,7 +74,7 @@ class Api:
             return None
 
     async def post(self, path: str, kind: type[Kind], body: object = None, **query: Scalar) -> Kind:
-        """What a POST answers, as a model; it does not wait for geometry.
+        """The answer of a POST, as a model; it does not wait for geometry.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""What the forms of approval and comments do, on the pages of designs and revisions."""
+"""Actions of the forms of approval and comments, on the pages of designs and revisions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What pages show of the approval of a revision, and of comments."""
+"""The approval of a revision, and comments, as pages show them."""
 
 from __future__ import annotations
 

@@ -85,7 +85,7 @@ class ModelBlock:
 
 @dataclass(frozen=True)
 class Refusal:
-    """What a form that was refused holds, and what is wrong by name; all empty without such a form.
+    """The texts of a refused form, and its faults by name; all empty without such a form.
 
     `typed` are fields of the worksheet; `part` is the form of one parameter, analysis or iteration.
     """

@@ -25,7 +25,7 @@ WITHOUT_ANSWER = (404, 422)
 
 @dataclass(frozen=True)
 class ChosenVariant:
-    """What the page shows of a variant; without lines and plots where it cannot be calculated, or not yet."""
+    """A variant as the page shows it; without lines and plots where it is not, or cannot be, calculated."""
 
     NONE: ClassVar[ChosenVariant]
 

@@ -21,7 +21,7 @@ _ID = re.compile("[A-Za-z0-9_]{1,64}")
 
 @dataclass(frozen=True)
 class Asked:
-    """What the form sent: numbers and a design as texts, empty where nothing was chosen.
+    """The texts of the form: numbers and a design, empty where nothing was chosen.
 
     `of` is the design whose revisions the second picker offered; a number of another one means nothing.
     """
@@ -46,7 +46,7 @@ def _is_number(text: str) -> bool:
 
 
 async def compare_page(request: Request, api: Api, id: str, asked: Asked) -> Response:
-    """What differs, and the forms to choose two other revisions."""
+    """Show the differences, and the forms to choose two other revisions."""
     design = await api.get(f"/designs/{id}", Design)
     other = await _other(api, design, asked.design)
     if other is None:

@@ -39,7 +39,7 @@ class AnalysisLine:
 
     @property
     def boundaries(self) -> list[str]:
-        """How the loaded end may be held."""
+        """The ways in which the loaded end may be held."""
         return list(dict.fromkeys(name for kind in self.kinds.values() for name in kind.boundaries))
 
 
@@ -57,7 +57,7 @@ Line = TypeVar("Line", AnalysisLine, IterationLine)
 
 
 def errors_of(part: Mapping[str, str], faults: Mapping[str, str]) -> dict[str, tuple[str, str]]:
-    """What is wrong with the fields of a refused form: the name of the fault and its detail, by field."""
+    """The faults of a refused form's fields: the name of the fault and its detail, by field."""
     match part.get("declare") or part.get("add"):
         case "analysis":
             fields, begins = _OF_ANALYSIS, f"models.{part.get('model', '')}.analyses.{part.get('kind', '')}."
@@ -118,7 +118,7 @@ def _texts(iteration: DesignIteration) -> dict[str, str]:
 
 
 def measures(design: Design, models: Sequence[ModelBlock]) -> Iterator[str]:
-    """What an iteration may run through: the measures of solids, and the outputs of their analyses."""
+    """Yield the names through which an iteration may run: measures of solids, outputs of their analyses."""
     for block in models:
         yield from (f"{block.name}.{measure}" for measure in block.model.measures)
         for name, options in design.models[block.name].analyses.items():
@@ -158,7 +158,7 @@ def _iterations(design: Design, typed: Mapping[str, str]) -> list[JsonValue]:
 
 
 def _value(name: str, text: str) -> JsonValue:
-    """What a field means; nothing where it is empty."""
+    """Read a field; None where it is empty."""
     if not text.strip():
         return None
     if name == "limit" and text.strip().isdecimal() and len(text) < 10:

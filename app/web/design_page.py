@@ -167,7 +167,7 @@ async def revision_page(
     notice: str | None = None,
     status: int = 200,
 ) -> Response:
-    """One revision as it is kept, with what differs from another: the one before, if none is named."""
+    """Show a stored revision, and how it differs from another: the one before, if none is named."""
     design, revision = await asyncio.gather(
         api.get(f"/designs/{id}", Design), _revision(request, api, id, number)
     )
@@ -244,7 +244,7 @@ async def _analyses(
 def _loose(
     fields: list[sheet.Field], faults: Mapping[str, str], wrong: Mapping[str, tuple[str, str]]
 ) -> dict[str, str]:
-    """What is wrong beside the fields of the worksheet and those of a small form."""
+    """The faults that belong neither to a field of the worksheet nor to one of a small form."""
     shown = {name for name, _ in wrong.values()}
     loose = sheet.loose_faults(fields, faults)
     return {name: detail for name, detail in loose.items() if name not in shown}

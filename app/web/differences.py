@@ -1,4 +1,4 @@
-"""What differs between two revisions, line by line."""
+"""Differences between two revisions, line by line."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from app.schemas.designs import Revision
 
 
 class Difference(NamedTuple):
-    """One value that is not the same; empty where a revision has none."""
+    """One value that differs; empty where a revision has none."""
 
     name: str
     old: str

@@ -47,12 +47,12 @@ class Box:
 
     @property
     def link(self) -> str:
-        """Where it stands on the page of the design."""
+        """The link to its place on the page of the design."""
         return LINKS[self.kind].format(self.name)
 
     @property
     def right(self) -> float:
-        """Where wires leave it."""
+        """The coordinate at which wires leave it."""
         return self.x + self.width
 
 
@@ -77,7 +77,7 @@ class Drawing:
 
 @dataclass(frozen=True)
 class _Item:
-    """What takes its place in a column: a block with its rows, or a lane (without a block) for a value."""
+    """An item of a column: a block with its rows, or a lane (without a block) for a value."""
 
     name: str
     column: int
@@ -222,7 +222,7 @@ def _tail(name: str) -> str:
 
 
 def _set(one: NetworkRelation) -> str:
-    """What a relation sets, and how: `inner_diameter = film.bearing_diameter`."""
+    """A relation as text: `inner_diameter = film.bearing_diameter`."""
     return f"{_tail(one.target)} {one.relation.strip()}".strip()
 
 

@@ -72,7 +72,7 @@ def patch_of(design: Names, typed: Mapping[str, str]) -> Patch:
 
 
 def kept(typed: Mapping[str, str]) -> dict[str, str]:
-    """What differs from what the form said at first, which its hidden field `was` holds."""
+    """The fields that differ from the form's first state, which its hidden field `was` holds."""
     try:
         old = _WAS.validate_json(typed.get("was", "{}"))
     except ValueError:
@@ -93,7 +93,7 @@ def _parts(name: str) -> tuple[str, str, str]:
 
 
 def texts(design: Design) -> dict[str, str]:
-    """What a design says, field by field: `.scale`, `film.radial_load`, `film@level`, `model.width`."""
+    """The texts of a design, field by field: `.scale`, `film.radial_load`, `film@level`, `model.width`."""
     blocks = {name: step.inputs for name, step in design.steps.items()}
     blocks |= {name: model.parameters for name, model in design.models.items()}
     fields = {f".{name}": text_of(value) for name, value in design.parameters.items()}
@@ -106,7 +106,7 @@ def texts(design: Design) -> dict[str, str]:
 
 
 def _put(patch: Patch, design: Names, name: str, value: JsonValue) -> None:
-    """One value in its place; what was emptied is removed."""
+    """Put one value in its place, or remove it if it was emptied."""
     block, kind, tail = _parts(name)
     new = None if value == "" else value
     if kind == "@" and tail.startswith(LIMITS):

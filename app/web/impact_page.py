@@ -35,7 +35,7 @@ class Line:
 
     @property
     def effect(self) -> str:
-        """What the version does to it, in words."""
+        """The effect of the version on the design, in words."""
         return EFFECTS[self.impact.effect]
 
     @property

@@ -26,7 +26,7 @@ forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_with_file
 
 @router.get("/worksheets/import")
 async def import_form(request: Request, api: TheApi, job: Text = "", id: Text = "") -> Response:
-    """Where a file is chosen; while its job runs, the wait; once it has ended, the regions or the refusal."""
+    """Show the form for a file; while its job runs, the wait; then the regions or the refusal."""
     if not _JOB.fullmatch(job):
         return _form(request, id)
     work = await api.get(f"/jobs/{job}", Job)

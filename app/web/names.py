@@ -30,7 +30,7 @@ def values_of(
 
 
 def _measures(part: ModelMeasurements) -> dict[str, object]:
-    """What is measured of a solid, by the names of relations, as far as the page has it."""
+    """The measures of a solid, by their names in relations, as far as the page has them."""
     kinds = {
         f"{kind}.{name}": output
         for kind, analysis in part.analyses.items()

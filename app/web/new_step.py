@@ -65,11 +65,11 @@ class NewStep:
         return sheet.of_options(self.template, self.name, {}, self.typed, faults)
 
     def _limits(self) -> dict[str, str]:
-        """What was typed, by the name of the limit."""
+        """The typed texts, by the name of the limit."""
         return self._tails(f"@{LIMITS}")
 
     def _tails(self, sign: str) -> dict[str, str]:
-        """What was typed, by the rest of the control's name behind a sign."""
+        """The typed texts, by the rest of the control's name behind a sign."""
         begins = f"{self.name}{sign}"
         return {
             key.removeprefix(begins): text.strip()
@@ -92,7 +92,7 @@ def versioned(chosen: str) -> tuple[str, int | str]:
 
 
 def beside(typed: Mapping[str, str]) -> dict[str, str]:
-    """What a form says beside the values of the step."""
+    """The texts of a form beside the values of the step."""
     return {name: typed[name] for name in FIELDS if typed.get(name)}
 
 

@@ -24,7 +24,7 @@ DIGITS = 12  # of a shifted angle: 0.1 + 0.2 is 0.3
 
 
 def paste(pasted: PastedTable) -> ReadTable:
-    """What a table gives to the fields of a form; without chosen columns they are proposed by their names.
+    """Read a table into the fields of a form; without chosen columns they are proposed by their names.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def text_of(column: TableColumn) -> str:
 
 
 def _chosen(columns: Sequence[TableColumn], pasted: PastedTable) -> list[ChosenColumn]:
-    """What the user chose; without a choice, or with one of another table, what the names propose."""
+    """The user's choice of columns; without one, or with that of another table, the proposal by names."""
     if pasted.columns is not None and len(pasted.columns) == len(columns):
         return pasted.columns
     fields = _proposed(columns, pasted.fields)
@@ -109,7 +109,7 @@ def _plain(text: str) -> str:
 def _faults(
     columns: Sequence[TableColumn], chosen: Sequence[ChosenColumn], fields: Sequence[TableField]
 ) -> Iterator[str]:
-    """What is wrong with the choice: a unit that does not fit, a field that takes two columns."""
+    """Yield the faults of the choice: a unit that does not fit, a field that takes two columns."""
     by_name = {field.name: field for field in fields}
     taken = [choice.field for choice in chosen if choice.field]
     if not taken:
@@ -163,7 +163,7 @@ def _is_angle(field: TableField) -> bool:
 
 
 def _cycle(axis: TableColumn, taken: Sequence[TableColumn]) -> tuple[list[str], bool]:
-    """What to know of the last point, and whether it is the first one again."""
+    """A remark on the last point, and whether it is the first one again."""
     degrees = unit(axis.unit).factor / unit("deg").factor
     span = abs(axis.values[-1] - axis.values[0]) * degrees
     cycle = next((c for c in CYCLES if abs(span - c) <= SAME_ANGLE), None)
@@ -203,6 +203,6 @@ def _shifted(axis: TableColumn, offset: str) -> TableColumn:
 
 
 def refused(error: InvalidInputs) -> ReadTable:
-    """What is wrong with a text that is not a table, as a page shows it."""
+    """The faults of a text that is not a table, as a page shows them."""
     faults = [f"{fault.name}: {fault.detail}" for fault in error.faults]
     return ReadTable(columns=[], first=[], rows=0, faults=faults)

@@ -88,7 +88,7 @@ def related(design: Design) -> list[str]:
 
 
 def outputs(network: DesignNetwork) -> list[NetworkName]:
-    """What steps compute."""
+    """The outputs of all steps."""
     return [name for name in network.names if name.role == "output"]
 
 

@@ -26,7 +26,7 @@ def script() -> bytes:
 
 @cache
 def tag() -> str:
-    """What distinguishes one version of the file from another."""
+    """A text that differs between versions of the file."""
     return f'"plotly-{version("plotly")}"'
 
 

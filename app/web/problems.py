@@ -50,7 +50,7 @@ def _is_page(request: Request) -> bool:
 
 
 def _place(request: Request) -> str:
-    """Where to go on after signing in: the page that was asked for, or that whose form was sent."""
+    """The page to continue with after signing in: the one requested, or the one whose form was sent."""
     place = request.url
     if request.method not in ("GET", "HEAD"):
         place = URL(request.headers.get("referer", "/")[:_LONGEST])
@@ -58,7 +58,7 @@ def _place(request: Request) -> str:
 
 
 async def _refused(request: Request, error: Exception) -> Response:
-    """What the interface refused under a page."""
+    """The page of an error that the interface answered."""
     assert isinstance(error, Refused)
     if not _is_page(request):
         return JSONResponse(

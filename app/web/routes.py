@@ -120,7 +120,7 @@ async def template(id: Id, version: Number, request: Request, api: TheApi) -> Re
 
 @router.get("/templates/{id}/{version}/solve")
 async def solve_template(id: Id, version: Number, request: Request, api: TheApi) -> Response:
-    """Which values of one input give a wanted output; question and inputs stand in the address."""
+    """Show which values of one input give a wanted output; question and inputs stand in the address."""
     return await template_solve_page(request, api, id, version)
 
 
@@ -196,7 +196,7 @@ async def tolerances(
     job: Annotated[str | None, Query(max_length=64, pattern=r"^[A-Za-z0-9_-]+$")] = None,
     part: Annotated[str, Query(max_length=1)] = "",
 ) -> Response:
-    """What the tolerances of a design do; `part` is what the design page takes in."""
+    """Show the effects of a design's tolerances; `part` is the part that the design page takes in."""
     return await tolerances_page(request, api, id, job, is_part=bool(part))
 
 
@@ -204,7 +204,7 @@ async def tolerances(
 async def explanation(
     id: Id, name: Annotated[str, Path(max_length=140)], request: Request, api: TheApi
 ) -> Response:
-    """Where a model parameter, or the verdict of a criterion, comes from."""
+    """Show where a model parameter, or the verdict of a criterion, comes from."""
     design, chain = await asyncio.gather(
         api.get(f"/designs/{id}", Design),
         api.get(f"/designs/{id}/explain/{quote(name, safe='')}", Explanation, units=units_of(request)),

@@ -14,7 +14,7 @@ HELPS = {"increase": "raise it", "decrease": "lower it"}
 
 @dataclass(frozen=True)
 class Bar:
-    """Where the bar of an elasticity begins, and how long it is."""
+    """The bar of an elasticity: its beginning and its length."""
 
     begin: float
     length: float

@@ -1,4 +1,4 @@
-"""What a form shows of each input and parameter: words, what was typed, its value, what is wrong."""
+"""Fields of a form for inputs and parameters: words, what was typed, its value, what is wrong."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def of_options(
 
 
 def _name_of_fault(option: str, faults: Mapping[str, str]) -> str:
-    """What a fault of an option is called: it may tell its place, `steps.film.tolerance`, or its value."""
+    """The name of an option's fault: of its place, `steps.film.tolerance`, or of its value."""
     names = (n for n in faults if n in (option, f"steps.{option}") or n.startswith(f"{option}."))
     return next(names, option)
 
@@ -140,7 +140,7 @@ def _field(name: str, declared: Declared, text: str, value: object, error: str |
 
 
 def _hint(declared: Declared) -> str:
-    """What an empty field stands for, or how it is written."""
+    """The hint of a field: what an empty one stands for, or how a value is written."""
     if declared.has_default:
         return numbers.in_line(declared.default)
     if declared.default_formula is not None:
@@ -150,6 +150,6 @@ def _hint(declared: Declared) -> str:
 
 
 def loose_faults(fields: list[Field], faults: Mapping[str, str]) -> dict[str, str]:
-    """What is wrong beside the fields: these messages stand above the form."""
+    """The faults that belong to no field; these messages stand above the form."""
     shown = {field.name for field in fields}
     return {name: detail for name, detail in faults.items() if name not in shown}

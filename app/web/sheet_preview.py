@@ -1,4 +1,4 @@
-"""What a worksheet that is not released would change in a design: previewed, nothing saved."""
+"""Preview how a worksheet that is not released would change a design; nothing is saved."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ Prefix = Annotated[str, Path(pattern=r"^[a-z0-9]{10}$")]
 
 @router.get("/sign-in", dependencies=[public()])
 async def sign_in_page(request: Request, back: str = "/") -> Response:
-    """Where a key is typed."""
+    """Show the form for a key."""
     return _page(request, back)
 
 
@@ -69,7 +69,7 @@ async def sign_out(request: Request, identity: TheIdentity) -> Response:
 
 @router.get("/account", dependencies=[needs()])
 async def account(request: Request, api: TheApi) -> Response:
-    """Who one is here, what that may, what of it is used, and one's keys."""
+    """Show the principal: name, roles, usage, and keys."""
     return await _account(request, api)
 
 

@@ -1,4 +1,4 @@
-"""What the pages that solve a design and a template share: the question's answer, its curve and its roots."""
+"""Parts that the solve pages of a design and a template share: the answer, its curve and its roots."""
 
 from __future__ import annotations
 
@@ -93,14 +93,14 @@ def _list(value: object) -> list[float | None]:
 
 @dataclass(frozen=True)
 class Reply:
-    """What the interface said to a question: an answer, that a job makes it, or what is wrong."""
+    """The interface's reply to a question: an answer, a job that makes it, or faults."""
 
     response: httpx.Response | None
     refusal: Refused | None = None
 
     @property
     def goes_on(self) -> bool:
-        """Whether a job makes the answer."""
+        """Whether a job still makes the answer."""
         return self.response is not None and self.response.status_code == ACCEPTED
 
     @property

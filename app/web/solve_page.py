@@ -39,7 +39,7 @@ class Wider:
 
 @dataclass(frozen=True)
 class Asked:
-    """What stands in the form; empty where nothing was typed."""
+    """The texts of the form; empty where nothing was typed."""
 
     typed: Mapping[str, str]
 
@@ -137,7 +137,7 @@ COUNTED = {"met": "met", "not_checked": "not checked"}
 
 
 def _counted(root: DesignRoot) -> str:
-    """How many of the other criteria are met, and how many not checked."""
+    """A sentence on how many of the other criteria are met, and how many not checked."""
     counts = Counter[str](root.verdicts.values())
     return ", ".join(f"{counts[word]} {words}" for word, words in COUNTED.items() if counts[word])
 

@@ -12,7 +12,7 @@ FINISHED = ("released", "withdrawn", "broken")
 
 @dataclass(frozen=True)
 class Stage:
-    """One step of the life; `action` is how the interface calls it."""
+    """One step of the life; `action` is its name in the interface."""
 
     action: str
     title: str
@@ -56,7 +56,7 @@ def stages(sheet: Sheet) -> list[Stage]:
 
 
 def _faults(sheet: Sheet) -> str:
-    """What has to be corrected before a test."""
+    """A sentence on the faults to correct before a test."""
     count = len(sheet.faults)
     if not count:
         return ""

@@ -34,23 +34,23 @@ ON = "on"
 
 @dataclass(frozen=True)
 class Typed:
-    """What stands in the form, and what is wrong with it."""
+    """The texts of the form, and its faults."""
 
     fields: Mapping[str, str]
     faults: Mapping[str, str] = field(default_factory=dict)
     notice: str | None = None
 
     def text(self, name: str, default: str = "") -> str:
-        """What a field holds."""
+        """The text of a field."""
         return self.fields.get(name, default)
 
     def wrong(self, *names: str) -> list[str]:
-        """What is wrong with these members of a study, or with parts of them."""
+        """The faults of these members of a study, or of parts of them."""
         heads = tuple(f"{name}." for name in names if name)
         return [detail for name, detail in self.faults.items() if name in names or name.startswith(heads)]
 
     def wrong_in(self, line: int) -> list[str]:
-        """What is wrong with the place that a line varies."""
+        """The faults of the place that a line varies."""
         place = self.text(f"place.{line}")
         return self.wrong(place, f"vary.{place}") if place else self.wrong("vary") if line == 0 else []
 
@@ -80,7 +80,7 @@ class Typed:
         return body | self._of_method(method)
 
     def _vary(self) -> dict[str, JsonValue]:
-        """What each place takes: values, or two bounds."""
+        """The values of each place: a list, or two bounds."""
         vary: dict[str, JsonValue] = {}
         for line in range(LINES):
             place, values = self.text(f"place.{line}"), self.text(f"values.{line}").strip()
@@ -216,5 +216,5 @@ def _words(criterion: str, require: str) -> set[str]:
 
 
 def again(typed: Mapping[str, str], refused: Refused) -> Typed:
-    """What was typed, with why it was refused."""
+    """The same texts, with the faults for which they were refused."""
     return Typed(typed, refused.faults, None if refused.faults else refused.problem.detail)

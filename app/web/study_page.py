@@ -65,7 +65,7 @@ def _limits(study: Study, criteria: list[Criterion]) -> dict[str, list[float]]:
 
 
 def _sides(one: Criterion) -> tuple[str, str]:
-    """What a criterion judges, an output with its step in front, and the text of its limit."""
+    """The output that a criterion judges, with its step in front, and the text of its limit."""
     left, _, right = (side.strip() for side in one.require.replace(">=", "<=").partition("<="))
     name = Reference.parse(one.name)
     return f"{name.block}.{left}" if name.output and left.isidentifier() else left, right
@@ -88,7 +88,7 @@ async def studies_of(api: Api, design: str) -> list[Study]:
 
 @dataclass(frozen=True)
 class IndexLine:
-    """What moves an output by how much, as the page lists and draws it."""
+    """The influence of a place on an output, as the page lists and draws it."""
 
     place: str
     cells: list[str]
@@ -155,5 +155,5 @@ def _plain(value: float | None) -> str:
 
 
 def values_of(best: Best) -> list[tuple[str, str]]:
-    """Where a row lies and what it gives, as texts."""
+    """The places and outputs of a row, as texts."""
     return [(name, numbers.in_line(quantity)) for name, quantity in {**best.at, **best.outputs}.items()]

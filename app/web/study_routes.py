@@ -22,7 +22,7 @@ ILL_NAMED, STALE, ENDED = 422, 412, 409
 
 @router.get("/designs/{id}/solve")
 async def solve(id: Id, request: Request, api: TheApi) -> Response:
-    """Which value of one parameter gives a wanted output; the question stands in the address."""
+    """Show which value of one parameter gives a wanted output; the question stands in the address."""
     return await solve_page(request, api, id)
 
 
@@ -67,7 +67,7 @@ async def start(id: Id, request: Request, api: TheApi) -> Response:
 
 @forms.post("/designs/{id}/studies/estimate")
 async def estimate(id: Id, request: Request, api: TheApi, part: bool = False) -> Response:
-    """What a new study would take: the form again with it; with `part` alone, for the script of the form."""
+    """Show the cost of a new study above its form; with `part` alone, for the script of the form."""
     typed = await fields(request)
     estimated, faulty, status = None, Typed(typed), 200
     try:

@@ -65,7 +65,7 @@ Values = dict[str, JsonValue]
 
 
 def typed_in(request: Request) -> dict[str, str]:
-    """What was typed, by control."""
+    """The typed texts, by control."""
     return {name: text for name, text in request.query_params.items() if name not in ABOUT}
 
 
@@ -98,7 +98,7 @@ async def _tried(
 
 
 def _empty(template: Template) -> Worksheet:
-    """What stands in place of results while they are calculated; the page's script fills it in."""
+    """An empty worksheet, shown while results are calculated; the page's script fills it in."""
     names = properties(template.outputs)
     return Worksheet(
         template=CalculatedBy(id=template.id, version=template.version),

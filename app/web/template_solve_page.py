@@ -30,7 +30,7 @@ JOB = f"{MARK}job"
 
 @dataclass(frozen=True)
 class Question:
-    """What stands in the form, and the inputs that came with it from the template's page."""
+    """The texts of the form, and the inputs that came with it from the template's page."""
 
     typed: Mapping[str, str]  # by field
     inputs: Mapping[str, str]  # and options, by control of the template's form; empty: the example

@@ -42,7 +42,7 @@ class Moved(NamedTuple):
 async def upgrade_page(
     id: Id, request: Request, api: TheApi, template: Text = "", version: Text = ""
 ) -> Response:
-    """What the upgrade would do; nothing is saved."""
+    """Show the effects of the upgrade; nothing is saved."""
     return await _page(request, api, id, template, version)
 
 

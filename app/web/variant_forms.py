@@ -1,4 +1,4 @@
-"""What the forms of the table of variants do: cells edited in place, a table pasted, a file uploaded.
+"""Actions of the forms of the table of variants: cells edited in place, a table pasted, a file uploaded.
 
 Each becomes one `PUT /designs/{id}/variants` of a sheet; where it is refused, the page shows the table as it
 was given, the message of each faulty cell beside it.
@@ -102,7 +102,7 @@ def _by_name(errors: list[Fault]) -> dict[str, str]:
 
 
 def _cells(upload: _Upload) -> Grid:
-    """What can be shown of a file that was refused."""
+    """The cells of a refused file, as far as they can be shown."""
     try:
         return read_sheet(upload.content, upload.kind)
     except InvalidInputs:

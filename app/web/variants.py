@@ -70,7 +70,7 @@ class Files:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a variant is judged, criterion by criterion."""
+    """The verdicts of a variant, criterion by criterion."""
 
     name: str
     state: str
@@ -99,7 +99,7 @@ class Row:
 
 @dataclass(frozen=True)
 class VariantsTable:
-    """All that the section of the page shows."""
+    """The section of the page with all variants."""
 
     heads: list[Head]
     rows: list[Row]
@@ -154,7 +154,7 @@ def variants_table(
 
 
 def places_of(design: Design, network: DesignNetwork) -> dict[str, str]:
-    """What a variant may override, with the unit in which the design's own value is typed, or declared."""
+    """The places that a variant may override, with the unit of the design's value or of the declaration."""
     names = [name for name in network.names if name.role in ("parameter", "input")]
     return {name.name: _typed_unit(_own(design, name.name)) or name.unit for name in names}
 
@@ -270,7 +270,7 @@ def _files(design: Design, row: VariantResult) -> list[Files]:
 
 
 def _governing(out: VariantsOut) -> str:
-    """Which variant is worst, and in what, in words."""
+    """A sentence that names the worst variant, and its criterion."""
     first = out.governing
     if first is None or not out.variants:
         return ""

@@ -29,7 +29,7 @@ class Banner:
 
     @property
     def unchecked(self) -> list[Line]:
-        """What was not checked, with what to give."""
+        """The criteria that were not checked, each with the input to give."""
         return [line for line in self.lines if line.verdict == "not_checked"]
 
     @property

@@ -34,7 +34,7 @@ async def worksheets(request: Request, api: TheApi, name: Text = "") -> Response
 
 @router.get("/worksheets/new")
 async def new_worksheet(request: Request, api: TheApi) -> Response:
-    """Where a worksheet begins."""
+    """Show the form for a new worksheet."""
     return await start_page(request, api, dict(request.query_params))
 
 
@@ -155,7 +155,7 @@ async def delete(id: Id, request: Request, api: TheApi) -> Response:
 
 
 async def _act(id: str, action: str, body: dict[str, JsonValue], request: Request, api: Api) -> Response:
-    """One step of its life, then the page; with what is missing, where that was refused."""
+    """Carry out one step of its life, then show the page; with what is missing, where that was refused."""
     try:
         await api.send("POST", f"/worksheets/{id}/{action}", json=body or None)
     except Refused as refused:

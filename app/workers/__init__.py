@@ -1,4 +1,4 @@
-"""Where long work runs: outside the server's process, under a deadline and a memory limit.
+"""Run long work outside the server's process, under a deadline and a memory limit.
 
 `LocalProcesses` is for geometry, `WarmProcesses` for calculations, `Inline` for tests; all are a `Worker`.
 A job function says how far it is by `templates.core.progress.report`.

@@ -1,4 +1,4 @@
-"""What every worker can do."""
+"""The operations of every worker."""
 
 import sys
 import threading

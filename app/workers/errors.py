@@ -1,4 +1,4 @@
-"""What can happen to a function that a worker runs, beside what the function itself raises.
+"""Errors of a function in a worker, beside those that the function itself raises.
 
 WorkerError
  ├── JobCrashed         its process died

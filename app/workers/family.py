@@ -15,7 +15,7 @@ _PROC = Path("/proc")
 
 @dataclass(frozen=True)
 class Use:
-    """What a set of processes uses: their number, processor time [s], resident memory [bytes].
+    """Resources of a set of processes: their number, processor time [s], resident memory [bytes].
 
     The processor time includes that of children which have ended and were waited for. Memory that processes
     share is counted for each of them.

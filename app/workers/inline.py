@@ -42,4 +42,4 @@ class Inline:
         return True
 
     def close(self) -> None:
-        """Nothing to end."""
+        """Do nothing: there is nothing to end."""

@@ -1,4 +1,4 @@
-"""What happens inside a job process, from the fork to its end."""
+"""The life of a job process, from the fork to its end."""
 
 import ctypes
 import gc

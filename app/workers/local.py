@@ -150,7 +150,7 @@ class Batch:
         on_progress: Reporter | None,
         cancelled: threading.Event | None,
     ) -> Outcome:
-        """What a process answers; it is kept if it returned something and may run another function."""
+        """The outcome of a process; it is kept if it returned a result and may run another function."""
         outcome = process.finish(limits, on_progress, cancelled)
         self._count += 1
         if isinstance(outcome, Returned) and process.reusable and self._count < MOST_IN_BATCH:

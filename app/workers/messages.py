@@ -1,4 +1,4 @@
-"""What the server and a job process say to each other.
+"""Messages between the server and a job process.
 
 What a function takes and returns is packed by itself within a message. So whoever only passes messages on, as
 a worker on another machine does, imports nothing that a function imports.
@@ -72,7 +72,7 @@ class Returned:
     reusable: bool = False
 
     def result(self) -> object:
-        """What the function returned."""
+        """The result of the function."""
         return self.value.unpacked()
 
 

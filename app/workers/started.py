@@ -1,4 +1,4 @@
-"""What runs functions, by the settings: processes of this machine, or those of other machines."""
+"""Start the workers that the settings name: processes of this machine, or those of other machines."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CHECKS = ("cad.model", "templates.core.checking.check")
 
 @dataclass(frozen=True)
 class Workers:
-    """What runs the functions of jobs, and what runs those of this machine: reports, checks of files.
+    """The workers for jobs, and those of this machine: for reports and checks of files.
 
     `why_silent` says why no process answers that would run a job, if none does.
     """

@@ -1,4 +1,4 @@
-"""What `check` says of a text: its faults; without any, every line on paper with the example's numbers.
+"""Check a text: its faults; without any, every line on paper with the example's numbers.
 
 It runs in a calculation process, as everything that reads a user's text does.
 """
@@ -103,7 +103,7 @@ def _names(sheet: Sheet) -> list[SheetName]:
 
 @dataclass(frozen=True)
 class _Result:
-    """What the example gives in a line."""
+    """The result of the example in a line."""
 
     value: object = None
     unit: str | None = None

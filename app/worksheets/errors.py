@@ -1,4 +1,4 @@
-"""What can be wrong with a request about worksheets, beyond wrong inputs.
+"""Errors of a request about worksheets, beyond wrong inputs.
 
 WorksheetError
     IdTaken             a file, or another worksheet, has the id

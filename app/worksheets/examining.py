@@ -1,4 +1,4 @@
-"""What the service makes of a text; runs in a calculation process, because the text is a user's.
+"""Examine a text; runs in a calculation process, because the text is a user's.
 
 Reading is bounded by the language: so many bytes, statements and operations, no loops. What is left to bound
 are time and memory, which the process does.
@@ -23,7 +23,7 @@ LONGEST_TITLE = 200
 
 @dataclass(frozen=True)
 class Examined:
-    """What a text says of itself, and everything that is wrong with it."""
+    """The contents that a text declares, and all its faults."""
 
     title: str
     digest: str | None
@@ -66,7 +66,7 @@ def tried(id: str, version: int, text: str) -> Tried:
 
 
 def _unusable(cls: type[Template]) -> Iterator[str]:
-    """What a template needs that the language does not ask for."""
+    """Yield what a template needs and the language does not demand."""
     if not cls.formulas:
         yield "it gives nothing: write a formula"
     required = [name for name, declared in cls.inputs.items() if declared.required]

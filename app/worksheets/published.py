@@ -1,4 +1,4 @@
-"""Which worksheets stand among the templates: read again from the database, held against their releases."""
+"""Worksheets among the templates: read again from the database, compared with their releases."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ RELEASED = ("released", "withdrawn")
 
 
 class State(NamedTuple):
-    """What a version is at present; another `edit` says that something of it has changed."""
+    """The present state of a version; another `edit` says that something of it has changed."""
 
     id: str
     number: int
@@ -69,7 +69,7 @@ def page(session: Session, limit: int, after: str | None) -> list[Row]:
 
 
 def states(session: Session) -> tuple[State, ...]:
-    """What every version is at present."""
+    """The present states of all versions."""
     rows = select(Row.id, Row.number, Row.state, Row.edit).order_by(Row.id, Row.number)
     return tuple(State(*row) for row in session.execute(rows))
 

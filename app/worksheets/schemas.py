@@ -1,4 +1,4 @@
-"""What the calls of worksheets take."""
+"""Bodies of the calls of worksheets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can be done with worksheets: draft → tested → reviewed → released → withdrawn.
+"""Operations on worksheets: draft → tested → reviewed → released → withdrawn.
 
 An edit returns to draft; of a released version it begins the next one. Whatever reads a text runs in a
 calculation process. A change is written only if the version is still as it was read.
@@ -236,7 +236,7 @@ class Worksheets:
             return repository.version(session, id, number)
 
     def calculated(self, client: str, function: Callable[[*Ts], T], *args: *Ts) -> T:
-        """What a function makes of a text, in a calculation process.
+        """The result of a function of a text, in a calculation process.
 
         Raises
         ------
@@ -305,7 +305,7 @@ def _draft(id: str, number: int, text: str, reading: Examined) -> Row:
 
 
 def _edited(draft: Row) -> dict[str, object]:
-    """What an edit changes in the row of a version; who reviewed the old text did not review this one."""
+    """The changes of an edit to the row of a version; who reviewed the old text did not review this one."""
     names = ("text", "title", "language", "digest", "faults", "author", "author_principal")
     unsigned: dict[str, object] = {
         "state": "draft",

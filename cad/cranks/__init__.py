@@ -1,1 +1,1 @@
-"""What the crank models share: their parameters and rules, the solid, its volume, and how it is read back."""
+"""Parts that the crank models share: their parameters and rules, the solid, its volume, its reading back."""

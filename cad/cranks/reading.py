@@ -52,7 +52,7 @@ def pin(seen: Seen, webs: Webs) -> dict[str, float]:
 
 
 def stubs(seen: Seen, webs: Webs) -> tuple[list[Surface], list[Surface]]:
-    """What stands on the webs at the front and at the rear: cylinders about the shaft, from the web on."""
+    """The cylinders about the shaft on the webs at the front and at the rear, from the web on."""
     behind = [c for c in seen.about(Z) if c.reach[0] > webs.faces[3] - _CLEAR]
     before = [c.turned(-Z) for c in seen.about(Z) if c.reach[1] < webs.faces[0] + _CLEAR]
     return sorted(before, key=_start), sorted(behind, key=_start)

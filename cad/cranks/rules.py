@@ -1,4 +1,4 @@
-"""What a crank is refused for, always by the names of the parameters and with a way out.
+"""Rules for which a crank is refused, always by the names of the parameters and with a way out.
 
 The rules are a little stricter than geometry requires (by some per cent), so that edges keep clear of each
 other and the kernel draws whatever they accept; and what they accept, the closed form of the volume covers.

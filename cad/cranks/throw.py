@@ -51,22 +51,22 @@ class Throw:
 
     @property
     def inner(self) -> float:
-        """Where the inner face of the web on +z lies."""
+        """The z of the inner face of the web on +z."""
         return self.pin_length / 2
 
     @property
     def outer(self) -> float:
-        """Where its outer face lies."""
+        """The z of its outer face."""
         return self.inner + self.web_thickness
 
     @property
     def journal_end(self) -> float:
-        """Where the journal on +z ends."""
+        """The z of the end of the journal on +z."""
         return self.outer + self.journal_length
 
     @property
     def drilled(self) -> tuple[Vector, Vector]:
-        """Where the drilling's axis leaves the pin, and where it leaves the journal on +z."""
+        """The points where the drilling's axis leaves the pin, and where it leaves the journal on +z."""
         top = Vector(self.outline.throw + self.pin, 0, 0)
         return top, Vector(-self.journal, 0, self.outer + self.journal_length / 2)
 
@@ -84,7 +84,7 @@ class Throw:
         return cut(plate, self._wedge()) if self.inclination > 0 else plate
 
     def _bores(self) -> Iterator[Solid]:
-        """What the bores and the drilling take away; each ends in the air.
+        """Yield the solids that the bores and the drilling take away; each ends in the air.
 
         Bores go through the whole, not through its parts: where a bore crosses from part to part it would
         have an edge, and a drilling that touches such an edge came out wrong.
@@ -98,7 +98,7 @@ class Throw:
             yield self.drill()
 
     def _wedge(self) -> Solid:
-        """What the inclination takes off the web on +z; it stands out into the air on all other sides."""
+        """The wedge that the inclination takes off the web on +z; it stands out into the air elsewhere."""
         room, slope, start = self.outline.half_width / 4, tan(self.inclination), self.incline_start
         left, right = start - room, self.outline.tip + room
         above = self.outer + room * (1 + slope)
@@ -134,7 +134,7 @@ class Throw:
         return turned([((0, z), root[0]), root, *pairwise(corners)], 0.0, 1)
 
     def drill(self) -> Solid:
-        """What the oil drilling takes away, from beyond the pin to beyond the journal."""
+        """The solid that the oil drilling takes away, from beyond the pin to beyond the journal."""
         top, bottom = self.drilled
         way = bottom - top
         lean = way.z / -way.x

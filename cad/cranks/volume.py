@@ -50,7 +50,7 @@ def fillet(radius: float, size: float) -> float:
 
 
 def drilling(t: Throw) -> float:
-    """What the oil drilling takes out of pin, web and journal."""
+    """The volume that the oil drilling takes out of pin, web and journal."""
     if t.drilling == 0:
         return 0.0
     top, bottom = t.drilled

@@ -69,17 +69,17 @@ class WholeShaft:
 
     @cached_property
     def mains(self) -> tuple[float, ...]:
-        """Where the middles of the main journals lie."""
+        """The z of the middles of the main journals."""
         return tuple(self.pitch * k for k in range(len(self.throws) + 1))
 
     @property
     def low(self) -> float:
-        """Where the nose ends."""
+        """The z of the nose's end."""
         return -self.like.journal_length / 2 - self.nose.length
 
     @property
     def high(self) -> float:
-        """Where the flange ends."""
+        """The z of the flange's end."""
         return self.mains[-1] + self.like.journal_length / 2 + self.flange.length
 
     def solid(self) -> Shape:
@@ -125,7 +125,7 @@ class WholeShaft:
                 yield self._placed(part, number)
 
     def _tools(self) -> Iterator[Shape]:
-        """What bores, drillings and bolt holes take away; each ends in the air, but for the bolt holes."""
+        """Yield the solids that bores, drillings and bolt holes take away; all but the last end in air."""
         t = self.like
         if t.journal_bore > 0:
             middle, half = (self.low + self.high) / 2, (self.high - self.low) / 2

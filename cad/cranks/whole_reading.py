@@ -52,7 +52,7 @@ class ThrowSeen:
 
 @dataclass(frozen=True)
 class ShaftSeen:
-    """What a shaft of many throws shows."""
+    """The features of a shaft of many throws, as read from its surfaces."""
 
     seen: Seen
 

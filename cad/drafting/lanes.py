@@ -92,7 +92,7 @@ def _crosses(lane: list[tuple[float, float]], low: float, high: float) -> bool:
 
 
 def _extent(one: Dimension, along: int, scale: float) -> tuple[float, float]:
-    """What a dimension takes of its lane, its words included."""
+    """The length that a dimension occupies in its lane, its words included."""
     ends = sorted(point[along] for point in one.measure.points)
     words = _LETTER * (len(f"{one.measure.value:.6g}") + 2) / scale
     spare = max(0.0, words - (ends[1] - ends[0])) / 2

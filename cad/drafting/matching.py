@@ -1,4 +1,4 @@
-"""Which size in a drawing is which parameter: of its value, and of the sort that its words speak of."""
+"""Match sizes in a drawing with parameters: by their values, and by the sort that their words speak of."""
 
 from __future__ import annotations
 

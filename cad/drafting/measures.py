@@ -1,4 +1,4 @@
-"""What can be dimensioned in the two views of a drawing, read from surfaces of any model."""
+"""Find the sizes that can be dimensioned in the two views of a drawing, from surfaces of any model."""
 
 from __future__ import annotations
 

@@ -99,7 +99,7 @@ def draw(bodies: Sequence[Body], header: Header | None) -> Drawing:
 
 @dataclass(frozen=True)
 class Plan:
-    """How large the drawing is and where its pieces lie, in the coordinates of the section."""
+    """Size of the drawing and places of its pieces, in the coordinates of the section."""
 
     scale: float  # of the paper: mm on paper for each mm of the part
     beside: float  # by how much the end view is moved to the right
@@ -229,7 +229,7 @@ class Page:
         return self.space.add_angular_dim_3p(self._between(points), *_counter_clockwise(points), **style)
 
     def _beyond(self, centre: Point, on: Point) -> Point:
-        """Where the words of a circle stand: outside it, or within a large one."""
+        """The point of a circle's words: outside it, or within a large one."""
         away = on[0] - centre[0], on[1] - centre[1]
         radius = (away[0] ** 2 + away[1] ** 2) ** 0.5
         large = radius * self.plan.scale > 25

@@ -31,7 +31,7 @@ _CLEAR = 1e-5  # [mm]; boxes of the kernel are good to some 1e-7
 
 @dataclass(frozen=True)
 class Frame:
-    """How space lies on the paper: right and up in a view, and towards the eye."""
+    """Directions of space on the paper: right and up in a view, and towards the eye."""
 
     right: Vector
     up: Vector
@@ -66,7 +66,7 @@ class Cut:
 
 @dataclass(frozen=True)
 class View:
-    """What is drawn of one view."""
+    """The lines and faces of one view."""
 
     frame: Frame
     visible: list[Polyline]
@@ -120,7 +120,7 @@ def _upright(bodies: Sequence[Body]) -> Vector:
 
 
 def _sides(shape: Shape, normal: Vector) -> tuple[float, float]:
-    """How far a shape reaches against a normal along an axis, and with it."""
+    """The reach of a shape against a normal along an axis, and with it."""
     box = shape.BoundingBox()
     corners = Vector(box.xmin, box.ymin, box.zmin), Vector(box.xmax, box.ymax, box.zmax)
     low, high = sorted(corner.dot(normal) for corner in corners)
@@ -157,14 +157,14 @@ def _reach(shape: Shape) -> float:
 
 
 def _cut(shape: Shape, normal: Vector) -> list[Face]:
-    """What a plane through the origin cuts of a shape."""
+    """The faces in which a plane through the origin cuts a shape."""
     size = _reach(shape)
     plane = Face.makePlane(2 * size, 2 * size, Vector(0, 0, 0), normal)
     return list(plane.intersect(shape).Faces())
 
 
 def _behind(shape: Shape, normal: Vector) -> list[Shape]:
-    """What of a shape lies behind a plane through the origin."""
+    """The parts of a shape behind a plane through the origin."""
     size = _reach(shape)
     low = Vector(-size, -size, -size) + normal * -size
     box = Solid.makeBox(2 * size, 2 * size, 2 * size, low)

@@ -1,4 +1,4 @@
-"""What can be wrong with a calculation, said so that its user can correct it.
+"""Errors of a calculation, worded so that its user can correct it.
 
 TemplateError
     InvalidInputs       wrong inputs, all of them at once, each a `Fault`

@@ -1,4 +1,4 @@
-"""How a long calculation or a job says how far it is; who listens, if anybody does, is set from outside."""
+"""Report the progress of a long calculation or a job; who listens, if anybody does, is set from outside."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ _USER_TIMEOUT = getattr(socket, "TCP_USER_TIMEOUT", 0)  # Linux
 
 @dataclass(frozen=True)
 class ConnectionLimits:
-    """What one server takes from its clients' connections.
+    """Limits that one server sets to the connections of its clients.
 
     Parameters
     ----------

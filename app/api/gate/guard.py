@@ -200,5 +200,5 @@ def _is_own(origin: str, asked: Authority, scheme: str, hosts: Hosts) -> bool:
 
 
 def _shown(value: bytes) -> str:
-    """What a client sent, as it may stand in a message."""
+    """A text of the client in a form that is safe in a message."""
     return ascii(value[:LONGEST].decode("latin-1"))

@@ -22,7 +22,7 @@ OPEN_FOLDERS = frozenset({"/static", "/static-offline-docs"})
 
 @dataclass(frozen=True)
 class Needs:
-    """One of these roles; without any: whoever has signed in, or anybody if `is_public`."""
+    """The roles of which a caller needs one; without any, who has signed in, or anybody if `is_public`."""
 
     roles: tuple[Role, ...]
     is_public: bool = False
@@ -66,7 +66,7 @@ def public() -> params.Depends:
 
 
 def needs_of(route: BaseRoute) -> Needs:
-    """What a route needs."""
+    """The roles that a route needs."""
     declared = [one.dependency for one in getattr(route, "dependencies", ())]
     needed = [one for one in declared if isinstance(one, Needs)]
     if needed:

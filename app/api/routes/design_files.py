@@ -90,7 +90,7 @@ async def read_model_file(
 
 @dataclass(frozen=True)
 class Wanted:
-    """Which file a request wants: how its model is found, and what the client has and takes."""
+    """The file that a request wants: how to find its model, the client's copy, and the kinds it takes."""
 
     find: Callable[[Session], RevisionModelRow]
     kind: str | None

@@ -54,7 +54,7 @@ async def show_evaluation(
     request: Request,
     prefer: Annotated[str | None, Header(description="`wait=5`, for an answer that was lost")] = None,
 ) -> Response:
-    """What `evaluate`, `solve`, `preview`, `impact` and their like would answer; 202 while the job goes on.
+    """The answer of an `evaluate`, `solve`, `preview`, `impact` or the like; 202 while its job still runs.
 
     An answer that was lost is calculated again: the same, but for the time that it took.
     """

@@ -27,7 +27,7 @@ Id = Annotated[str, Path(max_length=64, examples=["bearing_material"])]
 
 @router.get("")
 def list_library_tables(limit: Limit = 100, cursor: Cursor = None) -> LibraryTables:
-    """Which tables there are."""
+    """The tables of the library."""
     return page_of(LibraryTables, list(tables().values()), limit, cursor, _summary)
 
 

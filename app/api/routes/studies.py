@@ -115,7 +115,7 @@ async def _planned(request: Request, client: str, draft: Draft) -> tuple[Plan, A
 
 
 async def calculated_in_pool(pool: CalculationPool, calculation: Calculation) -> Json:
-    """What a calculation returns; it is ended if the request is."""
+    """Return the result of a calculation; it is ended if the request is."""
     try:
         return await asyncio.shield(asyncio.wrap_future(calculation.future))
     except BaseException:

@@ -28,7 +28,7 @@ KINDS: dict[str, FileKind] = {
 
 
 def _kind(scope: Scope) -> FileKind | None:
-    """Which kind of file a request says it brings."""
+    """The kind of file that a request says it brings."""
     given = Headers(scope=scope).get("content-type", "")
     return KINDS.get(given.partition(";")[0].strip().lower())
 
@@ -37,7 +37,7 @@ class FileRoute(StrictRoute):
     """A route that takes files; other bodies go to the route of the same path that takes JSON."""
 
     def matches(self, scope: Scope) -> tuple[Match, Scope]:
-        """As any route, if the body is a file."""
+        """Match as any route does, if the body is a file."""
         match, child = super().matches(scope)
         return (match, child) if match is not Match.FULL or _kind(scope) else (Match.NONE, {})
 

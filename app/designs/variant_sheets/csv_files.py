@@ -80,7 +80,7 @@ def _meant(cell: str, separator: str) -> str:
 
 
 def _escaped(cell: Value) -> Value:
-    """What `_meant` reads back as it is, and no spreadsheet runs."""
+    """A text that `_meant` reads back unchanged and that no spreadsheet runs."""
     if isinstance(cell, str) and cell.startswith("'") and cell.lstrip("'").startswith(DANGEROUS):
         return f"'{cell}"
     return harmless(cell)

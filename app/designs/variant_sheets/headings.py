@@ -1,4 +1,4 @@
-"""What a heading of a sheet, or the name of a row, means as a person writes it: `Radial load`, `main 1`."""
+"""Read a heading of a sheet, or the name of a row, as a person writes it: `Radial load`, `main 1`."""
 
 from __future__ import annotations
 

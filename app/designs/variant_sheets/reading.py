@@ -39,7 +39,7 @@ class Column:
 
 @dataclass(frozen=True)
 class SheetVariants:
-    """What a sheet says, and where it says it."""
+    """The variants of a sheet, each with its place in the sheet."""
 
     variants: dict[str, dict[str, Raw]]
     addresses: Mapping[tuple[str, str], str]  # of values by variant and place, of names by variant and ""

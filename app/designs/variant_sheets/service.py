@@ -74,7 +74,7 @@ def save_sheet(
 def _faults_of_save(
     designs: Designs, raw: JsonObject, sheet: SheetVariants, listed: Sequence[Fault]
 ) -> Iterator[Fault]:
-    """What a save would refuse in the cells that are left.
+    """Yield the faults for which a save would refuse the remaining cells.
 
     A cell that cannot be linked keeps its variant from being calculated, and one value that is refused keeps
     later steps from it. So what is refused is left out, and the rest is tried once more. In a row with cells

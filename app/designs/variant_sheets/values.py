@@ -27,7 +27,7 @@ _DIGITS = 1e-15
 
 @dataclass(frozen=True)
 class Shape:
-    """How a value stands in a cell: a number with its unit, a relation, or else a text."""
+    """The form of a value in a cell: a number with its unit, a relation, or a text."""
 
     value: Value
     unit: str = ""  # of a number

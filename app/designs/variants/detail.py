@@ -35,7 +35,7 @@ ITERATED = "a design that iterates does so only as it is saved: make the variant
 
 @dataclass(frozen=True)
 class WantedVariant:
-    """Which variant of a design, `base` for the design itself, and which of its outputs; none: all.
+    """The wanted variant of a design, `base` for the design itself, and its wanted outputs; none means all.
 
     `revision` is the newest, if it is None.
     """

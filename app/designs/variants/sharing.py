@@ -27,7 +27,7 @@ MOST_ROWS = 4096
 
 @dataclass(frozen=True)
 class Asking:
-    """What one variant asks a step: its inputs as they were read, by name."""
+    """The inputs of a step for one variant, as they were read, by name."""
 
     block: Block
     raw: Mapping[str, Raw]
@@ -39,7 +39,7 @@ class Asking:
         return self.graph.computed(self.block)
 
     def form(self) -> Hashable:
-        """What the inputs of variants that share an array call have in common; None of one that is alone.
+        """The key that variants must have in common to share an array call; None for one that is alone.
 
         It is the step, the names of the inputs, the shapes of curves, and the values of choices, tables and
         of what is one value for all points.
@@ -153,7 +153,7 @@ class _Rows:
         return template
 
     def _value(self, row: int, declared: Declaration, value: Any) -> Any:
-        """What an attribute is in one row."""
+        """The value of an attribute in one row."""
         axes = declared.axes if isinstance(declared, Profile) else int(isinstance(declared, Curve))
         own = value[row] if isinstance(value, np.ndarray) and value.ndim > axes else value
         return str(own) if isinstance(own, str) else own

@@ -21,7 +21,7 @@ VARIANTS = "variants"
 
 
 def stored(calculation: Calculation, rounds: list[JsonObject], outcomes: Sequence[Outcome]) -> JsonObject:
-    """All that a revision keeps of a calculation and its variants, beside the models."""
+    """The results of a calculation and its variants that a revision keeps, beside the models."""
     own = judged(calculation)
     if not outcomes:
         return results.stored(calculation, rounds, own)
@@ -42,7 +42,7 @@ def _shown(
     failures: Mapping[str, JsonObject],
     problem: JsonObject | None,
 ) -> JsonObject:
-    """One variant as a revision keeps it; what there is none of is left out."""
+    """One variant as a revision keeps it, without empty members."""
     parts: JsonObject = {
         "values": dict(values),
         "outputs": dict(outputs),

@@ -43,7 +43,7 @@ def _model(model: Model, values: Overrides | None) -> Model:
 
 
 def place_name(variant: str, place: str) -> str:
-    """Where a cell of the table stands, in faults: `variants.main_2.clearance`."""
+    """The name of a cell of the table in faults: `variants.main_2.clearance`."""
     return f"variants.{variant}.{place}"
 
 

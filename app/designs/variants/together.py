@@ -33,7 +33,7 @@ ROW_ARRAYS = "{} is calculated at several points; a design with variants gives i
 
 @dataclass(frozen=True)
 class Available:
-    """What a calculation can count on: the catalogues, and what is known of solids."""
+    """The catalogues and the results on solids that a calculation can use."""
 
     catalogues: Catalogues
     measured: Measured
@@ -135,7 +135,7 @@ def _share(runs: Sequence[_Run]) -> None:
 
 
 def _asking(run: _Run) -> Asking | None:
-    """What a step is asked by a variant; None while an input waits for a solid, or is faulty."""
+    """The inputs of a step for one variant; None while an input waits for a solid, or is faulty."""
     block, calculation = run.at, run.calculation
     assert block is not None, "it waits at a step"
     unknown = calculation.pending | calculation.broken

@@ -93,7 +93,7 @@ class _Table:
         return cls(row, stored, models, rows.builds(session, keys), rows.artifacts_of(session, keys))
 
     def row(self, name: str, outputs: Collection[str]) -> VariantResult:
-        """One variant; what does not apply is left out."""
+        """One variant, without members that do not apply."""
         result = self.stored.get(name, {})
         models = {
             model.name.removeprefix(f"{name}."): self._model(model, result.get("failures", {}))

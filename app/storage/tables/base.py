@@ -1,4 +1,4 @@
-"""What all tables share: names of constraints, the canonical text of JSON, and the column that holds it."""
+"""Parts that all tables share: names of constraints, canonical JSON, and the column that holds it."""
 
 import json
 

@@ -53,7 +53,7 @@ class SessionRow(Base):
 
 
 class UsageRow(Base):
-    """What a principal used on a day (UTC)."""
+    """Usage of a principal on a day (UTC)."""
 
     __tablename__ = "usage"
 
@@ -66,7 +66,7 @@ class UsageRow(Base):
 
 
 class StorageRow(Base):
-    """What a principal has stored in all. Triggers of the database raise it with `usage.bytes`."""
+    """Bytes that a principal has stored in all. Triggers of the database raise it with `usage.bytes`."""
 
     __tablename__ = "storage"
 

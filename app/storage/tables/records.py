@@ -8,7 +8,7 @@ from app.storage.tables.base import Base
 
 
 class AuditRow(Base):
-    """Who did what. Rows are only added; a sealer numbers and chains them."""
+    """One action and its author. Rows are only added; a sealer numbers and chains them."""
 
     __tablename__ = "audit"
     __table_args__ = (UniqueConstraint("seq"),)
@@ -26,7 +26,7 @@ class AuditRow(Base):
 
 
 class IdempotencyRow(Base):
-    """What was answered to a request that may be sent again."""
+    """The answer to a request that may be sent again."""
 
     __tablename__ = "idempotency"
     __table_args__ = (Index(None, "operated"),)

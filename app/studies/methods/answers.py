@@ -1,4 +1,4 @@
-"""What an optimisation asks of a design: objectives and criteria for rows of varied values."""
+"""Answers of a design to an optimisation: objectives and criteria for rows of varied values."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Held:
 
 @dataclass(frozen=True)
 class Problem:
-    """What to vary, what to optimise, and which criteria to hold; one objective or several."""
+    """The variables, the objectives, one or several, and the criteria to hold."""
 
     space: Space
     objectives: tuple[Objective, ...]
@@ -143,7 +143,7 @@ def all_refused(problem: Problem, columns: Columns, count: int) -> AllRefused:
 
 
 def _absent(problem: Problem, columns: Columns) -> str:
-    """Which results no row has."""
+    """A sentence on the results that no row has."""
     named = [(one.name, columns.objectives[:, n]) for n, one in enumerate(problem.objectives)]
     named += [(f"criterion {one.name}", columns.values[:, n]) for n, one in enumerate(problem.held)]
     named += [(f"limit of {one.name}", columns.limits[:, n]) for n, one in enumerate(problem.held)]

@@ -83,7 +83,7 @@ class Run:
 
     @property
     def seconds(self) -> float:
-        """What the rows cost [s], as the answers state it."""
+        """The time of the rows [s], as the answers state it."""
         return self.explore.seconds + self._confirm.seconds
 
     @property
@@ -139,6 +139,6 @@ class Run:
 
 
 def unmet(rounds: Sequence[Round]) -> State:
-    """What is the matter with agreed places that are not met."""
+    """The state of a search whose agreed places are not met."""
     verdicts = {verdict for one in rounds for verdict in one.verdicts}
     return "infeasible" if "not_met" in verdicts else "undecided"

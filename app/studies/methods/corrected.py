@@ -29,7 +29,7 @@ NUGGET = 1e-9
 
 @dataclass(frozen=True)
 class Seen:
-    """What a search sees of N rows: objectives to minimise, and how far each criterion is from its limit.
+    """A search's view of N rows: objectives to minimise, and how far each criterion is from its limit.
 
     Attributes
     ----------
@@ -75,11 +75,11 @@ class Corrected:
         self.reserve = np.zeros(len(problem.held))
 
     def __call__(self, unit: Array) -> Seen:
-        """What is promised at places of the unit cube, shape (N, d)."""
+        """The promises at places of the unit cube, shape (N, d)."""
         return self.seen(unit, self.answer(self.problem.space.at(unit)))
 
     def seen(self, unit: Array, columns: Columns) -> Seen:
-        """What is promised where the coarse level has been asked already."""
+        """The promises at places where the coarse level has been asked already."""
         weights = self._weights(unit)
         promise = self._promise(stacked(columns), weights)
         count, held = len(self.problem.objectives), len(self.problem.held)

@@ -20,7 +20,7 @@ from templates.core.arrays import Array
 
 
 class Population(Protocol):
-    """What is used of pymoo's population."""
+    """The part of pymoo's population that is used here."""
 
     def __len__(self) -> int: ...
 
@@ -30,7 +30,7 @@ class Population(Protocol):
 
 
 class Algorithm(Protocol):
-    """What is used of pymoo's algorithms."""
+    """The part of pymoo's algorithms that is used here."""
 
     pop: Population
 

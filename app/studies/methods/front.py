@@ -31,7 +31,7 @@ ROUNDS = 4
 
 @dataclass(frozen=True)
 class Effort:
-    """How hard to search: rows of a generation, generations, confirmed places and rounds at most."""
+    """Effort of a search: rows of a generation, generations, confirmed places and rounds at most."""
 
     population: int = POPULATION
     generations: int = GENERATIONS
@@ -119,7 +119,7 @@ def dominations(objectives: Array) -> Integers:
 
 
 def _state(rounds: list[Round]) -> State | None:
-    """How the search ends with these places; None if it goes on."""
+    """The state in which the search ends with these places; None if it goes on."""
     if not all(one.agrees for one in rounds):
         return None
     if all(one.is_met for one in rounds):

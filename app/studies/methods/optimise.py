@@ -115,7 +115,7 @@ def _next(run: Run) -> Array:
 
 
 def _state(done: list[Round]) -> State | None:
-    """How the search ends with the last round; None if it goes on."""
+    """The state in which the search ends with the last round; None if it goes on."""
     confirmed = done[-1]
     if not np.isfinite(confirmed.confirmed).all():
         return "not_settled"

@@ -1,4 +1,4 @@
-"""How much each varied value matters: slopes at a point, Morris' screening, Sobol' indices.
+"""Influence of each varied value: slopes at a point, Morris' screening, Sobol' indices.
 
 References
 ----------
@@ -181,7 +181,7 @@ def most_base(rows: int, dimensions: int) -> int:
 
 
 def _problem(space: Space) -> dict[str, object]:
-    """What SALib calls a problem: the unit cube."""
+    """The unit cube as a problem of SALib."""
     return {"num_vars": len(space), "names": space.names, "bounds": [[0.0, 1.0]] * len(space)}
 
 

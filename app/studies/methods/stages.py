@@ -35,7 +35,7 @@ class Stage:
 
 
 class Journal(Protocol):
-    """Where stages are kept."""
+    """A store of stages."""
 
     def stored(self, name: str) -> Stage | None:
         """The stage of a name, as it was kept last."""
@@ -50,7 +50,7 @@ class Forgetful:
     """A journal that keeps nothing: for a search that nothing interrupts."""
 
     def stored(self, name: str) -> Stage | None:
-        """Nothing."""
+        """Return no stage."""
 
     def keep(self, name: str, stage: Stage) -> None:
         """Do nothing."""
@@ -93,5 +93,5 @@ class Stages:
         return stage.arrays
 
     def once(self, name: str, make: Callable[[], Array]) -> Array:
-        """What a stage of a single step makes."""
+        """The result of a stage of a single step."""
         return self.stepped(name, lambda: (), lambda number, arrays: (make(),), 1)[0]

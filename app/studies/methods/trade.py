@@ -1,4 +1,4 @@
-"""What each level would have chosen: its optimum, its promise, and what the confirming level says of it."""
+"""Compare the choices of levels: each one's optimum, its promise, and the value at the confirming level."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ class DaskWorker:
         return DaskBatch(self._cluster, lane, uuid.uuid4().hex)
 
     def capacity(self, lane: Lane) -> int:
-        """How many places of the lane are free, as far as this server has seen; 0 without a scheduler."""
+        """Number of free places of the lane, as far as this server has seen; 0 without a scheduler."""
         return self._cluster.free(lane)
 
     def answers(self) -> bool:
@@ -104,4 +104,4 @@ class DaskBatch:
             raise WorkerLost("the machine that ran it was stopped") from None
 
     def close(self) -> None:
-        """Nothing to end: between two functions nothing runs, and the process that waits ends by itself."""
+        """Do nothing: between two functions nothing runs, and the process that waits ends by itself."""

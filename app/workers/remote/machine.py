@@ -1,4 +1,4 @@
-"""What `crankwright worker` runs: a Dask worker whose threads wait for isolated processes of this machine.
+"""The program of `crankwright worker`: a Dask worker whose threads wait for isolated processes here.
 
 Dask's worker never imports the geometry kernel: it passes packed bytes on. If the scheduler goes, all that
 runs is killed, and the machine connects again when there is one.

@@ -1,4 +1,4 @@
-"""What crosses the wire: packed requests and outcomes, which the scheduler and Dask's workers never open.
+"""Data on the wire: packed requests and outcomes, which the scheduler and Dask's workers never open.
 
 The scheduler imports this module, so it needs this program too; of another version is enough.
 """

@@ -1,4 +1,4 @@
-"""What expressions measure: the language of worksheets is asked, so that its own check decides."""
+"""Find what expressions measure: the language of worksheets is asked, so that its own check decides."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Declarations:
     bound: Mapping[str, Sort] = field(default_factory=dict)
 
     def sort(self, text: str, bound: Mapping[str, Sort] | None = None) -> Sort:
-        """What an expression gives.
+        """The sort of an expression.
 
         Parameters
         ----------
@@ -67,7 +67,7 @@ class Declarations:
         return result
 
     def name(self, text: str) -> Part:
-        """What a name gives."""
+        """The meaning of a name."""
         sort = self.bound.get(text) or self.sorts.get(text)
         if sort is None:
             raise FaultyText("unknown_name", f"{text[:40]} is not declared")
@@ -100,7 +100,7 @@ def _remedy(code: str) -> str:
 
 
 def sort_of(text: str, axis: str = "") -> Sort:
-    """What a value measures that is declared in a unit."""
+    """The sort of a value that is declared in a unit."""
     return Sort(Kind(unit(text).base), 0.0, axis=axis)
 
 

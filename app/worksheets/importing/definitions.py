@@ -18,7 +18,7 @@ from app.worksheets.importing.trees import Node
 
 
 class Definitions(ListDefinitions):
-    """What regions define and show, as lines of a worksheet."""
+    """The definitions and results of regions, as lines of a worksheet."""
 
     def take(self, outcome: Outcome, math: Node) -> None:
         """Write the lines of a region that calculates.

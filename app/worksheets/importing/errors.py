@@ -1,4 +1,4 @@
-"""What an import refuses: a whole file, or one construct within it."""
+"""Refusals of an import: of a whole file, or of one construct within it."""
 
 from templates.core.errors import FaultyText
 

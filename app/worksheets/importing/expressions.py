@@ -79,7 +79,7 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
         return replace(term, text=plain)
 
     def named(self, node: Node) -> Term:
-        """What a name stands for."""
+        """The term for which a name stands."""
         key, label = key_of(node), node.attributes.get("labels", "")
         if label == "UNIT":
             return self._unit(key)

@@ -1,4 +1,4 @@
-"""What became of each region of a sheet."""
+"""The outcome of each region of a sheet."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ UNRESOLVED: frozenset[State] = frozenset({"differs", "refused", "blocked"})
 
 @dataclass
 class Outcome:
-    """What became of a region: its state, the lines that stand for it, and both values where there are two.
+    """The outcome of a region: its state, the lines that replace it, and both values where there are two.
 
     `name` is that of the value which is held against `cached`; `first` is the line in which it is declared if
     that is another region's.

@@ -41,7 +41,7 @@ class RegionRecord(TypedDict):
 
 
 class SheetRecord(TypedDict):
-    """What an import says of a sheet."""
+    """The record that an import keeps of a sheet."""
 
     program: str
     origin: int

@@ -1,4 +1,4 @@
-"""What Mathcad's names mean at one place of a sheet: each sees the definitions above it."""
+"""Meanings of Mathcad's names at one place of a sheet: each place sees the definitions above it."""
 
 from __future__ import annotations
 

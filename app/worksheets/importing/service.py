@@ -102,4 +102,4 @@ class Imports:
         return lambda session: link
 
     def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
-        """Nothing is left behind by an import that failed; retention takes its file."""
+        """Do nothing: a failed import leaves nothing behind, and retention takes its file."""

@@ -198,7 +198,7 @@ class Statements:
 
 
 def without_result(node: Node) -> Node:
-    """What a region calculates, without the place of its result."""
+    """The calculation of a region, without the place of its result."""
     return node.parts[0] if node.tag == "eval" and node.parts else node
 
 

@@ -15,7 +15,7 @@ LONGEST = 1_800
 
 @dataclass(frozen=True)
 class Axis:
-    """What a list runs over: the range or the list that gave it its name.
+    """The axis of a list: the range or the list that gave it its name.
 
     `start` is the index of the first item in Mathcad's count. `numbers` are the values of a range.
     """

@@ -9,7 +9,7 @@ from app.worksheets.importing.record import ImportRecord, counted, record_of, un
 
 
 def origin(row: Row) -> SheetOrigin | None:
-    """What a version was imported from, in short; None if somebody typed it."""
+    """The source of an imported version, in short; None if somebody typed it."""
     record = record_of(row)
     return SheetOrigin.model_validate(_short(row, record)) if record is not None else None
 

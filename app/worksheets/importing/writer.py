@@ -1,4 +1,4 @@
-"""What all writers of expressions share: the place in the sheet, and what they ask of it."""
+"""Parts that all writers of expressions share: the place in the sheet, and its questions to the sheet."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MOST_ITEMS = 300
 
 
 class Sheets(Protocol):
-    """What an expression asks of the sheet that is being written."""
+    """The sheet that is being written, as an expression sees it."""
 
     origin: int
     is_labelled: bool

@@ -88,7 +88,7 @@ def is_digest_of(text: str, cls: type[Template]) -> bool:
 
 
 def release_file(cls: type[Template]) -> Path | None:
-    """Where the digests of a released version are recorded: beside its file; None of a worksheet."""
+    """The file of the digests of a released version, beside its own file; None of a worksheet."""
     path = file_of(cls)
     return path and path.with_name(f"{path.stem}.release.json")
 
@@ -157,7 +157,7 @@ def _is_import(node: ast.AST) -> bool:
 
 
 def _imported(node: Any) -> Iterator[tuple[str, str]]:
-    """What an import names, without its module's path, and under which name the file uses it."""
+    """Yield each name that an import imports, without its module's path, and its name in the file."""
     for alias in node.names:
         name = alias.name.rpartition(".")[2]
         yield name, alias.asname or name

@@ -52,7 +52,7 @@ def codes(refusal: InvalidInputs) -> list[str]:
 
 
 def golden_file(cls: type[Template], folder: Path) -> Path:
-    """Where the record of a version stands."""
+    """The file of a version's record."""
     return folder / f"{cls.id}_v{cls.version}.json"
 
 

@@ -1,4 +1,4 @@
-"""What shows when a template calculates its example: refusals, dimensions, its description and its report."""
+"""Faults that show when a template calculates its example: refusals, dimensions, description, report."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CORRECT = "correct the example, or what refuses it"
 
 
 def faults_of_example(cls: type[Template]) -> Iterator[FileFault]:
-    """What is wrong with the example: it must cover the required inputs, and be calculated."""
+    """Yield the faults of the example: it must cover the required inputs, and be calculated."""
     line = _line_of_example(cls)
     if not isinstance(cls.example, dict):
         yield FileFault(
@@ -44,7 +44,7 @@ def faults_of_example(cls: type[Template]) -> Iterator[FileFault]:
 
 
 def faults_of_behaviour(cls: type[Template]) -> Iterator[FileFault]:
-    """What is wrong with a template whose example is calculated: dimensions, description, report."""
+    """Yield the faults of a template whose example is calculated: dimensions, description, report."""
     yield from _dimensions(cls)
     yield from _written(cls, lambda: json.dumps(describe(cls), allow_nan=False), "it cannot be described")
     yield from _written(cls, lambda: _paper(cls), "its formulas cannot be written on paper")

@@ -1,4 +1,4 @@
-"""What is wrong with a file of templates."""
+"""Faults of a file of templates."""
 
 from __future__ import annotations
 

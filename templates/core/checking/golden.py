@@ -20,7 +20,7 @@ NEW_VERSION = "undo the edit, and put the change into a new version"
 
 
 def records(path: Path) -> tuple[Path, ...]:
-    """Where a golden record of a team's file may stand: beside it, or in a folder `golden` beside it."""
+    """The files in which a golden record may stand: beside a team's file, or in a folder `golden` there."""
     return path.with_suffix(".json"), path.parent / "golden" / f"{path.stem}.json"
 
 
@@ -58,7 +58,7 @@ def _read(file: Path) -> dict[str, Any] | None:
 
 
 def differences(cls: type[Template], record: Mapping[str, Any]) -> Iterator[str]:
-    """What a version calculates otherwise than its golden record, a sentence each."""
+    """Yield the differences between a version's results and its golden record, a sentence each."""
     precision = float(record.get("precision", cls.precision))
     for case in [*record["cases"], *record.get("levels", ())]:
         try:

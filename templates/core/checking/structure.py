@@ -1,4 +1,4 @@
-"""What shows in the text of a template before anything is calculated: docstring, attributes, loops."""
+"""Faults that show in the text of a template before anything is calculated: docstring, attributes, loops."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the truth lies: the band around a value whose relative error is stated, and around an expression.
+"""The band of the true value around a value whose relative error is stated, and around an expression.
 
 A stated error e says |v - t| ≤ e |t|: the truth t lies from v/(1 + e) to v/(1 - e). A bound that is not known
 is NaN, and decides nothing.

@@ -1,4 +1,4 @@
-"""One side against the other, each in its band: a verdict for every point, and every place of a curve."""
+"""Compare one side with the other, each in its band: a verdict for every point and place of a curve."""
 
 from __future__ import annotations
 

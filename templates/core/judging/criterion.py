@@ -33,7 +33,7 @@ _RADIAN = registry.Unit("radian")
 
 @dataclass(frozen=True, slots=True)
 class Described:
-    """What a name in a criterion measures: its declared unit, and its words."""
+    """The declared unit and the words of a name in a criterion."""
 
     unit: str
     words: str
@@ -55,7 +55,7 @@ class Limit:
 
     @cached_property
     def remedy(self) -> str:
-        """What to give."""
+        """A sentence on the input to give."""
         unit = "" if self.unit == "1" else f" in {self.unit}"
         row = f", or a row of {self.library}" if self.library else ""
         other = f", or {self.default[1]}" if self.default else ""
@@ -252,7 +252,7 @@ def _ordered(text: str, names: frozenset[str]) -> tuple[str, ...]:
 def _shared_kind(
     value: Relation, limit: Relation, kinds: Mapping[str, Kind], names: Mapping[str, Described]
 ) -> Kind:
-    """What both sides measure."""
+    """The kind of unit of both sides."""
     one, other = value.kind(kinds), limit.kind(kinds)
     if not compatible(one.base, other.base):
         what = f"{one.base:~P}" or "a pure number", f"{other.base:~P}" or "a pure number"

@@ -11,7 +11,7 @@ from templates.core.judging.comparison import NOT_CHECKED, Codes, Verdict
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where the worst value lies: a point of an array, counted from 1, or a place along a curve.
+    """Place of the worst value: a point of an array, counted from 1, or a place along a curve.
 
     A place without a unit is a name: that of a variant of a design.
     """

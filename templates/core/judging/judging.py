@@ -54,7 +54,7 @@ class Instead:
         return np.where(np.equal(codes, NOT_MET), NOT_CHECKED, codes).astype(np.int8)
 
     def parts(self) -> Parts:
-        """What a criterion of single values says instead."""
+        """The members of a judgement of single values in place of these."""
         if self.judgement.verdict not in ("met", "undecided"):
             return {}
         within = "" if self.judgement.verdict == "met" else "within the error of the calculation: "
@@ -150,7 +150,7 @@ def _compared(
     along: Along | None,
     is_shifted: bool,
 ) -> Parts:
-    """What a judgement says of both sides, at the worst place."""
+    """The members of a judgement about both sides, at the worst place."""
     worst = worst_of(criterion, compared)
     rows = compared.rows()
     used = [estimates[name] for name in criterion.names]
@@ -190,7 +190,7 @@ def _counted_from_one(index: tuple[int, ...]) -> int | list[int]:
 
 
 def _counted(rows: Codes) -> Parts:
-    """How many points there are of each verdict; nothing of a single one."""
+    """The number of points of each verdict; nothing of a single one."""
     if isinstance(rows, int):
         return {}
     numbers = np.bincount(rows.ravel(), minlength=len(WORST_FIRST))
@@ -267,7 +267,7 @@ def _needs(worst: Worst, subject: Estimate | None) -> float:
 def _reason(
     criterion: Criterion, parts: Parts, worst: Worst, estimates: Mapping[str, Estimate], needs: float | None
 ) -> str | None:
-    """What to know of a verdict beside its numbers."""
+    """A remark on a verdict beside its numbers."""
     if parts["verdict"] != "undecided":
         return None if parts["is_stated"] else "the error of the model is not stated"
     unknown = [name for name in criterion.names if np.isnan(estimates[name].error).any()]

@@ -84,7 +84,7 @@ def worst_of_rows(criterion: Criterion, compared: Compared, count: int) -> tuple
 
 
 def _clearance(criterion: Criterion, sides: list[Array]) -> Array:
-    """How far the worst bound lies on the safe side of the limit, relative to it where it is not zero.
+    """Distance of the worst bound from the limit, on its safe side; relative where the limit is not zero.
 
     Where the band is open or not known the value itself counts; what does not exist has a finite number too,
     so that it differs from what is not asked about.

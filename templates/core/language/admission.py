@@ -1,4 +1,4 @@
-"""Which results are let through: a point is refused, points of an array are masked, or a warning is noted."""
+"""Admit results: a point is refused, points of an array are masked, or a warning is noted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What stands in the place of a formula's function where there is no Python function: a checked tree.
+"""A checked tree that calculates a formula for which there is no Python function.
 
 A worksheet is text of a user, of which no Python is made. Its formulas, rules and defaults are bodies: they
 are called with a template as functions are, and say themselves what they use and how they are written.
@@ -28,9 +28,9 @@ class Body(ABC):
         """The SI value for the values of a template."""
 
     def seconds(self, points: int) -> float:
-        """How long it takes at so many points, as an order of magnitude [s]."""
+        """The time that it takes at so many points, as an order of magnitude [s]."""
         return 0.0
 
     @abstractmethod
     def latex(self, symbols: Mapping[str, str], times: str) -> str:
-        """How it is written, with symbols or numbers in the place of attributes."""
+        """The expression in LaTeX, with symbols or numbers in the place of attributes."""

@@ -38,7 +38,7 @@ def suspects(template: Template, rule: Requirement) -> tuple[str, ...]:
 
 
 def _compared(result: Outcome) -> Iterator[Operand]:
-    """What was compared in those parts of a rule that do not hold; a side of unknown causes where one is."""
+    """Yield the operands of those parts of a rule that do not hold; a side of unknown causes where one is."""
     if result.comparison is not None:
         yield from (result.comparison.left, result.comparison.right)
     elif result.parts:

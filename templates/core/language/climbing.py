@@ -56,7 +56,7 @@ def reachable(cls: type[Template], ladder: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def has_value(template: Template, output: str) -> Any:
-    """Where an output exists, of the shape of the points or a part of it."""
+    """Mask of the points where an output exists, of the shape of the points or a part of it."""
     formula = template.formulas[output]
     there = ~np.isnan(getattr(template, formula.attribute))
     return formula.inside(there) if isinstance(formula, Profile) else there
@@ -115,7 +115,7 @@ class _Search:
                 return
 
     def _stays(self, rung: Template, left: Mask) -> Mask:
-        """Which of the points left are served by a level."""
+        """Mask of the points left that a level serves."""
         stays = self._met(rung, left)
         if rung.level == self.start:
             stays = stays | ~self._stated(rung)
@@ -139,7 +139,7 @@ class _Search:
         return met
 
     def _wanted(self, rung: Template, name: str, where: Mask | None) -> Mask:
-        """Where an output has a value at the starting level, of the shape of the points of a rung."""
+        """Mask of where an output has a value at the starting level, of the shape of the points of a rung."""
         if rung.level == self.start:
             return np.zeros((), dtype=bool)
         try:

@@ -66,7 +66,7 @@ class _Recording(NDArrayOperatorsMixin):
         return bool(self.value)
 
     def __getattr__(self, name: str) -> Any:
-        """What else numpy's values have, as `shape` and `max`, of the plain value."""
+        """Any other attribute of numpy's values, as `shape` and `max`, of the plain value."""
         if name.startswith("__") or name == "value":
             raise AttributeError(name)
         return getattr(self.value, name)
@@ -126,7 +126,7 @@ class Comparison:
 
     @property
     def share(self) -> float | None:
-        """What must be smaller over what must be larger, at the worst point that counts.
+        """The side that must be smaller over the one that must be larger, at the worst point that counts.
 
         None where it has no meaning: a side is the constant 0, or is not an amount at one of the points.
         """
@@ -256,7 +256,7 @@ def _recorded(ufunc: np.ufunc, inputs: Sequence[Any], result: Any) -> Any:
 
 
 def _calculated(ufunc: np.ufunc, inputs: Sequence[Any]) -> ast.expr | None:
-    """How a ufunc's result is written."""
+    """The expression of a ufunc's result."""
     nodes = _nodes(inputs)
     if nodes is None:
         return None
@@ -273,7 +273,7 @@ def _call(name: str, arguments: Sequence[Any]) -> ast.expr | None:
 
 
 def _nodes(values: Sequence[Any]) -> list[ast.expr] | None:
-    """How values are written, or None if one of them cannot be."""
+    """The expressions of values, or None if one of them cannot be written."""
     nodes = [_operand(value).node for value in values]
     return None if any(node is None for node in nodes) else nodes  # type: ignore[return-value]
 

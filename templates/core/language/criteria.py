@@ -65,7 +65,7 @@ def _check_defaults(criterion: Criterion, inputs: Mapping[str, Input]) -> None:
 
 
 def meanings_of(inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]) -> dict[str, Described]:
-    """What the names measure that a criterion may use: neither words nor tables."""
+    """Unit and words of the names that a criterion may use: neither words nor tables."""
     declared = {**inputs, **formulas}
     return {
         name: Described(one.meaning.unit, one.meaning.words)
@@ -76,7 +76,7 @@ def meanings_of(inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]
 
 @dataclass(frozen=True)
 class Evaluated:
-    """What was evaluated, as criteria see it.
+    """The evaluated values, as criteria see them.
 
     Attributes
     ----------
@@ -128,7 +128,7 @@ def is_due(evaluated: Evaluated, criterion: Criterion) -> bool:
 
 
 def missing_of(evaluated: Evaluated, criterion: Criterion) -> Missing | None:
-    """What the criterion says of a value that is missing, where another comparison can be judged instead.
+    """The criterion's rule for a value that is missing, where another comparison can be judged instead.
 
     It computes no output beyond those evaluated.
     """
@@ -164,7 +164,7 @@ def _judged(evaluated: Evaluated, criterion: Criterion) -> Judgement:
 
 
 def notes(evaluated: Evaluated, criterion: Criterion) -> dict[str, str | None]:
-    """What a judgement says of its level, of the truth of its error, and of its sources."""
+    """The notes of a judgement on its level, on the truth of its error, and on its sources."""
     source = _with_those_of_limits(evaluated, criterion) if evaluated.limits else criterion.source
     return {**level_and_truth(evaluated, criterion.subject), "source": source}
 

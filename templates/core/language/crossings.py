@@ -1,4 +1,4 @@
-"""Where a sampled curve meets its target: crossings closed in to rounding, touches, and jumps across it."""
+"""Find where a sampled curve meets its target: crossings closed in to rounding, touches, and jumps."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Leap:
 
 @dataclass
 class Meetings:
-    """Everything that was found, each in ascending order."""
+    """All places where a curve meets its target, each kind in ascending order."""
 
     roots: list[Place] = field(default_factory=list)
     touching: list[Place] = field(default_factory=list)
@@ -47,7 +47,7 @@ class Meetings:
 
 
 def meetings(curve: SampledCurve, samples: Samples) -> Meetings:
-    """Where the curve meets its target."""
+    """Find where the curve meets its target."""
     result = Meetings()
     if np.isnan(samples.miss).all():
         return result

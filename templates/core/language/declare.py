@@ -1,4 +1,4 @@
-"""What a template is made of: givens, choices, curves, derived givens, formulas and requirements.
+"""Declarations of a template: givens, choices, curves, derived givens, formulas and requirements.
 
 Each is declared once. Its words make the API name, the label and the line in the report; its symbol makes
 the formula on paper; its bounds make the check, the schema and the message.

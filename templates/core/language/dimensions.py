@@ -30,7 +30,7 @@ Checked = Formula[Any] | Requirement
 
 
 def faults(cls: type[Template]) -> list[str]:
-    """What is wrong with the dimensions of a template, a sentence for each formula or rule."""
+    """The faults of a template's dimensions, a sentence for each formula or rule."""
     return [fault for _, fault in faults_by_part(cls)]
 
 

@@ -50,7 +50,7 @@ class Echo:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """What `evaluate` returns; `template` is the evaluated instance with every SI value it computed.
+    """The result of `evaluate`; `template` is the evaluated instance with every SI value it computed.
 
     `level` and `error` (relative; None or NaN where it was not measured) are single values, or arrays of the
     shape of the outputs. `criteria` are those of the template that name no other outputs, worst first.

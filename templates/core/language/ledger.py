@@ -1,4 +1,4 @@
-"""What is noticed while a template is made and evaluated: warnings, and points that mean nothing."""
+"""Notes taken while a template is made and evaluated: warnings, and points that mean nothing."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Mask:
 
 @dataclass
 class Ledger:
-    """What was noticed while a template was made and evaluated."""
+    """Notes taken while a template was made and evaluated."""
 
     typed: dict[str, Typed | str] = field(default_factory=dict)
     warnings: list[Notice] = field(default_factory=list)

@@ -48,7 +48,7 @@ class Condition:
         return not template.ledger.typed.keys().isdisjoint(self.inputs)
 
     def added(self, template: Template, output: str) -> float:
-        """What comes on top of the error: 0 where the inputs do not matter, NaN where it was not measured."""
+        """The addition to the error: 0 where the inputs do not matter, NaN where it was not measured."""
         beneath = template.dependencies(template.formulas[output].attribute)
         if beneath.isdisjoint(template.inputs[name].attribute for name in self.inputs):
             return 0.0
@@ -85,7 +85,7 @@ class Accuracy:
         return frozenset(output for table in self.errors.values() for output in table)
 
     def of(self, template: Template, outputs: Iterable[str]) -> dict[str, Any]:
-        """What `evaluate` reports: none of a text, 0 where the level does not matter, else the estimate.
+        """The errors that `evaluate` reports: of a text none, 0 where the level is irrelevant, or estimates.
 
         An estimate is the largest relative error to expect at the template's level, of a profile relative to
         its largest absolute value; NaN where none is stated. Scalars, or arrays of the shape of the points.
@@ -168,7 +168,7 @@ def _places(grid: Array, values: Array) -> tuple[NDArray[np.intp], NDArray[np.bo
 
 
 def accuracy_file(cls: type[Template]) -> Path | None:
-    """Where the measured errors of a version stand; None of a worksheet, of which none are measured."""
+    """The file of the measured errors of a version; None of a worksheet, of which none are measured."""
     path = file_of(cls)
     return path and path.with_suffix(".accuracy.json")
 

@@ -1,4 +1,4 @@
-"""What a number means: its words, unit, symbol, bounds and source; each declared once."""
+"""The meaning of a number: its words, unit, symbol, bounds and source; each declared once."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Bounds:
         return Bounds(*(None if limit is None else float(scale.to_si(limit)) for limit in limits))
 
     def admits(self, value: Any) -> Any:
-        """Where the value (scalar or array) lies within the limits; NaN does not."""
+        """Mask of the values (scalar or array) within the limits; NaN is not."""
         inside = value == value
         if self.gt is not None:
             inside = inside & (value > self.gt)
@@ -67,7 +67,7 @@ class Bounds:
 
 @dataclass(frozen=True, kw_only=True)
 class Meaning:
-    """What a number means: its words, unit, symbol, bounds and source.
+    """The meaning of a number: its words, unit, symbol, bounds and source.
 
     `domain` is where it means anything, `published` where its source claims it; `remedy` says what to do
     outside. `also` are other names under which it is known. `assumes` are attributes of the template whose
@@ -90,7 +90,7 @@ class Meaning:
     per_level: Mapping[str, tuple[Bounds, Bounds]] = field(default_factory=dict, hash=False)
 
     def at(self, level: str) -> Meaning:
-        """What the number means at a level of fidelity, which may have limits of its own."""
+        """The meaning of the number at a level of fidelity, which may have limits of its own."""
         return self._at_levels.get(level, self) if self.per_level else self
 
     @cached_property
@@ -100,7 +100,7 @@ class Meaning:
 
     @property
     def wanted(self) -> str:
-        """What the value must be, in words: `a whole number ≥ 3 and ≤ 200`, `> 0 mm`, `finite`."""
+        """The demand on the value, in words: `a whole number ≥ 3 and ≤ 200`, `> 0 mm`, `finite`."""
         limits = self.domain.text(self.unit)
         return " ".join(filter(None, ("a whole number" if self.integer else "", limits))) or "finite"
 
@@ -109,7 +109,7 @@ class Meaning:
         return f"{self.scale.from_si(float(si)):.6g}{'' if self.unit == '1' else ' ' + self.unit}"
 
     def admits(self, value: Any) -> Any:
-        """Where an SI value (scalar or array) is finite, within the domain and whole if it must be."""
+        """Mask of SI values (scalar or array) that are finite, in the domain, and whole if they must be."""
         if isinstance(value, float):
             low, high = self.interval
             return low <= value <= high and not (self.integer and value != round(value))

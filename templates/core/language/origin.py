@@ -1,4 +1,4 @@
-"""Where the text of a class comes from: a file, or a worksheet that a user wrote."""
+"""The source text of a class: a file, or a worksheet that a user wrote."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `solve` is asked: the unknown, its bounds and the target, checked before anything is calculated."""
+"""The question of `solve`: the unknown, its bounds and the target, checked before anything is calculated."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def _faulty_inputs(
     declared: Input | None,
     ends: tuple[float, float],
 ) -> list[Fault]:
-    """What is wrong with the other inputs, seen with the unknown in the middle of its bounds."""
+    """The faults of the other inputs, seen with the unknown in the middle of its bounds."""
     curves = [name for name, d in cls.inputs.items() if isinstance(d, (Curve, Table))]
     arrays = [name for name, value in raw.items() if _is_array(value) and name not in curves]
     faults = [Fault(f"inputs.{n}", "not_a_number", "solve takes single values, not arrays") for n in arrays]

@@ -1,4 +1,4 @@
-"""What a request asks of a template, checked as a whole before any formula runs."""
+"""A request to a template, checked as a whole before any formula runs."""
 
 from __future__ import annotations
 

@@ -252,7 +252,7 @@ def evenly(low: float, high: float, count: int = SAMPLES) -> Array:
 
 
 def _inside(low: float, high: float) -> Array:
-    """What divides an interval, without its ends."""
+    """The points that divide an interval, without its ends."""
     return np.linspace(low, high, PARTS + 1)[1:-1]
 
 

@@ -1,4 +1,4 @@
-"""What a template is made of: the classes of givens, choices, curves, formulas and requirements.
+"""Classes of a template's declarations: givens, choices, curves, formulas and requirements.
 
 Authors use the functions of `templates.core.declare`, which make them.
 """
@@ -151,7 +151,7 @@ class Profile(Formula[T]):
         self.along, self.axes = along, axes
 
     def inside(self, places: NDArray[np.bool_]) -> Any:
-        """Where all places of a point hold."""
+        """Mask of the points all of whose places hold."""
         return np.all(places, axis=tuple(range(-self.axes, 0)))
 
     def spread(self, points: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -198,7 +198,7 @@ class Template:
         return True
 
     def measured_case(self) -> str:
-        """Which of the cases of such inputs these are, where errors were measured apart for several."""
+        """The measured case of such inputs, where errors were measured apart for several."""
         return ""
 
     def starting_level(self) -> str:

@@ -222,7 +222,7 @@ class Writer:
         return shown.format(*(text for text, _ in arguments))
 
     def _written_out(self, function: Callable[..., Any], arguments: list[Written]) -> Written | None:
-        """What a function returns, if returning it is all it does and it is a formula."""
+        """The expression that a function returns, if returning it is all it does and it is a formula."""
         try:
             body, parameters = returned(function), syntax(function).args.args
             names = dict(zip((p.arg for p in parameters), arguments, strict=True))

@@ -1,4 +1,4 @@
-"""What stands on paper for a result that no formula writes: how it is calculated, in words.
+"""The method of a result that no formula writes, in words, for its line on paper.
 
 A template reads such a result from a record, as in `self.film.attitude`. Its symbol alone would make a line
 that says nothing, `attitude = attitude`. The physics function that made the record says by `on_paper` how.
@@ -22,14 +22,14 @@ ANY_LEVEL = "solved numerically, by a method that depends on the level"
 def right_side(
     cls: type[Template], formula: Formula[Any], symbols: Mapping[str, str], level: str = ""
 ) -> tuple[str, bool]:
-    """What stands right of the sign of equality, as LaTeX, and whether it is words and no formula."""
+    """The right side of the equation as LaTeX, and whether it is words and not a formula."""
     if words := _words(cls, formula, level):
         return rf"\text{{{words}}}", True
     return expression(formula, symbols), not getattr(formula.function, "has_numbers", True)
 
 
 def _words(cls: type[Template], formula: Formula[Any], level: str) -> str | None:
-    """How a result is calculated, if no formula says so."""
+    """The method of a result in words, if no formula says it."""
     if formula.latex is not None and not formula.latex.startswith(rf"{symbol(formula)}\left("):
         return None
     if isinstance(formula.function, Body):

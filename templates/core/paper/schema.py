@@ -32,7 +32,7 @@ _KEYWORDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum"
 
 
 def describe(cls: type[Template]) -> dict[str, Any]:
-    """Everything that a form, a client or a reader needs to know of one version."""
+    """The description of one version for a form, a client or a reader."""
     sections = documentation(cls)
     return {
         "id": cls.id,

@@ -142,7 +142,7 @@ def _lacks_an_input(template: Template, rule: Requirement) -> bool:
 
 
 def _violation(template: Template, rule: Requirement, decisive: Iterable[Comparison]) -> str:
-    """What is, in words, where a rule does not hold; its sentence with a No where it cannot be written."""
+    """The violation of a rule, in words; its sentence with a No where it cannot be written."""
     broken = [comparison for comparison in decisive if comparison.actual != comparison.sign]
     sides = [
         (_in_words(template, one.left, one.right), one, _in_words(template, one.right, one.left))

@@ -29,7 +29,7 @@ PER_OPERATION, PER_PLACE = 1e-6, 5e-9  # of an operation, and beside it at each 
 
 
 def operations_seconds(operations: int, points: int) -> float:
-    """How long operations take at so many points, as an order of magnitude [s]."""
+    """The time that operations take at so many points, as an order of magnitude [s]."""
     return operations * (PER_OPERATION + PER_PLACE * points)
 
 
@@ -72,7 +72,7 @@ class TreeBody(Body):
         return value
 
     def seconds(self, points: int) -> float:
-        """How long its operations take at so many points, as an order of magnitude [s]."""
+        """The time that its operations take at so many points, as an order of magnitude [s]."""
         return operations_seconds(self._operations, points)
 
     @cached_property
@@ -80,7 +80,7 @@ class TreeBody(Body):
         return sum(1 for _ in nodes_of(self.node))
 
     def latex(self, symbols: Mapping[str, str], times: str) -> str:
-        """How it is written, with symbols or numbers in the place of attributes."""
+        """The expression in LaTeX, with symbols or numbers in the place of attributes."""
         return latex(self.node, {**self._letters, **symbols}, times)
 
     @cached_property

@@ -1,4 +1,4 @@
-"""What the statements of a worksheet make, before it is a class."""
+"""The contents of a worksheet's statements, before they are a class."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ RULE = "line"
 
 @dataclass(frozen=True)
 class Built:
-    """What the statements of a worksheet make; `faults` are all that is wrong with them.
+    """The contents of a worksheet's statements; `faults` are all that is wrong with them.
 
     Attributes
     ----------

@@ -25,7 +25,7 @@ _SYMBOL = re.compile(rf"{_LETTER}(?:[_^](?:[A-Za-z0-9]|\{{[A-Za-z0-9,*+ ]{{1,20}
 
 @dataclass
 class Said:
-    """What the clauses of a statement say."""
+    """The contents of a statement's clauses."""
 
     keywords: Keywords = field(default_factory=lambda: Keywords())
     example: Any = None
@@ -35,7 +35,7 @@ class Said:
 def meaning_of(
     statement: Parsed, unit_text: str, words: lark.Token, clauses: lark.Tree[Any], reader: Reader
 ) -> tuple[Meaning, Said]:
-    """What a declared number means, and its example.
+    """The meaning of a declared number, and its example.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def words_of(statement: Parsed, words: lark.Token) -> str:
 def said_in(
     statement: Parsed, clauses: lark.Tree[Any] | None, reader: Reader, unit_text: str | None = None
 ) -> Said:
-    """What clauses say; bounds need the unit of the declaration."""
+    """Read clauses; bounds need the unit of the declaration."""
     said, keys = Said(), set[str]()
     for clause in clauses.children if clauses else ():
         if clause is not None:
@@ -94,7 +94,7 @@ def said_in(
 
 
 def clause_name(clause: lark.Tree[Any]) -> str:
-    """How a clause begins."""
+    """The first words of a clause."""
     return str(clause.children[0]) if clause.data in ("bound", "said") else str(clause.data)
 
 

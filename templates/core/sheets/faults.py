@@ -1,4 +1,4 @@
-"""What is wrong with a worksheet: each fault with its place, a code, a sentence and a remedy."""
+"""Faults of a worksheet: each with its place, a code, a sentence and a remedy."""
 
 from __future__ import annotations
 

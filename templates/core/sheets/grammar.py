@@ -40,7 +40,7 @@ class Parsed:
 
     @property
     def kind(self) -> str:
-        """What it declares: given, formula, and so on."""
+        """The kind of declaration: given, formula, and so on."""
         return str(self.tree.data)
 
     @property
@@ -113,7 +113,7 @@ def _parts(tree: lark.Tree[Any]) -> int:
 
 
 def _not_understood(chunk: Chunk, error: lark.exceptions.UnexpectedInput) -> SheetFault:
-    """Where a statement is not understood; at its end, where the parser says no place."""
+    """The fault of a statement that is not understood; at its end, where the parser says no place."""
     lines = chunk.text.split("\n")
     is_at_end = isinstance(error, lark.exceptions.UnexpectedEOF) or getattr(error, "token", None) == ""
     row, column = (

@@ -1,4 +1,4 @@
-"""What would be right where a statement is not understood: by the sign there, else by what is missing."""
+"""Remedies of a statement that is not understood: by the sign there, else by what is missing."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _FORMS = {
 
 
 def remedy_of(statement: str, before: str, there: str, expected: Collection[str]) -> str:
-    """What would be right in a statement.
+    """A remedy of a statement.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ class Named:
 
 @dataclass
 class Names:
-    """What the names of a worksheet mean, as `Scope` of its expressions."""
+    """The names of a worksheet, as `Scope` of its expressions."""
 
     sorts: dict[str, Sort] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)  # as declared
@@ -48,7 +48,7 @@ class Names:
     fuel: int = FUEL
 
     def name(self, text: str) -> Part:
-        """What a name stands for.
+        """The part for which a name stands.
 
         Raises
         ------
@@ -114,7 +114,7 @@ class Names:
 
 
 def sort_of(text: str) -> Sort:
-    """What a value measures that is declared in a unit.
+    """The sort of a value that is declared in a unit.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What would be right where an expression is refused: by what is wrong, and by the operation at its place."""
+"""Remedies of an expression that is refused: by its fault, and by the operation at its place."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _GENERAL = {
 
 
 def remedy_at(code: str, tree: lark.Tree[Any], meta: Any, names: Names) -> str:
-    """What would be right in an expression.
+    """A remedy of an expression.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def common_unit(base: pint.Unit) -> str:
 
 
 def _equal(at: lark.Tree[Any], names: Names) -> str:
-    """What the operation at a place needs."""
+    """A sentence on what the operation at a place needs."""
     called = str(at.children[0])[:-1] if at.data == "call" else ""
     if at.data in _EQUAL or called in _EQUAL_CALLS:
         return "write both in the same unit"
@@ -89,7 +89,7 @@ def _equal(at: lark.Tree[Any], names: Names) -> str:
 
 
 def _units(at: lark.Tree[Any], names: Names) -> str:
-    """What the names of an expression measure: `F is in kN, D in mm`."""
+    """The units of the names of an expression: `F is in kN, D in mm`."""
     used = map(str, at.scan_values(lambda token: getattr(token, "type", "") == "NAME"))
     shown = {name: text for name in used if (text := _unit_of(name, names))}
     parts = [f"{name} in {text}" for name, text in list(shown.items())[:MOST_NAMES]]

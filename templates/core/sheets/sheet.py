@@ -71,7 +71,7 @@ class Sheet:
 
     @cached_property
     def names(self) -> tuple[Named, ...]:
-        """What formulas may use, for completion."""
+        """The names that formulas may use, for completion."""
         return tuple(self.built.named.values())
 
     def digest(self) -> str:

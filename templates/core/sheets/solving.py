@@ -79,7 +79,7 @@ class SolveBody(Body):
         return roots[()]
 
     def seconds(self, points: int) -> float:
-        """How long the search takes at so many points, as an order of magnitude [s]."""
+        """The time that the search takes at so many points, as an order of magnitude [s]."""
         return STEPS * (PER_STEP + operations_seconds(self._operations, points))
 
     @cached_property

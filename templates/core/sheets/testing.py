@@ -16,7 +16,7 @@ from templates.core.units.units import Unit
 
 @dataclass(frozen=True)
 class Expected:
-    """One result: the value [SI] that must come out, and how far from it a result may be [SI]."""
+    """One expected result: its value [SI], and the largest difference of a result from it [SI]."""
 
     name: str
     value: Any
@@ -36,7 +36,7 @@ class SheetTest:
 
 @dataclass(frozen=True)
 class TestResult:
-    """How a test ended; the message says what came out."""
+    """The result of a test, with a message."""
 
     __test__ = False  # of no interest to pytest
 
@@ -65,14 +65,14 @@ def _run(cls: type[Template], test: SheetTest) -> TestResult:
 
 
 def _met(template: Template, one: Expected) -> str:
-    """What came out as expected."""
+    """A sentence on the results that are as expected."""
     declared = template.formulas[one.name]
     shown = _shown(getattr(template, declared.attribute), declared.meaning.scale)
     return f"{declared.meaning.words} is {shown}: {one.shown}"
 
 
 def _missed(template: Template, test: SheetTest) -> Iterator[str]:
-    """What came out otherwise than expected."""
+    """Yield a sentence for each result that is not as expected."""
     for one in test.expected:
         declared = template.formulas[one.name]
         value = getattr(template, declared.attribute)
@@ -87,7 +87,7 @@ def _missed(template: Template, test: SheetTest) -> Iterator[str]:
 
 
 def _distance(value: Any, wanted: Any, scale: Unit) -> str:
-    """How far a single value lies from what is expected: `: 8.3 MPa (28 %) too low`."""
+    """The difference of a single value from what is expected, in words: `: 8.3 MPa (28 %) too low`."""
     if np.ndim(value) or np.ndim(wanted) or np.isnan(value):
         return ""
     difference, size = float(value) - float(wanted), abs(float(scale.from_si(wanted)))

@@ -48,7 +48,7 @@ _OPERATIONS = {**OPERATORS, **LOGIC, "if": IF, "list": LIST}
 
 
 class Scope(Protocol):
-    """What the names of an expression mean."""
+    """The names of an expression."""
 
     def name(self, text: str) -> Part:
         """The node of a name, and what it gives.
@@ -73,7 +73,7 @@ class Scope(Protocol):
 
 
 class FaultyPlace(FaultyText):
-    """What is wrong with an expression, and where: `meta` has `line`, `column` and `end_column`."""
+    """A fault of an expression and its place: `meta` has `line`, `column` and `end_column`."""
 
     def __init__(self, error: FaultyText, meta: Any) -> None:
         super().__init__(error.code, str(error))

@@ -63,7 +63,7 @@ def zones() -> Mapping[str, Sequence[Step]]:
 
 
 def _unknown(zone: str) -> str:
-    """Which grades of a zone's letter are shipped, or which letters."""
+    """A sentence on the grades of a zone's letter that are shipped, or on the letters."""
     letters = zone.rstrip("0123456789")
     alike = [name for name in zones() if name.rstrip("0123456789") == letters]
     if alike:

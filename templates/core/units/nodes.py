@@ -15,7 +15,7 @@ ONE = registry.Unit("")
 
 @dataclass(frozen=True)
 class Kind:
-    """What a value is measured in: SI base units; `absolute` for a temperature such as 20 degC."""
+    """The kind of a value: SI base units; `absolute` for a temperature such as 20 degC."""
 
     base: pint.Unit = ONE
     absolute: bool = False
@@ -53,7 +53,7 @@ class Item:
 
     @property
     def text(self) -> str:
-        """As it is written: `loads.main_load_x[2]`."""
+        """The reference as it is written: `loads.main_load_x[2]`."""
         return f"{self.name}[{self.index}]"
 
 
@@ -67,7 +67,7 @@ class Apply:
 
 @dataclass(frozen=True, eq=False)
 class Operation:
-    """How to calculate, and what comes out in terms of what goes in."""
+    """An operation: its function, and the kind of its result from the kinds of its operands."""
 
     sign: str
     calculate: Callable[..., Any]

@@ -89,7 +89,7 @@ class Relation:
         return any(node.operation in CONDITIONS for node in applied_in(self.tree))
 
     def kind(self, kinds: Mapping[str, Kind]) -> Kind:
-        """What the relation gives, from what its names are.
+        """The kind of the relation's value, from the kinds of its names.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""What an operation gives: its kind, from the kinds of what goes in."""
+"""The kind of an operation's result, from the kinds of its operands."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def root(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
 
 
 def keep(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    """That of the first."""
+    """The kind of the first operand."""
     return kinds[0]
 
 

@@ -1,4 +1,4 @@
-"""What a node of an expression gives: a quantity, a temperature, a condition, a list, a choice."""
+"""The sort of an expression's node: a quantity, a temperature, a condition, a list, a choice."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PURE = Kind()
 
 @dataclass(frozen=True)
 class Sort:
-    """What a node gives.
+    """The sort of a node.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ def applied(operation: Operation, parts: Sequence[Part]) -> Part:
 
 
 def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> Sort:
-    """What an operation gives, whatever its lists run over.
+    """The sort of an operation's result, whatever its lists run over.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def _truth(operation: Operation, sorts: list[Sort]) -> bool:
 
 
 def _axis(operation: Operation, sorts: list[Sort]) -> tuple[str, bool]:
-    """What the result runs over, and whether single values meet a list."""
+    """The axis of the result, and whether single values meet a list."""
     axes = list(dict.fromkeys(sort.axis for sort in sorts if sort.axis))
     if operation is LIST:
         if axes:

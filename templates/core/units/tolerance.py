@@ -81,7 +81,7 @@ class Written:
 
 
 def split(text: str) -> Written | None:
-    """What follows the number of a quantity, where it holds a tolerance; None where it does not.
+    """The text behind the number of a quantity, where it holds a tolerance; None where it does not.
 
     Raises
     ------

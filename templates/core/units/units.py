@@ -185,7 +185,7 @@ _KINDS = {
 
 
 def _measured(scale: Unit) -> str:
-    """What a unit measures, in words where there are usual ones."""
+    """The quantity that a unit measures, in words where there are usual ones."""
     dimensions = registry.get_dimensionality(scale.base)
     if _radians(scale.base) and dict(dimensions) == {"[time]": -1}:
         return "an angular speed"

@@ -1,4 +1,4 @@
-"""What was found on solids by finite elements."""
+"""Table of results of finite elements on solids."""
 
 import sqlalchemy as sa
 from alembic import op

@@ -1,4 +1,4 @@
-"""What puts a design in its place among others: tags, and whether it is archived."""
+"""Tables of a design's place among others: tags, and whether it is archived."""
 
 import sqlalchemy as sa
 from alembic import op

@@ -1,4 +1,4 @@
-"""What principals have stored in all, kept as one row each, which follows `usage` by triggers.
+"""The total that each principal has stored, as one row each, which follows `usage` by triggers.
 
 So a server of the schema before, which goes on while another one is upgraded, keeps it right as well.
 """
