@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import re
-
 from pydantic.config import JsonDict
 from starlette.requests import Request
 from starlette.routing import Match
 from starlette.types import Scope
 
 from app.api.reading import StrictRoute
-from app.api.waiting import accepted_kinds
+from app.api.waiting import accepted_weights
 from app.designs.variant_sheets.service import Kind
 from app.presentation.spreadsheets import XLSX
 
@@ -20,7 +18,6 @@ MEDIA: dict[Kind, str] = {
 }
 KINDS: dict[str, Kind] = {media: kind for kind, media in MEDIA.items()}
 JSON = "application/json"
-_WEIGHT = re.compile(r"\bq=([01](?:\.[0-9]{0,3})?)")
 
 _FILE: JsonDict = {"type": "string", "format": "binary"}
 _EXAMPLE = "variant,scale\nunit,1\nmain_1,1.02\nmain_2,1.04\n"
@@ -53,11 +50,6 @@ def sheet_kind(request: Request) -> Kind | None:
     if request.method == "PUT":
         sent = request.headers.get("content-type", "").partition(";")[0]
         return KINDS.get(sent.strip().lower())
-    accepted = dict(accepted_kinds(request.headers.get("accept")))
-    weights = {media: _weight(accepted[media]) for media in (JSON, *KINDS) if media in accepted}
+    accepted = accepted_weights(request.headers.get("accept"))
+    weights = {media: accepted[media] for media in (JSON, *KINDS) if media in accepted}
     return KINDS.get(max(weights, key=lambda media: weights[media], default=JSON))
-
-
-def _weight(parameters: str) -> float:
-    match = _WEIGHT.search(parameters)
-    return float(match[1]) if match else 1.0

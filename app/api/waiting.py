@@ -26,12 +26,23 @@ def later(answer: type[Answer]) -> Responses:
 
 
 MOST_ACCEPTED = 50  # kinds in one Accept; browsers send up to ten
+_WEIGHT = re.compile(r"\bq=([01](?:\.[0-9]{0,3})?)")
 
 
 def accepted_kinds(accept: str | None) -> list[tuple[str, str]]:
     """The media types of an Accept header, each with its parameters."""
     named = (part.partition(";") for part in (accept or "").lower().split(",", MOST_ACCEPTED)[:MOST_ACCEPTED])
     return [(media.strip(), parameters) for media, _, parameters in named]
+
+
+def accepted_weights(accept: str | None) -> dict[str, float]:
+    """The weight `q` of each media type of an Accept header, 0 to 1; 1 where it names none."""
+    return {media: _weight(parameters) for media, parameters in accepted_kinds(accept)}
+
+
+def _weight(parameters: str) -> float:
+    match = _WEIGHT.search(parameters)
+    return float(match[1]) if match else 1.0
 
 
 async def finished(jobs: Jobs, job: str | None, prefer: str | None) -> bool:

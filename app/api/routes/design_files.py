@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated
 
-from fastapi import APIRouter, Header, Response
+from fastapi import APIRouter, Depends, Header, Response
 from fastapi.responses import FileResponse
 from sqlalchemy.orm import Session
 from starlette.concurrency import run_in_threadpool
@@ -20,7 +19,7 @@ from app.api.gate.clients import TheClient
 from app.api.reading import StrictRoute
 from app.api.routes.models import send_file
 from app.api.stored import UNAVAILABLE, UNCHANGED, lost
-from app.api.waiting import LATER, accepted, accepted_kinds, finished
+from app.api.waiting import LATER, accepted, accepted_weights, finished
 from app.designs import stamps, views
 from app.jobs.service import Jobs
 from app.schemas.problems import RouteOptions
@@ -52,6 +51,78 @@ Accept = Annotated[str | None, Header(description=", ".join(MEDIA_TYPES.values()
 IfNoneMatch = Annotated[str | None, Header(description="the ETags of files that are at hand")]
 
 
+@dataclass(frozen=True)
+class FileRequest:
+    """A request for a file of a model, with the services that answer it."""
+
+    database: Database
+    store: Artifacts
+    models: Models
+    jobs: Jobs
+    healing: Healing
+    client: str
+    accept: str | None
+    prefer: str | None
+    if_none_match: str | None
+
+    async def answer(self, find: Callable[[Session], RevisionModelRow], kind: str | None) -> Response:
+        """The file, of the kind that the path names or the client likes best, of the model that `find` finds.
+
+        Raises
+        ------
+        NotFound
+            If there is no such kind, or no such model.
+        """
+        wanted = kind or _accepted(self.accept)
+        prefer = self.prefer or PATIENCE
+        if wanted not in MEDIA_TYPES:
+            raise NotFound(f"there is no model.{wanted[:20]}; there are {', '.join(MEDIA_TYPES)}")
+        key, stamp, old = await run_in_threadpool(self._found, find, wanted)
+        answer = await lost(old.sha256, self.healing, self.jobs, prefer) if old else None
+        if answer is None and (
+            old is None or await run_in_threadpool(_is_outdated, self.models, key, wanted)
+        ):
+            answer = await self._unless_ready(key, wanted, prefer, has_older=bool(old))
+        if answer:
+            return answer
+        file = await run_in_threadpool(lambda: self.models.file(key, wanted))
+        assert file is not None, "a job that has done its work left its file"
+        return await run_in_threadpool(_sent, self.store, file, stamp, self.if_none_match)
+
+    def _found(
+        self, find: Callable[[Session], RevisionModelRow], kind: str
+    ) -> tuple[str, Stamp, File | None]:
+        with self.database.read() as session:
+            model = find(session)
+            return model.build_key or "", stamps.stamp(session, model), views.file(session, model, kind)
+
+    async def _unless_ready(self, key: str, kind: str, prefer: str, *, has_older: bool) -> Response | None:
+        """None once a file is made; 202 if the client does not wait so long, or why it cannot be made."""
+        job = await run_in_threadpool(self.models.request_file, key, kind, self.client)
+        if not await finished(self.jobs, job, prefer):
+            return accepted(job)
+        problem = await run_in_threadpool(self.jobs.problem, job)
+        return problems.answer(problem) if problem and not has_older else None
+
+
+async def file_request(
+    database: TheDatabase,
+    store: TheStore,
+    models: TheModels,
+    jobs: TheJobs,
+    healing: TheHealing,
+    client: TheClient,
+    accept: Accept = None,
+    prefer: Prefer = None,
+    if_none_match: IfNoneMatch = None,
+) -> FileRequest:
+    """The parts of a request that all routes of files have in common."""
+    return FileRequest(database, store, models, jobs, healing, client, accept, prefer, if_none_match)
+
+
+TheFileRequest = Annotated[FileRequest, Depends(file_request)]
+
+
 @router.get("/{id}/model", **FILES)
 @router.get("/{id}/model.{kind}", **FILES)
 @router.get("/{id}/models/{name}/model", **FILES)
@@ -62,89 +133,23 @@ IfNoneMatch = Annotated[str | None, Header(description="the ETags of files that 
 @router.get("/{id}/revisions/{number}/models/{name}/model.{kind}", **FILES)
 async def read_model_file(
     id: Id,
-    database: TheDatabase,
-    store: TheStore,
-    models: TheModels,
-    jobs: TheJobs,
-    client: TheClient,
-    healing: TheHealing,
+    request: TheFileRequest,
     name: Id | None = None,
     kind: Id | None = None,
     number: Number | None = None,
-    accept: Accept = None,
-    prefer: Prefer = None,
-    if_none_match: IfNoneMatch = None,
 ) -> Response:
     """A file of a model, which names its design, model and revision.
 
     Other kinds than STEP are made when first asked for. The answer waits for that, and is 202 if it takes
     longer than the client waits. STEP files and drawings also say inside whose they are.
     """
-
-    def find(session: Session) -> RevisionModelRow:
-        return views.good_model(session, id, name, number)
-
-    wanted = Wanted(find, kind, accept, prefer, if_none_match)
-    return await model_file(wanted, database, store, models, jobs, client, healing)
-
-
-@dataclass(frozen=True)
-class Wanted:
-    """The file that a request wants: how to find its model, the client's copy, and the kinds it takes."""
-
-    find: Callable[[Session], RevisionModelRow]
-    kind: str | None
-    accept: str | None
-    prefer: str | None
-    if_none_match: str | None
-
-
-async def model_file(
-    request: Wanted,
-    database: Database,
-    store: Artifacts,
-    models: Models,
-    jobs: Jobs,
-    client: str,
-    healing: Healing,
-) -> Response:
-    """The answer with a file of a model of a revision."""
-    wanted = request.kind or _accepted(request.accept)
-    prefer = request.prefer or PATIENCE
-    if wanted not in MEDIA_TYPES:
-        raise NotFound(f"there is no model.{wanted[:20]}; there are {', '.join(MEDIA_TYPES)}")
-
-    def find() -> tuple[str, Stamp, File | None]:
-        with database.read() as session:
-            model = request.find(session)
-            return model.build_key or "", stamps.stamp(session, model), views.file(session, model, wanted)
-
-    key, stamp, old = await run_in_threadpool(find)
-    answer = await lost(old.sha256, healing, jobs, prefer) if old else None
-    if answer is None and (old is None or await run_in_threadpool(_is_outdated, models, key, wanted)):
-        answer = await _unless_ready(models, jobs, key, wanted, client, prefer, has_older=bool(old))
-    if answer:
-        return answer
-    file = await run_in_threadpool(lambda: models.file(key, wanted))
-    assert file is not None, "a job that has done its work left its file"
-    return await run_in_threadpool(_sent, store, file, stamp, request.if_none_match)
+    return await request.answer(lambda session: views.good_model(session, id, name, number), kind)
 
 
 def _is_outdated(models: Models, key: str, kind: str) -> bool:
     """Whether a drawing is one of an older program, which had no room for a stamp; it is drawn again."""
     file = models.file(key, kind) if kind in DRAWINGS else None
     return file is not None and not takes_stamp(models.store.read(file.sha256), kind)
-
-
-async def _unless_ready(
-    models: Models, jobs: Jobs, key: str, kind: str, client: str, prefer: str, *, has_older: bool
-) -> Response | None:
-    """None once a file is made; 202 if the client does not wait so long, or why it cannot be made."""
-    job = await run_in_threadpool(models.request_file, key, kind, client)
-    if not await finished(jobs, job, prefer):
-        return accepted(job)
-    problem = await run_in_threadpool(jobs.problem, job)
-    return problems.answer(problem) if problem and not has_older else None
 
 
 def _sent(store: Artifacts, file: File, stamp: Stamp, if_none_match: str | None) -> Response:
@@ -167,10 +172,5 @@ def _sent(store: Artifacts, file: File, stamp: Stamp, if_none_match: str | None)
 def _accepted(accept: str | None) -> str:
     """The kind that the client likes best, of those it likes equally the first; STEP by default."""
     kinds = {media: kind for kind, media in MEDIA_TYPES.items()}
-    liked = [(_weight(more), kinds[media]) for media, more in accepted_kinds(accept) if media in kinds]
+    liked = [(weight, kinds[media]) for media, weight in accepted_weights(accept).items() if media in kinds]
     return max(liked, key=lambda pair: pair[0], default=(1.0, "step"))[1]
-
-
-def _weight(parameters: str) -> float:
-    match = re.search(r"\bq=([01](?:\.[0-9]{0,3})?)", parameters)
-    return float(match[1]) if match else 1.0

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
+from itertools import chain
 from typing import Annotated
 
-from fastapi import APIRouter, Header, Request, Response
+from fastapi import APIRouter, Depends, Header, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.attachments import named
@@ -17,7 +17,8 @@ from app.api.designs import Id, Number, Prefer, Within
 from app.api.gate.clients import TheClient
 from app.api.gate.guard import PAGE_POLICY
 from app.api.reading import StrictRoute
-from app.api.waiting import accepted_kinds, finished, patience, written
+from app.api.threads import Threads
+from app.api.waiting import accepted_weights, finished, patience, written
 from app.jobs.service import Jobs
 from app.presentation.spreadsheets import XLSX
 from app.reports import tables
@@ -40,7 +41,6 @@ TABLES = {
     "xlsx": XLSX,
 }
 PATIENCE = 15.0  # s that a report waits for its pictures, unless the client says otherwise
-WEIGHT = re.compile(r"\bq=([01](?:\.[0-9]{0,3})?)")
 
 
 def _described(kinds: Mapping[str, str], *, later: bool = False) -> RouteOptions:
@@ -57,31 +57,100 @@ Accept = Annotated[str | None, Header(description="the kind wanted; the first if
 IfNoneMatch = Annotated[str | None, Header(description="the ETag of a report that is at hand")]
 
 
+Pictures = Callable[[str, int, str], list[str]]
+"""Requests the pictures of a design's revision for a client; returns the jobs that draw them."""
+
+
+@dataclass(frozen=True)
+class ReportRequest:
+    """A request for a report, with the services that answer it."""
+
+    request: Request
+    reports: Reports
+    press: Press
+    jobs: Jobs
+    threads: Threads
+    client: str
+    units: Units
+    accept: str | None
+    prefer: str | None
+    if_none_match: str | None
+
+    async def answer(
+        self,
+        gather: Callable[..., Report],
+        pictures: Sequence[Pictures],
+        id: str,
+        number: int | None,
+        kind: str | None,
+    ) -> Response:
+        """The report of a revision, the newest if none is named: on the screen or on paper.
+
+        Raises
+        ------
+        NotFound
+            If there is no such kind, design or revision.
+        """
+        wanted = _wanted("report", kind, self.accept, REPORTS)
+        revision = await run_in_threadpool(self.reports.number, id, number)
+        job = await self._waited(pictures, id, revision)
+        report = await self.threads.run_for(
+            self.request, gather, id, revision, self.units, pending=job is not None
+        )
+        return await self._printed(report, wanted, job)
+
+    async def _waited(self, pictures: Sequence[Pictures], id: str, number: int) -> str | None:
+        """The job that still makes pictures of this revision when the client's patience ends, if any does."""
+        lists = [await run_in_threadpool(each, id, number, self.client) for each in pictures]
+        ends = time.monotonic() + patience(self.prefer, PATIENCE)
+        for job in chain.from_iterable(lists):
+            left = max(ends - time.monotonic(), 0.0)
+            if not await finished(self.jobs, job, f"wait={left:.0f}"):
+                return job
+        return None
+
+    async def _printed(self, report: Report, kind: str, job: str | None) -> Response:
+        """A report on the screen or on paper, or that it is as it was."""
+        headers = _headers(report, kind, job)
+        if job is None and self.if_none_match and headers["ETag"] in self.if_none_match:
+            return Response(status_code=304, headers=headers)
+        if kind == "html":
+            body: str | bytes = await run_in_threadpool(page, report)
+        else:
+            pictures = await run_in_threadpool(self.reports.pictures, report)
+            body = await run_in_threadpool(self.press.print, asdict(report), pictures)
+        return Response(body, 202 if job else 200, headers, media_type=REPORTS[kind])
+
+
+async def report_request(
+    request: Request,
+    reports: TheReports,
+    press: ThePress,
+    jobs: TheJobs,
+    threads: TheThreads,
+    client: TheClient,
+    units: Units = "si",
+    accept: Accept = None,
+    prefer: Prefer = None,
+    if_none_match: IfNoneMatch = None,
+) -> ReportRequest:
+    """The parts of a request that all routes of reports have in common."""
+    return ReportRequest(request, reports, press, jobs, threads, client, units, accept, prefer, if_none_match)
+
+
+TheReportRequest = Annotated[ReportRequest, Depends(report_request)]
+
+
 @router.get("/{id}/report", **_described(REPORTS, later=True))
 @router.get("/{id}/report.{kind}", **_described(REPORTS, later=True))
 @router.get("/{id}/revisions/{number}/report", **_described(REPORTS, later=True))
 @router.get("/{id}/revisions/{number}/report.{kind}", **_described(REPORTS, later=True))
 async def show_report(
-    id: Id,
-    reports: TheReports,
-    press: ThePress,
-    jobs: TheJobs,
-    client: TheClient,
-    threads: TheThreads,
-    request: Request,
-    number: Number | None = None,
-    kind: Id | None = None,
-    units: Units = "si",
-    accept: Accept = None,
-    prefer: Prefer = None,
-    if_none_match: IfNoneMatch = None,
+    id: Id, asked: TheReportRequest, number: Number | None = None, kind: Id | None = None
 ) -> Response:
     """The calculation report of a revision, the newest if none is named: on the screen or on paper."""
-    wanted = _wanted("report", kind, accept, REPORTS)
-    revision = await run_in_threadpool(reports.number, id, number)
-    job = await _waited([reports.request_pictures], jobs, id, revision, prefer, client)
-    report = await threads.run_for(request, reports.gather, id, revision, units, pending=job is not None)
-    return await _printed(report, wanted, job, if_none_match, reports, press)
+    reports = asked.reports
+    return await asked.answer(reports.gather, [reports.request_pictures], id, number, kind)
 
 
 @router.get("/{id}/variants/report", **_described(REPORTS, later=True))
@@ -89,46 +158,15 @@ async def show_report(
 @router.get("/{id}/revisions/{number}/variants/report", **_described(REPORTS, later=True))
 @router.get("/{id}/revisions/{number}/variants/report.{kind}", **_described(REPORTS, later=True))
 async def show_variants_report(
-    id: Id,
-    reports: TheReports,
-    press: ThePress,
-    jobs: TheJobs,
-    client: TheClient,
-    threads: TheThreads,
-    request: Request,
-    number: Number | None = None,
-    kind: Id | None = None,
-    units: Units = "si",
-    accept: Accept = None,
-    prefer: Prefer = None,
-    if_none_match: IfNoneMatch = None,
+    id: Id, asked: TheReportRequest, number: Number | None = None, kind: Id | None = None
 ) -> Response:
     """One report for all variants of a revision: the one that governs first, then the table of all.
 
     The worksheet of the design itself follows once, with a picture of every distinct solid.
     """
-    wanted = _wanted("report", kind, accept, REPORTS)
-    revision = await run_in_threadpool(reports.number, id, number)
+    reports = asked.reports
     pictures = [reports.request_pictures, reports.request_variant_pictures]
-    job = await _waited(pictures, jobs, id, revision, prefer, client)
-    gather = reports.gather_variants
-    report = await threads.run_for(request, gather, id, revision, units, pending=job is not None)
-    return await _printed(report, wanted, job, if_none_match, reports, press)
-
-
-async def _printed(
-    report: Report, kind: str, job: str | None, if_none_match: str | None, reports: Reports, press: Press
-) -> Response:
-    """A report on the screen or on paper, or that it is as it was."""
-    headers = _headers(report, kind, job)
-    if job is None and if_none_match and headers["ETag"] in if_none_match:
-        return Response(status_code=304, headers=headers)
-    if kind == "html":
-        body: str | bytes = await run_in_threadpool(page, report)
-    else:
-        pictures = await run_in_threadpool(reports.pictures, report)
-        body = await run_in_threadpool(press.print, asdict(report), pictures)
-    return Response(body, 202 if job else 200, headers, media_type=REPORTS[kind])
+    return await asked.answer(reports.gather_variants, pictures, id, number, kind)
 
 
 @router.get("/{id}/worksheet", **_described(TABLES))
@@ -166,24 +204,6 @@ async def show_worksheet(
     return Response(table, headers=headers, media_type=TABLES[wanted])
 
 
-async def _waited(
-    pictures: Sequence[Callable[[str, int, str], list[str]]],
-    jobs: Jobs,
-    id: str,
-    number: int,
-    prefer: str | None,
-    client: str,
-) -> str | None:
-    """The job that still makes pictures of this revision when the client's patience ends, if any does."""
-    requested = [job for each in pictures for job in await run_in_threadpool(each, id, number, client)]
-    ends = time.monotonic() + patience(prefer, PATIENCE)
-    for job in requested:
-        left = max(ends - time.monotonic(), 0.0)
-        if not await finished(jobs, job, f"wait={left:.0f}"):
-            return job
-    return None
-
-
 def _headers(report: Report, kind: str, job: str | None) -> dict[str, str]:
     headers = {
         "Design-Revision": str(report.revision),
@@ -208,10 +228,5 @@ def _wanted(what: str, kind: str | None, accept: str | None, kinds: Mapping[str,
         if kind not in kinds:
             raise NotFound(f"there is no {what}.{kind[:20]}; there are {', '.join(kinds)}")
         return kind
-    weights = {media: _weight(more) for media, more in accepted_kinds(accept)}
+    weights = accepted_weights(accept)
     return max(kinds, key=lambda name: weights.get(kinds[name], 0.0))
-
-
-def _weight(parameters: str) -> float:
-    match = WEIGHT.search(parameters)
-    return float(match[1]) if match else 1.0

@@ -12,7 +12,6 @@ from fastapi import APIRouter, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import ConfigDict, Field
 from pydantic.config import JsonDict
-from sqlalchemy.orm import Session
 from starlette.concurrency import run_in_threadpool
 
 from app.api.archives import MEDIA_TYPE, archived, distinct
@@ -24,7 +23,6 @@ from app.api.dependencies import (
     TheDesigns,
     TheHealing,
     TheJobs,
-    TheModels,
     TheOnce,
     TheStore,
     TheThreads,
@@ -34,7 +32,7 @@ from app.api.dependencies import (
 from app.api.designs import Id, IfMatch, Number, Prefer
 from app.api.gate.clients import TheClient
 from app.api.reading import StrictRoute
-from app.api.routes.design_files import FILES, Accept, IfNoneMatch, Wanted, model_file
+from app.api.routes.design_files import FILES, IfNoneMatch, TheFileRequest
 from app.api.sheets import ANSWERS, BODIES
 from app.api.stored import UNAVAILABLE, lost
 from app.api.waiting import LATER, accepted, finished, later, patience, written
@@ -51,7 +49,6 @@ from app.schemas.bounded import Bounded, at_most
 from app.schemas.problems import Responses, refusals
 from app.schemas.variants import VariantDetail, VariantsOut
 from app.storage.artifacts import Artifacts
-from app.storage.tables import RevisionModelRow
 from cad.stamp import stamped
 
 router = APIRouter(
@@ -192,29 +189,16 @@ async def show_variant(
 async def read_variant_file(
     id: Id,
     variant: VariantName,
-    database: TheDatabase,
-    store: TheStore,
-    models: TheModels,
-    jobs: TheJobs,
-    client: TheClient,
-    healing: TheHealing,
+    request: TheFileRequest,
     name: Id | None = None,
     kind: Id | None = None,
     number: Number | None = None,
-    accept: Accept = None,
-    prefer: Prefer = None,
-    if_none_match: IfNoneMatch = None,
 ) -> Response:
     """A file of a variant's model, which names its design, variant and revision.
 
     Of the newest revision in which the variant has a finished solid, if none is named.
     """
-
-    def find(session: Session) -> RevisionModelRow:
-        return variant_model(session, id, variant, name, number)
-
-    wanted = Wanted(find, kind, accept, prefer, if_none_match)
-    return await model_file(wanted, database, store, models, jobs, client, healing)
+    return await request.answer(lambda session: variant_model(session, id, variant, name, number), kind)
 
 
 ZIP_FILE: JsonDict = {"type": "string", "format": "binary"}
