@@ -48,5 +48,5 @@ def authorization(key: str | None) -> dict[str, str]:
     if key is None:
         return {}
     if not _KEY.fullmatch(key):
-        raise ValueError("the key has not the form of one: `cw_`, ten letters or digits, `_`, 43 characters")
+        raise ValueError("this is not a key: `cw_`, ten letters or digits, `_`, 43 characters")
     return {"Authorization": f"Bearer {key}"}

@@ -289,7 +289,7 @@ def _require_free(session: Session, name: str) -> None:
 def _require_own(principal: str) -> None:
     who = acting()
     if who.id != principal and not who.may("admin"):
-        raise NotOwn("keys and usage of another principal are left to that or to an administrator")
+        raise NotOwn("only the principal or an administrator may see and change these keys and this usage")
 
 
 def _in_order(roles: Iterable[Role]) -> list[str]:

@@ -316,4 +316,4 @@ def _require_own(session: Session, id: str, client: str) -> None:
     """
     own = acting().id in BUILT_IN or turns.client_of(session, id) == client
     if not own and not _administers():
-        raise NotOwn("the job is another principal's: only that, or an administrator, cancels it")
+        raise NotOwn("the job belongs to another principal: only they or an administrator can cancel it")

@@ -94,7 +94,7 @@ def _repair(settings: Settings) -> None:
     from app.maintenance.repair import repair  # the geometry kernel, which the other commands do without
 
     if settings.database_url and sqlite_file(settings.database_url) is None:
-        raise CannotRun("The servers make lost files again by themselves, when they are asked for.")
+        raise CannotRun("The servers make lost files again when somebody asks for them.")
     path = database_file(settings.data, settings.database_url)
     try:
         folder = DataFolder(settings.data)

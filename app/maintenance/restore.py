@@ -66,7 +66,7 @@ def restore(archive: Path, data: Path, say: Say) -> Restored:
             restored = unpacked(archive, folder, FORMAT)
             _verify(folder, restored)
         except BROKEN as error:
-            raise CannotRun(f"{archive} is damaged or no backup of Crankwright: {error}.") from error
+            raise CannotRun(f"{archive} is damaged or is not a backup of Crankwright: {error}.") from error
         say(f"verified: the database and {len(restored.artifacts)} artifacts")
         _sync_all(folder)
         os.rename(folder, data)
@@ -101,7 +101,7 @@ def unpacked(archive: Path, folder: Path, form: int) -> Restored:
     with tarfile.open(archive, "r|*") as tar:
         for entry in tar:
             if restored.end is not None:
-                raise CannotRun(f"The archive goes on behind its end, with {entry.name[:100]!r}.")
+                raise CannotRun(f"The archive continues beyond its end, with {entry.name[:100]!r}.")
             file = tar.extractfile(entry) if entry.isreg() else None
             if file is None:
                 raise CannotRun(f"The archive holds {entry.name[:100]!r}, which is not a plain file.")
@@ -122,7 +122,7 @@ def _take(entry: tarfile.TarInfo, file: IO[bytes], folder: Path, restored: Resto
     elif (artifact := ARTIFACT.fullmatch(entry.name)) and restored.database:
         _take_artifact(artifact[2], file, folder / entry.name, restored)
     else:
-        raise CannotRun(f"The archive holds {entry.name[:100]!r}, which no backup of ours holds there.")
+        raise CannotRun(f"The archive holds {entry.name[:100]!r}, which no backup of Crankwright puts there.")
 
 
 def _take_artifact(sha: str, file: IO[bytes], place: Path, restored: Restored) -> None:
@@ -147,7 +147,7 @@ def _manifest(entry: tarfile.TarInfo, file: IO[bytes], form: int) -> JsonObject:
 
 def _note(entry: tarfile.TarInfo, file: IO[bytes]) -> JsonObject:
     if entry.size > LARGEST_NOTE:
-        raise CannotRun(f"{entry.name} in the archive has {entry.size} bytes, more than any backup's.")
+        raise CannotRun(f"{entry.name} in the archive has {entry.size} bytes, more than any backup writes.")
     note = json.loads(file.read())
     if not isinstance(note, dict):
         raise CannotRun(f"{entry.name} in the archive is not what this program writes.")

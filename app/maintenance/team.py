@@ -93,7 +93,7 @@ def restore(settings: Settings, url: str, archive: Path, say: Say) -> Restored:
         try:
             restored = unpacked(archive, folder, FORMAT_OF_DUMP)
         except BROKEN as error:
-            raise CannotRun(f"{archive} is damaged or no backup of Crankwright: {error}.") from error
+            raise CannotRun(f"{archive} is damaged or is not a backup of Crankwright: {error}.") from error
         require_whole(restored)
         say(f"verified: the database and {len(restored.artifacts)} artifacts")
         for sha in restored.artifacts:

@@ -79,7 +79,7 @@ def require_connection(url: str) -> None:
             pass
     except DBAPIError as error:
         reason = str(error.orig).strip().partition("\n")[0]
-        raise DatabaseUnavailable(f"CRANKWRIGHT_DATABASE_URL leads nowhere ({reason})") from error
+        raise DatabaseUnavailable(f"CRANKWRIGHT_DATABASE_URL leads to no database ({reason})") from error
     finally:
         engine.dispose()
 

@@ -221,4 +221,4 @@ def test_a_refused_part_keeps_what_was_typed(http, throw, typed, field):
         rf'<input name="{field}"[^>]*aria-invalid="true"[^>]*>\s*<span class="field-error"', answer.text
     )
     assert beside
-    assert f"{field}</a> of the {typed.get('declare') or typed.get('add')} is not possible so" in answer.text
+    assert f"{field}</a> of the {typed.get('declare') or typed.get('add')} was not accepted" in answer.text

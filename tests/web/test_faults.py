@@ -29,7 +29,7 @@ def test_a_narrow_screen_shows_why_nothing_was_saved_and_goes_to_the_fault(open_
     expect(page.locator("[data-state]")).to_be_visible()
     page.get_by_label("Radial load").fill("25 mm")
     save(page)
-    expect(page.locator("[data-state]")).to_contain_text("not possible so")
+    expect(page.locator("[data-state]")).to_contain_text("not accepted")
     expect(page.locator("[data-state]")).to_be_visible()
     expect(page.get_by_label("Radial load")).to_be_focused()
     expect(page.get_by_label("Radial load")).to_be_in_viewport()

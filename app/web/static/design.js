@@ -108,7 +108,7 @@ function refuse(error) {
   state.textContent = "";
   if (!(error instanceof Refused)) return tell(`The service does not answer: ${error.message}`);
   const loose = showFaults(form, error.faults);
-  if (error.status !== CONFLICT) state.replaceChildren("not possible so: see the message beside ", ...linksToFaults());
+  if (error.status !== CONFLICT) state.replaceChildren("not accepted: see the message beside ", ...linksToFaults());
   if (loose.size || !error.faults.size) tell([...loose.values()].join("; ") || error.message);
 }
 

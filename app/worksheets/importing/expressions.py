@@ -70,7 +70,7 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
         try:
             value = float(node.text)
         except ValueError:
-            raise Untranslatable("number that is none", "write the number") from None
+            raise Untranslatable("malformed number", "write the number") from None
         if not math.isfinite(value) or abs(value) >= 1e300:
             raise Untranslatable("infinity", "give a number")
         text = node.text.strip().lstrip("+")
