@@ -13,9 +13,10 @@ from app.designs import repository
 from app.designs.document import merge
 from app.designs.errors import StaleRevision
 from app.designs.news import note_revision
+from app.designs.reading import read_document
 from app.designs.repository import Written
 from app.designs.results import ModelState
-from app.designs.service import Designs, Saved, read_document
+from app.designs.service import Designs, Saved
 from app.identity.audit import record
 from app.plain import JsonObject, Raw
 from app.schemas.bounded import Bounded

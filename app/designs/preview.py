@@ -14,8 +14,9 @@ from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document, merge
 from app.designs.graph import build_graph, raise_if
 from app.designs.judging import judged
-from app.designs.service import analysed, built, read_document, resolved
+from app.designs.reading import read_document, resolved
 from app.designs.starting import starts
+from app.designs.stored_solids import analysed, built
 from app.designs.variants.calculating import checked
 from app.designs.variants.judging import merged
 from app.designs.variants.outcome import Outcome

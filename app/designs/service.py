@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from pydantic import ValidationError
 from sqlalchemy.orm import Session
 
 from app.calculations.begun import Begun
@@ -13,37 +12,33 @@ from app.calculations.steps import begun_steps
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository
 from app.designs.automap import proposals
-from app.designs.calculate import Analysed, Calculation, Measured, Measures, Outputs, calculate
+from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document, merge
 from app.designs.errors import StaleRevision
 from app.designs.graph import Graph, build_graph, raise_if
 from app.designs.news import note_revision
+from app.designs.reading import read_document, resolved
 from app.designs.recent import Prepared, Recent
 from app.designs.repository import Written
 from app.designs.starting import starts
+from app.designs.stored_solids import analysed, built
 from app.designs.variants import stored as variants
 from app.designs.variants.calculating import checked
 from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available
 from app.jobs.service import Jobs
-from app.plain import Json, JsonObject, Raw
+from app.plain import JsonObject, Raw
 from app.reference import Reference
 from app.schemas.designs import Proposal
-from app.solids import analysis_rows as analyses
-from app.solids import rows
 from app.solids.ages import renew
-from app.solids.questions import Question, under_load
 from app.storage.database import Database, Unit
 from app.storage.idempotency import Once
-from cad.model import CadModel
-from cad.regenerate import build_key
-from templates.core.errors import Fault, InvalidInputs, plain
+from templates.core.errors import Fault
 
 REGENERATE, REGENERATE_SLOWLY = "regenerate", "regenerate_and_analyse"
 CALCULATE = "calculate_and_regenerate"
 """Kinds of jobs: the second is that of designs whose relations use finite elements, the third that of designs
 with steps for which the save did not wait."""
-LONGEST_PLACE = 200  # characters of where in a document something is wrong
 
 
 @dataclass(frozen=True)
@@ -292,64 +287,6 @@ def _require_match(expected: str | None, head: int) -> None:
         raise StaleRevision(expected, head)
 
 
-def read_document(raw: Mapping[str, Raw]) -> Document:
-    """A document from JSON.
-
-    Raises
-    ------
-    InvalidInputs
-        With everything that has not the shape of a design.
-    """
-    try:
-        return Document.model_validate(raw)
-    except ValidationError as error:
-        raise InvalidInputs(map(_fault, error.errors(include_url=False, include_input=False))) from None
-
-
-def _fault(error: Mapping[str, Json]) -> Fault:
-    place = ".".join(str(part)[:LONGEST_PLACE] for part in error["loc"])
-    return Fault(plain(place, LONGEST_PLACE) or "design", error["type"], error["msg"])
-
-
-def resolved(document: Document, catalogues: Catalogues) -> Document:
-    """The document with every version pinned: latest is resolved once, when a step or model comes in."""
-    plain = document.model_copy(deep=True)
-    for step in plain.steps.values():
-        if not isinstance(step.version, int) and step.template in catalogues.templates.ids:
-            step.version = catalogues.templates.latest(step.template).version
-    for model in plain.models.values():
-        if not isinstance(model.version, int) and model.id in catalogues.models.ids:
-            model.version = catalogues.models.latest(model.id).version
-    return plain
-
-
-def built(database: Database) -> Measured:
-    """Measurements of the models that have been built.
-
-    It is looked up when asked for: a step may take minutes, and no connection is held meanwhile.
-    """
-
-    def measured(shape: CadModel) -> Measures | None:
-        with database.read() as session:
-            row = rows.build(session, build_key(shape))
-            return row.measurements["measures"] if row else None
-
-    return measured
-
-
 def analyses_wanted(graph: Graph) -> bool:
     """Whether anything in a design uses finite elements."""
     return any(graph.wanted(block.name, kind) for block in graph.blocks.values() for kind in block.analyses)
-
-
-def analysed(database: Database) -> Analysed:
-    """Results of finite elements on models, where all wanted results are stored; likewise."""
-
-    def stored(shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Outputs | None:
-        with database.read() as session:
-            outputs = analyses.outputs_of(session, question.key(build_key(shape)))
-        if not set(wanted) <= outputs.keys():
-            return None
-        return under_load(question, {name: outputs[name] for name in wanted})
-
-    return stored

@@ -10,7 +10,7 @@ import re
 import stat
 import tempfile
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -18,6 +18,7 @@ from io import BufferedReader
 from pathlib import Path
 from typing import Protocol
 
+from app.storage.durable import TEMPORARY, sync_folder, write_whole
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, ArtifactsUnreachable
 from app.storage.file_locks import OwnLock, SharedLock
 from app.storage.verified import Opened, Stamp, Verified, stamp_of
@@ -27,7 +28,6 @@ SHA256 = re.compile(r"[0-9a-f]{64}")
 OWNER = "database"  # under which a store that is shared holds the identity of its database
 LOCK = "crankwright.lock"  # of a folder that several servers share
 ABANDONED = 3600.0  # age of a temporary file that no running server writes any more [s]
-_TEMPORARY = ".tmp-"
 _FAILING_DISK = {errno.EIO, errno.EBADMSG, getattr(errno, "EUCLEAN", errno.EIO)}
 
 
@@ -127,7 +127,7 @@ class ArtifactStore:
         self._changing = SharedLock(folder / LOCK) if is_shared else OwnLock()
         oldest = time.time() - ABANDONED if is_shared else math.inf
         with self._changing.putting():  # also shows that the folder can be written
-            for stale in folder.glob(f"*/{_TEMPORARY}*"):
+            for stale in folder.glob(f"*/{TEMPORARY}*"):
                 with suppress(FileNotFoundError):  # another server has just renamed or deleted it
                     if stale.stat().st_mtime < oldest:
                         stale.unlink()
@@ -142,11 +142,11 @@ class ArtifactStore:
         if not (self.exists(sha) and self._renewed(target)):
             with self._changing.putting():
                 target.parent.mkdir(exist_ok=True)
-                _write_whole(target, parts, self._clear, is_durable=self._is_durable)
+                write_whole(target, parts, self._clear, is_durable=self._is_durable)
         # Even for a file that exists: the writer that renamed it may not have synced its folder yet.
         if self._is_durable:
-            _sync_folder(target.parent)
-            _sync_folder(self.folder)
+            sync_folder(target.parent)
+            sync_folder(self.folder)
         return sha
 
     def fetch(self, sha: str) -> Path:
@@ -220,7 +220,7 @@ class ArtifactStore:
 
     def claim(self, owner: str) -> str:
         """Have the folder belong to an owner, if it has none; return whose it is."""
-        descriptor, temporary = tempfile.mkstemp(dir=self.folder, prefix=_TEMPORARY)
+        descriptor, temporary = tempfile.mkstemp(dir=self.folder, prefix=TEMPORARY)
         try:
             with os.fdopen(descriptor, "w") as file:
                 file.write(owner)
@@ -242,8 +242,8 @@ class ArtifactStore:
     def write_note(self, name: str, text: str) -> None:
         """Have the folder say something under a name, durably."""
         with self._changing.putting():
-            _write_whole(self.folder / name, [text.encode()], self._clear, is_durable=self._is_durable)
-        _sync_folder(self.folder)
+            write_whole(self.folder / name, [text.encode()], self._clear, is_durable=self._is_durable)
+        sync_folder(self.folder)
 
     def probe(self) -> None:
         """Return if the folder is there; raises ArtifactsUnreachable."""
@@ -333,32 +333,3 @@ def hashed(parts: Iterable[bytes | memoryview]) -> str:
 
 def _moment() -> str:
     return datetime.now(UTC).strftime("%Y%m%dT%H%M%S.%f")
-
-
-def _write_whole(
-    target: Path, parts: Iterable[bytes | memoryview], clear: Callable[[Path], None], *, is_durable: bool
-) -> None:
-    """Write beside the target, sync, then rename, so that the target never shows half its bytes.
-
-    To sync takes long: only then is the place cleared of what cannot be replaced.
-    """
-    descriptor, temporary = tempfile.mkstemp(dir=target.parent, prefix=_TEMPORARY)
-    try:
-        with os.fdopen(descriptor, "wb") as file:
-            file.writelines(parts)
-            file.flush()
-            if is_durable:
-                os.fsync(file.fileno())
-        clear(target)
-        os.replace(temporary, target)
-    except BaseException:
-        os.unlink(temporary)
-        raise
-
-
-def _sync_folder(folder: Path) -> None:
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

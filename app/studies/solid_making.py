@@ -18,7 +18,7 @@ from app.designs.graph import build_graph, raise_if
 from app.designs.net import Refusal
 from app.designs.network import Graph
 from app.designs.row_refusals import refusal_of
-from app.designs.service import analysed, built
+from app.designs.stored_solids import analysed, built
 from app.jobs.service import JobContext
 from app.reference import Reference
 from app.solids.builds import Builds

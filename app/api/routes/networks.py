@@ -11,7 +11,7 @@ from app.api.reading import StrictRoute
 from app.designs import repository
 from app.designs.drives import network_of
 from app.designs.graph import build_graph
-from app.designs.service import read_document, resolved
+from app.designs.reading import read_document, resolved
 from app.schemas.networks import DesignNetwork
 from app.schemas.problems import refusals
 

@@ -7,7 +7,8 @@ from typing import Literal
 
 from app.designs import repository
 from app.designs.graph import build_graph
-from app.designs.service import Designs, Saved, read_document, resolved
+from app.designs.reading import read_document, resolved
+from app.designs.service import Designs, Saved
 from app.designs.variant_sheets.csv_files import read_csv, write_csv
 from app.designs.variant_sheets.grid import MOST_FAULTS, Grid, cell_of
 from app.designs.variant_sheets.reading import SheetVariants, readable_variants

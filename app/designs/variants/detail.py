@@ -18,7 +18,7 @@ from app.designs.calculation import Calculation
 from app.designs.document import Document
 from app.designs.graph import raise_if
 from app.designs.long_answers import LongAnswers
-from app.designs.service import analysed, built
+from app.designs.stored_solids import analysed, built
 from app.designs.variants.names import BASE
 from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available, together

@@ -1,0 +1,45 @@
+"""Read a document as its user sent it, and pin the versions of its steps and models."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pydantic import ValidationError
+
+from app.catalogue.catalogues import Catalogues
+from app.designs.document import Document
+from app.plain import Json, Raw
+from templates.core.errors import Fault, InvalidInputs, plain
+
+LONGEST_PLACE = 200  # characters of where in a document something is wrong
+
+
+def read_document(raw: Mapping[str, Raw]) -> Document:
+    """A document from JSON.
+
+    Raises
+    ------
+    InvalidInputs
+        With everything that has not the shape of a design.
+    """
+    try:
+        return Document.model_validate(raw)
+    except ValidationError as error:
+        raise InvalidInputs(map(_fault, error.errors(include_url=False, include_input=False))) from None
+
+
+def _fault(error: Mapping[str, Json]) -> Fault:
+    place = ".".join(str(part)[:LONGEST_PLACE] for part in error["loc"])
+    return Fault(plain(place, LONGEST_PLACE) or "design", error["type"], error["msg"])
+
+
+def resolved(document: Document, catalogues: Catalogues) -> Document:
+    """The document with every version pinned: latest is resolved once, when a step or model comes in."""
+    plain = document.model_copy(deep=True)
+    for step in plain.steps.values():
+        if not isinstance(step.version, int) and step.template in catalogues.templates.ids:
+            step.version = catalogues.templates.latest(step.template).version
+    for model in plain.models.values():
+        if not isinstance(model.version, int) and model.id in catalogues.models.ids:
+            model.version = catalogues.models.latest(model.id).version
+    return plain
