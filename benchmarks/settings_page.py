@@ -3,6 +3,7 @@
 python -m benchmarks.settings_page
 """
 
+import json
 from pathlib import Path
 from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -19,9 +20,9 @@ OF_THE_COMMAND = {
 }
 HEAD = """# Settings
 
-Environment variables, read once when the service starts. A name that is not in this table is not seen: look
-at the spelling first. Lists are written as JSON: `["/srv/templates"]`. Options of `crankwright serve` come
-first.
+Environment variables, read once when the service starts. The service ignores a name that is not in this
+table: look at the spelling first. Lists and objects are written as JSON: `["/srv/templates"]`. Options of
+`crankwright serve` come first.
 
 This page is written by `python -m benchmarks.settings_page` from `app/settings.py`.
 
@@ -43,6 +44,14 @@ def _row(variable: str, name: str, field: FieldInfo) -> str:
     return f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |\n"
 
 
+WORDS = {
+    "str": "text",
+    "SecretStr": "text",
+    "int": "integer",
+    "float": "number",
+    "bool": "true | false",
+    "Path": "path",
+}
 SIGNS = (("gt", ">"), ("ge", "≥"), ("lt", "<"), ("le", "≤"))
 
 
@@ -67,9 +76,9 @@ def _words(kind: Any) -> str:
         return " | ".join(_words(part) for part in inside if part is not type(None))
     if origin in (tuple, list):
         return f"list of {_words(inside[0])}"
-    return {"str": "text", "int": "integer", "float": "number", "bool": "true | false", "Path": "path"}.get(
-        getattr(kind, "__name__", ""), str(kind)
-    )
+    if origin is dict:
+        return f"object: {_words(inside[1])} for each of {_words(inside[0])}"
+    return WORDS[kind.__name__]
 
 
 def _default(field: FieldInfo) -> str:
@@ -77,6 +86,8 @@ def _default(field: FieldInfo) -> str:
         return "none"
     if isinstance(field.default, tuple | list):
         return f"`{list(map(str, field.default))}`".replace("'", '"')
+    if isinstance(field.default, dict):
+        return f"`{json.dumps(field.default)}`"
     return f"`{field.default}`"
 
 
