@@ -1,4 +1,4 @@
-"""What a bucket costs beside a folder: to put a file, to read it first on a machine, and again.
+"""Cost of a bucket beside a folder: to put a file, to read it first on a machine, and again.
 
 Run `python -m benchmarks.artifact_stores`. The bucket is that of an S3 server on loopback that keeps objects
 in memory (moto): a real one adds its network. Ratios hold; times depend on the machine.

@@ -1,4 +1,4 @@
-"""What a crank costs from its parameters to a checked STEP file, against CadQuery on the same dimensions.
+"""Cost of a crank from its parameters to a checked STEP file, against CadQuery on the same dimensions.
 
     python -m benchmarks.crank_regeneration
 

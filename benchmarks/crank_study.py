@@ -142,7 +142,7 @@ def note_of(change: Mapping[str, str]) -> str:
 
 
 def state(client: Client, design: Design) -> State:
-    """What the design's newest revision has calculated and measured, and the mode of its solid."""
+    """Results and measures of the design's newest revision, and the mode of its solid."""
     revision = client.revision(design.id, design.revision)
     vibration, throw = revision.steps["vibration"], revision.steps["throw"]
     measured, crank = client.measurements(design.id)["crank"], revision.models["crank"]

@@ -1,4 +1,4 @@
-"""What one criterion of single values costs: processor time of reading its values and judging it.
+"""Cost of one criterion of single values: processor time of reading its values and judging it.
 
     python -m benchmarks.criterion_cost      a few seconds; prints microseconds, medians of 21 runs
 

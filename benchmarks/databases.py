@@ -45,7 +45,7 @@ PATIENCE = 300.0  # for a server to start [s]
 
 @dataclass(frozen=True)
 class Result:
-    """What one round came to."""
+    """The result of one round."""
 
     accepted: int
     seconds: float

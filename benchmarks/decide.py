@@ -88,7 +88,7 @@ def truths(cls: type[Template], raw: dict[str, Any]) -> Array:
 
 
 def figures(result: Decided, true: Array, limit: Array, seconds: float, whole: float) -> dict[str, Any]:
-    """What was asked, what is wrong, and the cost."""
+    """The question, the errors, and the cost."""
     count, codes = limit.size, result.codes
     verdicts = {"met": MET, "not met": NOT_MET, "undecided": UNDECIDED, "not checked": NOT_CHECKED}
     asked = sum(trial.rows for trial in result.trials if trial.level == FINEST)

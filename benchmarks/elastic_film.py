@@ -1,4 +1,4 @@
-"""What a bearing that gives way does to its film, by `elastic_film` 1: levels, cost, mesh.
+"""Effect of an elastic bearing on its film, by `elastic_film` 1: levels, cost, mesh.
 
 python -m benchmarks.elastic_film           about a minute
 python -m benchmarks.elastic_film random    60 random bearings at level housing: refusals, times, mesh_error

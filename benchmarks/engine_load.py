@@ -1,4 +1,4 @@
-"""What `bearing_load` 1 and `engine` 1 cost, the nine-cylinder case of DYREMI, and a polar load diagram.
+"""Cost of `bearing_load` 1 and `engine` 1, the nine-cylinder case of DYREMI, and a polar load diagram.
 
     python -m benchmarks.engine_load
 

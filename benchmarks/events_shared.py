@@ -40,7 +40,7 @@ POOL = 32
 
 @dataclass(frozen=True)
 class Server:
-    """What of a server has to do with events."""
+    """The part of a server that handles events."""
 
     database: Database
     events: Events

@@ -1,4 +1,4 @@
-"""What the full film solution costs for what error, and how far Petrov's friction is off.
+"""Cost and error of the full film solution, and the error of Petrov's friction.
 
     python -m benchmarks.film_cost [prototype.py]
 

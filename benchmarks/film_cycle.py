@@ -1,4 +1,4 @@
-"""What `oil_film_cycle` costs, and its three levels side by side on one big end of published size.
+"""Cost of `oil_film_cycle`, and its three levels side by side on one big end of published size.
 
     python -m benchmarks.film_cycle
 

@@ -82,7 +82,7 @@ DUTIES = (big_end, main_bearing)
 
 
 def outputs(orbit: CycleOrbit, film: CycleFilm) -> dict[str, Array]:
-    """What the levels are compared by, by API name."""
+    """The outputs by which levels are compared, by API name."""
     return {
         "minimum_film_thickness": np.asarray(1 - orbit.eps_max),
         "maximum_eccentricity": np.asarray(orbit.eps_max),

@@ -97,7 +97,7 @@ def under_load(duty: RandomDuty) -> float:
 
 
 def values(orbit: FedOrbit, film: CycleFilm) -> dict[str, Array]:
-    """What the levels are compared by."""
+    """The values by which levels are compared."""
     compared = (
         1 - orbit.eps_max,
         orbit.eps_max,

@@ -143,7 +143,7 @@ def _folders(builds: type) -> list[tuple[()]]:
 
 
 def _recent(designs: Any) -> dict[str, Any]:
-    """What saves leave for their jobs; version 0.1 left nothing."""
+    """The results that saves leave for their jobs; version 0.1 left nothing."""
     return {"recent": designs.recent} if hasattr(designs, "recent") else {}
 
 

@@ -136,7 +136,7 @@ def change(output: str, value: Array, true: Array, largest: Array) -> Array:
 
 
 def sizes(template: OilFilm, output: str) -> Array:
-    """What an error is relative to: the largest of four coefficients, else the value itself."""
+    """The scale of an error: the largest of four coefficients, else the value itself."""
     kind = output.partition("_")[0]
     if kind in ("stiffness", "damping") and not output.endswith("scale"):
         names = [f"{kind}_{xy}" for xy in ("xx", "xy", "yx", "yy")]
@@ -195,7 +195,7 @@ def largest(each: Iterator[dict[str, float]]) -> dict[str, float]:
 
 
 def slowly(every: list[Bearings], of_map: dict[str, float]) -> dict[str, float]:
-    """What is added at the slow level: measured on some bearings, and at least what the map adds to all."""
+    """The addition at the slow level: measured on some bearings, and at least what the map adds to all."""
     rng = np.random.default_rng(SEED)
     some = [one.some(rng.choice(one.T.size, PICKED, replace=False)) for one in every]
     measured = largest(added(one, SLOW) for one in some)

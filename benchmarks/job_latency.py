@@ -1,4 +1,4 @@
-"""What a job costs beside its own work: in a process that waits for it, in a forked one, in a new one.
+"""Cost of a job beside its own work: in a process that waits for it, in a forked one, in a new one.
 
 Run `python benchmarks/job_latency.py`; read the ratios rather than the times.
 """

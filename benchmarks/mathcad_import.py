@@ -1,4 +1,4 @@
-"""What becomes of the regions of Mathcad's sheets in a folder.
+"""Count the outcomes of the regions of Mathcad's sheets in a folder.
 
 `python -m benchmarks.mathcad_import DIR` imports every .mcdx and .xmcd below the folder; none is part of
 this project. It prints a line for each, the totals, why regions are refused, and what differs.

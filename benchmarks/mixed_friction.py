@@ -1,4 +1,4 @@
-"""What `mixed_friction` 1 neglects at level map, how its interpolation errs, and random inputs.
+"""Error of `mixed_friction` 1 at level map and of its interpolation, and random inputs.
 
 python -m benchmarks.mixed_friction            about a minute
 python -m benchmarks.mixed_friction random     10 000 random bearings at level map, 100 at level averaged

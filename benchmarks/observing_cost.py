@@ -1,4 +1,4 @@
-"""What ids, figures and the clock of bodies cost one evaluation: processor time with them and without.
+"""Cost of ids, figures and the clock of bodies for one evaluation: processor time with them and without.
 
 python -m benchmarks.observing_cost
 """

@@ -1,4 +1,4 @@
-"""What the pages weigh and how soon they answer: docs/pages.md quotes it.
+"""Size of the pages and their time to answer, which docs/pages.md quotes.
 
     python -m benchmarks.pages
 

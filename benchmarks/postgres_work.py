@@ -1,4 +1,4 @@
-"""What a PostgreSQL did during a block: statements, syncs of its log, and what its connections waited for."""
+"""Work of a PostgreSQL during a block: statements, syncs of its log, and what its connections waited for."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def prepare(cluster: Cluster) -> None:
 
 @contextmanager
 def watched(url: str) -> Iterator[Work]:
-    """What is done in the block, once it has ended; `url` names a database of a prepared PostgreSQL."""
+    """Yield the work of a block, complete once it has ended; `url` names a prepared database."""
     address = make_url(url).set(drivername="postgresql").render_as_string(hide_password=False)
     work, ended, waits, looks = Work(), threading.Event(), Counter[str](), 0
     with psycopg.connect(address, autocommit=True) as connection:

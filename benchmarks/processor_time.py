@@ -32,7 +32,7 @@ class Cores:
 
 
 def used(pid: int) -> float:
-    """What a process, its living descendants and the children that it has waited for have used [s]."""
+    """Processor time of a process, its living descendants and the children that it has waited for [s]."""
     processes = _processes()
     return sum(_seconds(fields) for one in _family(pid, processes) if (fields := processes.get(one)))
 

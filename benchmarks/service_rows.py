@@ -75,7 +75,7 @@ def commit() -> str:
 
 
 def machine() -> dict[str, Any]:
-    """What it was measured on."""
+    """The machine of the measurement."""
     names = [line for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")]
     packages = {name: version(name) for name in ("fastapi", "uvicorn", "cadquery", "numpy")}
     load = "wrk" if service_load.WRK else "sockets"

@@ -1,4 +1,4 @@
-"""What `oil_film` 3 adds to version 2: its error table, its meshes, its start line, and grooves under load.
+"""Additions of `oil_film` 3 to version 2: error table, meshes, start line, and grooves under load.
 
     python -m benchmarks.shapes accuracy    a minute: writes templates/oil_film/oil_film_v3.accuracy.json
     python -m benchmarks.shapes mesh        ten minutes: 60 bearings, benchmarks/results/shapes_mesh.json

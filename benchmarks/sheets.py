@@ -1,4 +1,4 @@
-"""What a worksheet costs beside the Python file of the same template, `oil_film` 1, and how long it is read.
+"""Cost of a worksheet beside the Python file of the same template, `oil_film` 1, and the time to read it.
 
     python -m benchmarks.sheets      half a minute; prints processor times, each the smallest of several runs
 

@@ -42,7 +42,7 @@ NAMES = ("diameter", "width", "clearance")
 
 @dataclass
 class Sizing:
-    """What one sizing is about, in the units of its names, and what came of it."""
+    """The question of one sizing, in the units of its names, and its result."""
 
     diameter_mm: float
     width_ratio: float
@@ -149,7 +149,7 @@ def run(of: Sizing, design: Net, explore: str, seed: int, within: float) -> None
 
 
 def full_seconds(of: Sizing, design: Net) -> float:
-    """What the scan would cost at the confirming level [s]."""
+    """Time that the scan would take at the confirming level [s]."""
     answer = level(design, FINE, of.limit_um / 1e6)
     return answer(Sobol(space(of), MEASURED, 0).rows(0, MEASURED)).seconds / MEASURED * SCANNED
 
@@ -177,7 +177,7 @@ def all_sizings(options: argparse.Namespace) -> list[Sizing]:
 
 
 def levels_of_one(options: argparse.Namespace) -> dict[str, Any]:
-    """What each level would have chosen for the first sizing."""
+    """The choice of each level for the first sizing."""
     one, design = started(np.random.default_rng(options.seed), 0, options.explore)
     limit = one.limit_um / 1e6
     levels = {name: level(design, name, limit) for name in ("short_bearing", "fit", "map")}

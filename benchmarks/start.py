@@ -1,4 +1,4 @@
-"""What the start of the embedded service costs, compared with that of an earlier program in the same run.
+"""Cost of starting the embedded service, compared with that of an earlier program in the same run.
 
     git clone -q . /tmp/earlier && git -C /tmp/earlier checkout -q df52034
     python -m benchmarks.start /tmp/earlier 12                    # with this environment

@@ -33,7 +33,7 @@ USUAL = (0.3, 105.0)
 
 @dataclass(frozen=True)
 class Shares:
-    """What became of the duties that have an orbit."""
+    """Outcomes of the duties that have an orbit."""
 
     orbits: int
     bounded_before: float

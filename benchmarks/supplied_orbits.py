@@ -52,7 +52,7 @@ def marched(duty: RandomDuty, meshes: tuple[Meshing, ...] = (COARSE, FINE)) -> t
 
 
 def row(duty: RandomDuty) -> Row:
-    """What is kept of a duty."""
+    """The kept row of a duty."""
     orbit, seconds = marched(duty)
     return {
         "kind": duty.kind,
@@ -98,7 +98,7 @@ def continued(duty: RandomDuty, kept: Row, cells: int = 1, steps: int = 1) -> Ro
 
 
 def why(duty: RandomDuty, kept: Row) -> dict[str, Row]:
-    """What more cycles, more cells and smaller steps change alone."""
+    """Effects of more cycles, of more cells and of smaller steps, each alone."""
     return {
         "cycles": continued(duty, kept),
         "cells": continued(duty, kept, cells=2),
@@ -112,7 +112,7 @@ def change(kept: Row, other: Row) -> float:
 
 
 def results() -> dict[str, Any]:
-    """What is kept; empty at first."""
+    """The kept results; empty at first."""
     if RESULTS.exists():
         kept: dict[str, Any] = json.loads(RESULTS.read_text(encoding="utf-8"))
         return kept

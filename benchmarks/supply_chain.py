@@ -1,4 +1,4 @@
-"""What the service is made of: hashes, a bill of materials and licences of all pinned distributions.
+"""Parts of the service: hashes, a bill of materials and licences of all pinned distributions.
 
     python -m benchmarks.supply_chain            # docs/licences.md, docs/sbom.cdx.json: of what is installed
     python -m benchmarks.supply_chain --hashes   # requirements.lock as well: asks the package index by pip
@@ -181,7 +181,7 @@ def _reference(one: Component) -> str:
 
 
 def _graph(components: dict[str, Component]) -> Iterator[dict[str, object]]:
-    """What each component needs of the others."""
+    """Yield the dependencies of each component on others."""
     yield _edges("crankwright", tuple(sorted(_needed_directly())), components)
     for _, one in sorted(components.items()):
         yield _edges(_reference(one), one.needs, components)

@@ -1,4 +1,4 @@
-"""What one temperature costs in accuracy, and a temperature at every place in time: `thermal_film` 1.
+"""Error of one temperature, and time that a temperature at every place takes: `thermal_film` 1.
 
 python -m benchmarks.thermal_film           100 random bearings: refusals, times, ratios; two minutes
 python -m benchmarks.thermal_film report    the same from the kept results
@@ -54,7 +54,7 @@ def bearing(rng: np.random.Generator) -> dict[str, Any]:
 
 
 def wall(raw: dict[str, Any]) -> str:
-    """What is behind its bush."""
+    """The condition of the bush: held, cooled or adiabatic."""
     return (
         "held"
         if "held_bush_temperature" in raw
@@ -112,7 +112,7 @@ def report(rows: list[dict[str, float]]) -> None:
 
 
 def again() -> None:
-    """What the kept results say."""
+    """Print the summary of the kept results."""
     report(json.loads(RESULTS.read_text()))
 
 

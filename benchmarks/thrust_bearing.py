@@ -1,4 +1,4 @@
-"""What taking a thrust pad for a rectangle costs, and how converged the sectors of `thrust_bearing` 1 are.
+"""Error of taking a thrust pad for a rectangle, and convergence of the sectors of `thrust_bearing` 1.
 
 python -m benchmarks.thrust_bearing            about half a minute
 

@@ -1,4 +1,4 @@
-"""What the torsional stiffness of the reference throw costs, against CalculiX on second-order tetrahedra.
+"""Cost of the torsional stiffness of the reference throw, against CalculiX on second-order tetrahedra.
 
     python -m benchmarks.torsion
 

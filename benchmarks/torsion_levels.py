@@ -115,7 +115,7 @@ def truth(step: bytes, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> Foun
 
 
 def row(parameters: dict[str, Any]) -> dict[str, Any]:
-    """What each level finds of a throw, by itself and against the truth."""
+    """Results of each level for a throw, by themselves and against the truth."""
     step, shaft = shaft_of(parameters)
     true = truth(step, shaft)
     kept: dict[str, Any] = {"parameters": parameters, **true}

@@ -1,4 +1,4 @@
-"""What a save of a table of nine bearings costs that changes no solid: `python -m benchmarks.variant_save`.
+"""Cost of saving a table of nine bearings without a change of any solid: `python -m benchmarks.variant_save`.
 
 Five mains and four big ends are variants of the gallery's plain bearing, with two kinds of shell. Each round
 uploads the table as XLSX with other loads, and waits until the revision is current. The processor time is

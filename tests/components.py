@@ -37,7 +37,7 @@ class Bucket:
 
     @property
     def settings(self):
-        """What `Settings` takes."""
+        """Arguments of `Settings`."""
         return {"artifacts_url": self.url, "s3_endpoint": self.endpoint}
 
 
@@ -76,7 +76,7 @@ def database_of(folder):
 
 
 def shared(folder):
-    """What environment gives a server with this data folder a database on PostgreSQL; leases are short."""
+    """Environment of a server with this data folder and a database on PostgreSQL; leases are short."""
     folder.mkdir(parents=True, exist_ok=True)
     return {
         "CRANKWRIGHT_DATABASE_URL": database_of(folder),

@@ -36,7 +36,7 @@ Case = tuple[str, float]
 
 @dataclass(frozen=True)
 class Observation:
-    """What one run of a test file showed."""
+    """The result of one run of a test file."""
 
     seconds: dict[str, float]  # of each test
     lines: dict[str, dict[int, list[str]]]  # of each file: the tests that ran a line

@@ -38,7 +38,7 @@ _FAILED = re.compile(r"^(?:FAILED|ERROR) ((tests/[\w/]+\.py).*)", re.MULTILINE)
 
 @dataclass(frozen=True)
 class Run:
-    """What pytest said of some tests."""
+    """Pytest's report on some tests."""
 
     outcome: str  # passed, failed or hung
     by: str = ""  # the test that failed

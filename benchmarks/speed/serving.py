@@ -140,7 +140,7 @@ def regenerations(server: Server, folder: Path) -> list[Figure]:
 
 
 def large_arrays(server: Server, folder: Path) -> list[Figure]:
-    """What it costs to write the answer of 10⁶ values, in both forms, without the calculation."""
+    """Cost of writing the answer of 10⁶ values, in both forms, without the calculation."""
     loads = np.round(np.linspace(6.3, 200, POINTS), 3)
     inputs = {**OIL_FILM, "radial_load": {"value": loads, "unit": "kN"}}
     result = evaluate(OilFilm, inputs, outputs=["minimum_film_thickness"])

@@ -30,7 +30,7 @@ FILM = {"inputs": {
 
 @dataclass(frozen=True)
 class Call:
-    """What is sent: names in the path, and arguments of httpx."""
+    """A request: names in the path, and arguments of httpx."""
 
     json: object = None
     names: dict = field(default_factory=dict)
@@ -39,7 +39,7 @@ class Call:
 
     @property
     def body(self):
-        """What is sent to whatever there is."""
+        """The body as arguments of httpx; empty without one."""
         return {} if self.json is None else {"json": self.json}
 
     def arguments(self, scene, who):

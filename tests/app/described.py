@@ -10,5 +10,5 @@ APP = create_app(Settings())
 
 @cache
 def description():
-    """What /openapi.json answers; nobody changes it."""
+    """The answer of /openapi.json; nobody changes it."""
     return APP.openapi()

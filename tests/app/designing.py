@@ -1,4 +1,4 @@
-"""What tests of designs ask of a service."""
+"""Requests of tests of designs to a service."""
 
 from serving import API, moody, paper, revision
 

@@ -78,7 +78,7 @@ def new_design(http, document):
 
 
 def queried(data, query, **values):
-    """What the database of a data folder answers, whether a service runs on it or not."""
+    """The answer of a data folder's database to a query, whether a service runs on it or not."""
     engine = create_engine(f"sqlite:///{data}/crankwright.sqlite")
     with engine.connect() as connection:
         answer = [tuple(row) for row in connection.execute(text(query), values)]

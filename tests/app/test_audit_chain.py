@@ -41,7 +41,7 @@ def head(database):
 
 
 def tamper(url, *statements):
-    """What somebody with the file in hand can do, who takes the guards away first."""
+    """Change the database as somebody with the file in hand can, who takes the guards away first."""
     if ON_POSTGRESQL and any(part in statement for statement in statements for part in NO_VALUES):
         pytest.skip("PostgreSQL keeps no such value in this column")
     engine = writing_engine(url)

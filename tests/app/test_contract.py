@@ -26,7 +26,7 @@ CONFIGURATION = Path(__file__).parents[2] / "schemathesis.toml"
 
 
 def interface(*phases):
-    """What the service says of itself, to be asked in these phases of schemathesis."""
+    """The description of the service, for these phases of schemathesis."""
     described = schemathesis.openapi.from_dict(
         description(), config=SchemathesisConfig.from_path(CONFIGURATION)
     )

@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def by_command(data):
-    """What the command of the README prints, in a process of its own, as does its service."""
+    """The output of the README's command; it and its service run in processes of their own."""
     command = [sys.executable, "-m", "app", "demo", "--data", str(data)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, timeout=patient(120), check=False)
     assert done.returncode == 0, done.stderr.decode()
@@ -34,7 +34,7 @@ def forked_service(data, **options):
 
 
 def by_fork(data):
-    """What the same command prints in this process; its service has imported nothing."""
+    """The output of the same command in this process; its service has imported nothing."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(demo, "service", forked_service)
         done = CliRunner().invoke(cli.main, ["demo", "--data", str(data)])
@@ -44,7 +44,7 @@ def by_fork(data):
 
 @pytest.fixture(scope="module", params=[by_fork, pytest.param(by_command, marks=pytest.mark.slow)])
 def shown(request, tmp_path_factory):
-    """What the demonstration prints, and its folder."""
+    """The output of the demonstration, and its folder."""
     data = tmp_path_factory.mktemp("demo") / "data"
     return request.param(data), data
 

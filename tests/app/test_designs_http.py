@@ -149,7 +149,7 @@ class TestIdempotency:
 
 class TestManyAtOnce:
     def at_once(self, served, send, times=8):
-        """What each of several clients gets that send in the same moment."""
+        """The answers to several clients that send in the same moment."""
         gate = Barrier(times)
 
         def one(number):

@@ -39,7 +39,7 @@ SHARED = {  # routes that name such an object, and are the team's
 
 @pytest.fixture(scope="module")
 def objects(team):
-    """What the author has, by its kind."""
+    """The author's objects, by their kind."""
     services = team.server.app.state.services
     with team.http("author") as http:
 

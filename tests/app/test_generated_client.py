@@ -23,7 +23,7 @@ CONFIG = {
 
 @pytest.fixture(scope="module")
 def generated(http, tmp_path_factory):
-    """What the generator printed; its package can be imported."""
+    """The output of the generator, whose package can be imported."""
     folder = tmp_path_factory.mktemp("generated")
     (folder / "openapi.json").write_bytes(http.get("/openapi.json").content)
     (folder / "config.json").write_text(json.dumps(CONFIG))

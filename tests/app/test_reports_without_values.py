@@ -42,7 +42,7 @@ def document_of(cls, inputs, limits):
 
 
 def revision_of(document):
-    """What a revision of the document keeps; None if the template refuses it."""
+    """The results that a revision of the document keeps; None if the template refuses it."""
     document = resolved(document, CATALOGUES)
     graph, faults = build_graph(document, CATALOGUES)
     assert not faults

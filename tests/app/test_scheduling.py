@@ -11,7 +11,7 @@ from app.workers.scheduling import answer_promptly, share_fairly
 
 
 def in_a_thread(function):
-    """What a function returns in a thread of its own, whose slice ends with it."""
+    """Return the result of a function in a thread of its own, whose slice ends with it."""
     returned = []
     thread = threading.Thread(target=lambda: returned.append(function()))
     thread.start()

@@ -48,7 +48,7 @@ def head(line: str, *headers: str) -> bytes:
 
 
 def dripped(slow, start: bytes, piece: bytes) -> bytes:
-    """What is answered, until the server closes, to who sends 2 kB/s for ever."""
+    """The answer, until the server closes, to a client that sends 2 kB/s for ever."""
     answer = b""
     with connected(slow, start) as connection:
         connection.settimeout(len(piece) / 2000)

@@ -71,7 +71,7 @@ def served(data, own):
 
 
 def undisturbed(data, own, document, bodies):
-    """What the studies come to without a kill, and the work before and after them."""
+    """The results of the studies without a kill, and the work before and after them."""
     server = served(data, own)
     with connected(server.url) as http:
         design = new_design(http, document)

@@ -81,7 +81,7 @@ def doubled(http, version=1, length="3 mm"):
 
 
 def value(http, version=1):
-    """What the template makes of 3 mm; None while it cannot be used."""
+    """The template's result for 3 mm; None while it cannot be used."""
     answer = doubled(http, version)
     return answer.json()["outputs"]["twice_the_length"]["value"] if answer.is_success else None
 

@@ -23,7 +23,7 @@ main()
 
 
 def printed(program, **environment):
-    """What a program prints that is started without these variables, or with others."""
+    """The output of a program that is started without these variables, or with others."""
     inherited = {name: value for name, value in os.environ.items() if name not in ONE_THREAD}
     command = [sys.executable, "-c", program]
     done = subprocess.run(

@@ -51,7 +51,7 @@ def faults_of(call, *arguments):
 
 
 def attempt(call):
-    """What a call returns, and no fault; or nothing, and its faults."""
+    """Return the result of a call and no fault, or None and its faults."""
     try:
         return call(), ()
     except InvalidInputs as error:

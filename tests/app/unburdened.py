@@ -1,4 +1,4 @@
-"""What a service loads that is made by the usual settings; tests call it in a fork of the command line."""
+"""Modules that a service with the usual settings loads; tests look at it in a fork of the command line."""
 
 import sys
 from pathlib import Path

@@ -34,7 +34,7 @@ def drawing(dxf: bytes) -> Drawing:
 
 
 def dimensions(drawing: Drawing) -> dict[str, float]:
-    """What every DIMENSION measures, by the parameter whose name it carries."""
+    """The measured value of every DIMENSION, by the parameter whose name it carries."""
     return {
         entity.get_xdata("CRANKWRIGHT")[0].value: float(entity.get_measurement())
         for entity in drawing.modelspace().query("DIMENSION")

@@ -75,7 +75,7 @@ def expression(chance, depth):
 
 
 def body(chance):
-    """What stands in a region."""
+    """The contents of a region."""
     value = expression(chance, chance.randint(0, 4))
     kinds = (
         lambda: define(chance.choice(NAMES), value),

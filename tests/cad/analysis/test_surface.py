@@ -44,7 +44,7 @@ def surface_of(grid: Grid, load: Kind) -> Surface:
 
 
 def volume(result: Surface) -> float:
-    """What the triangles enclose [mm³], by the theorem of Gauss; positive if they turn outward."""
+    """The volume inside the triangles [mm³], by the theorem of Gauss; positive if they turn outward."""
     a, b, c = (result.points[result.triangles[:, corner]] for corner in range(3))
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
