@@ -77,7 +77,7 @@ class FileRequest:
         prefer = self.prefer or PATIENCE
         if wanted not in MEDIA_TYPES:
             raise NotFound(f"there is no model.{wanted[:20]}; there are {', '.join(MEDIA_TYPES)}")
-        key, stamp, old = await run_in_threadpool(self._found, find, wanted)
+        key, stamp, old = await run_in_threadpool(self._lookup, find, wanted)
         answer = await lost(old.sha256, self.healing, self.jobs, prefer) if old else None
         if answer is None and (
             old is None or await run_in_threadpool(_is_outdated, self.models, key, wanted)
@@ -89,7 +89,7 @@ class FileRequest:
         assert file is not None, "a job that has done its work left its file"
         return await run_in_threadpool(_sent, self.store, file, stamp, self.if_none_match)
 
-    def _found(
+    def _lookup(
         self, find: Callable[[Session], RevisionModelRow], kind: str
     ) -> tuple[str, Stamp, File | None]:
         with self.database.read() as session:
