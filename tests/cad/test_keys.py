@@ -96,6 +96,6 @@ def test_a_question_without_a_load_is_one_of_a_newton_metre():
     ],
 )
 def test_only_a_load_that_is_given_can_be_wrong(load, codes):
-    assert [(fault.name, fault.code) for fault in questions.faults(Options(load=load))] == [
+    assert [(fault.name, fault.code) for fault in questions.faults("torsion", Options(load=load))] == [
         ("load", code) for code in codes
     ]
