@@ -154,7 +154,7 @@ def _curves(values: Values, declared: Members) -> Iterator[Picture]:
 
 
 def _axis(values: Values, declared: Members, name: str) -> str | None:
-    """The name over which a curve is drawn: its own axis, the crank angle, or the input that is an array."""
+    """The name over which a curve is drawn: its own axis, or else the crank angle or an array of inputs."""
     if not _is_curve(values, name) or declared[name].unit is None:
         return None
     length = _length(values[name])
@@ -162,7 +162,8 @@ def _axis(values: Values, declared: Members, name: str) -> str | None:
     arrays = [other for other in values if other in declared and _is_curve(values, other)]
     is_output = isinstance(values[name], Output)
     given = [other for other in arrays if is_output and _is_given(values[other])]
-    for axis in filter(None, (along, *AXES, *given)):
+    others = given if along is None else []  # a list by cylinders is not a curve over another list
+    for axis in filter(None, (along, *AXES, *others)):
         if axis in arrays and _length(values[axis]) == length:
             return axis
     return None

@@ -78,6 +78,15 @@ def test_a_profile_is_drawn_along_what_it_says():
     assert picture.names == {"x": "place", "y": ["pressure"]}
 
 
+def test_a_list_by_members_is_not_drawn_over_another_list():
+    """Loads of cylinders are no curve over the firing order, though both have four items."""
+    loads = {"largest_load": {"title": "largest load", "unit": "N", "along": "cylinders"}}
+    evaluated = answer({"largest_load": computed(CYCLE, "N")}, {"firing_order": given([1, 3, 4, 2], "1")})
+    assert pictures(template(declared(firing_order="1"), loads), evaluated) == []
+    del loads["largest_load"]["along"]
+    assert kinds(pictures(template(declared(firing_order="1"), loads), evaluated)) == ["curves"]
+
+
 def test_frequencies_make_a_campbell_diagram_and_mode_shapes():
     frequencies, shapes = computed([0.0, 80.0, 300.0], "Hz"), computed([[1.0, 1.0], [1.0, -1.0]], "1")
     used = {"engine_orders": given([1.0, 2.0], "1")}
