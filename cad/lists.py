@@ -9,7 +9,7 @@ from typing import Any
 LONGEST_TEXT = 2000
 """Longer texts are not read as lists: the time to read a text is linear in its length, and this is enough."""
 
-_LIST = re.compile(r"\s*\[([^\[\]]*)\]\s*([^\[\]]*)")
+_LIST = re.compile(r"\s*\[([^\[\]]*)\]([^\[\]]*)")
 _NOISE = 12  # decimals of an item in its unit; a sine's rounding error stays below
 
 

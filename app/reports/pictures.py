@@ -17,6 +17,7 @@ from app.schemas.templates import Schema
 FEWEST = 3  # points of a curve
 AXES = ("crank_angle",)  # of curves that say no other
 MOST_LINES = 6  # in one picture
+MOST_PINS = 100  # in one star: pins at one angle are looked for one by one
 
 
 @dataclass(frozen=True)
@@ -122,7 +123,9 @@ def _orbit(values: Values, declared: Members) -> Iterator[Picture]:
 def _star(values: Values, declared: Members) -> Iterator[Picture]:
     """The crankpins of an engine, of one cylinder too."""
     angles = values["crankpin_angles"].value if "crankpin_angles" in values else None
-    if isinstance(angles, list) and angles and all(isinstance(angle, (int, float)) for angle in angles):
+    if not isinstance(angles, list) or not 1 <= len(angles) <= MOST_PINS:
+        return
+    if all(isinstance(angle, (int, float)) for angle in angles):
         names = {"angles": "crankpin_angles"}
         yield Picture("star", "Throw star: crankpins with their cylinders, seen from the flywheel", names)
 

@@ -73,9 +73,9 @@ def unit_load_tables(
     }
 
 
-def as_tables(found: UnitStresses) -> dict[str, list[list[float]]]:
+def as_tables(stresses: UnitStresses) -> dict[str, list[list[float]]]:
     """Tensors under 1 N or 1 N·mm, and their points, in the units of the outputs."""
-    tables: dict[str, Array] = {"points": found.points}
-    for load, tensors in found.tensors.items():
+    tables: dict[str, Array] = {"points": stresses.points}
+    for load, tensors in stresses.tensors.items():
         tables[f"stress_of_{load}"] = _PER_UNIT[load.split("_")[0]] * tensors
     return {name: table.tolist() for name, table in tables.items()}

@@ -23,6 +23,7 @@ from app.presentation import numbers
 from app.presentation.typed import text_of, value_of
 from app.reports.cells import clean
 from app.web.forms import kept, patch_of
+from cad.lists import listed
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import MOST_SUGGESTED, Fault, InvalidInputs, excerpt, unknown_name, unknown_names
 from templates.core.language.meaning import api_name
@@ -82,6 +83,11 @@ class TestUnitsAndQuantities:
 
     def test_a_list_of_quantities(self):
         assert_linear(lambda raw: read(raw, "mm"), lambda n: ["1 " + " " * 190 + "mm"] * n, 500)
+
+    @pytest.mark.parametrize("text", ["[1] {}[", "{}[1", "[{}", "[1] deg{}]"])
+    def test_a_list_of_a_model(self, text):
+        assert_linear(listed, lambda n: text.format(" " * n), 480)
+        assert_constant(listed, lambda n: text.format(" " * n), 100_000)
 
     def test_rows_of_an_array(self):
         assert_linear(lambda raw: read(raw, "1"), lambda n: [[1.0, 2.0]] * n, 2000)

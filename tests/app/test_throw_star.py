@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from app.reports.pictures import pictures
+from app.reports.pictures import MOST_PINS, pictures
 from app.reports.plots import drawn
 from app.reports.throw_star import RAY, rays, throw_star
 from app.schemas.evaluations import Output
@@ -55,3 +55,10 @@ def test_an_engine_shows_its_star_on_the_page_and_in_the_report():
 @pytest.mark.parametrize("angles", [[], None, [[0.0, 180.0]], [None, 0.0]])
 def test_no_star_of_what_is_no_list_of_angles(angles):
     assert pictures(DECLARED, step(angles)) == []
+
+
+@pytest.mark.parametrize(("count", "kinds"), [(MOST_PINS, ["star"]), (MOST_PINS + 1, [])])
+def test_a_worksheet_with_many_angles_draws_no_star(count, kinds):
+    """Anybody's template may have an output of this name, of any length."""
+    shown = pictures(DECLARED, step([0.5 * number for number in range(count)]))
+    assert [picture.kind for picture in shown] == kinds

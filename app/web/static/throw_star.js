@@ -3,11 +3,11 @@ const SPACE = "http://www.w3.org/2000/svg", SIZE = 120, RAY = 74, WORDS = 98, SA
 
 export function showThrowStar(place, picture, values) {
   const star = make("svg", { viewBox: `${-SIZE} ${-SIZE} ${2 * SIZE} ${2 * SIZE}`, role: "img", "font-size": 12, "text-anchor": "middle" });
-  const found = rays(values[picture.angles].value);
-  const words = found.map(([angle, names]) => `${names.join(" and ")} at ${Math.round(10 * angle) / 10}°`);
+  const merged = rays(values[picture.angles].value);
+  const words = merged.map(([angle, names]) => `${names.join(" and ")} at ${Math.round(10 * angle) / 10}°`);
   star.setAttribute("aria-label", `Crankpins seen from the flywheel: ${words.join(", ")}`);
   star.append(make("circle", { r: RAY, class: "reach" }), make("path", { d: "M20,-22a30,30 0 0,0 -40,0m1,-7l-2,8l8,1", class: "turning" }));
-  for (const [angle, names] of found) {
+  for (const [angle, names] of merged) {
     const left = Math.sin((angle * Math.PI) / 180), up = Math.cos((angle * Math.PI) / 180);
     const name = make("text", { x: -WORDS * left, y: 4 - WORDS * up });
     name.textContent = names.join(", ");
@@ -18,13 +18,13 @@ export function showThrowStar(place, picture, values) {
 }
 
 function rays(angles) {
-  const found = [];
+  const merged = [];
   angles.forEach((angle, place) => {
-    const same = found.find(([at]) => Math.abs(wrapped(angle - at + 180) - 180) < SAME);
+    const same = merged.find(([at]) => Math.abs(wrapped(angle - at + 180) - 180) < SAME);
     if (same) same[1].push(place + 1);
-    else found.push([wrapped(angle), [place + 1]]);
+    else merged.push([wrapped(angle), [place + 1]]);
   });
-  return found;
+  return merged;
 }
 
 const wrapped = (angle) => ((angle % 360) + 360) % 360;
