@@ -86,6 +86,21 @@ def test_jobs_of_a_stopped_forkserver_die_with_the_server(tmp_path):
     assert eventually(lambda: not any(alive(pid) for pid in family)), "the grandchild of a job as well"
 
 
+def test_a_hang_up_that_comes_before_the_end_of_the_server_kills_nobody(tmp_path):
+    server, forkserver = started(tmp_path)
+    pids = tmp_path / "pids"
+    assert eventually(lambda: pids.exists() and " " in pids.read_text(), 20)
+    job, grandchild = map(int, pids.read_text().split())
+    os.kill(forkserver, signal.SIGSTOP)
+    os.killpg(forkserver, signal.SIGHUP)  # as the kernel does when the group is orphaned
+    os.killpg(forkserver, signal.SIGCONT)
+    os.killpg(job, signal.SIGHUP)
+    time.sleep(0.1)
+    assert all(alive(pid) for pid in (forkserver, job, grandchild))
+    killed(server)
+    assert eventually(lambda: not any(alive(pid) for pid in (forkserver, job, grandchild)))
+
+
 @pytest.fixture
 def stopped():
     """A worker whose forkserver hangs, with a process that still waits for a job."""
