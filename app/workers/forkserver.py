@@ -35,9 +35,9 @@ def main(channel: int, lifeline: int, modules: Iterable[str]) -> NoReturn:
     except ProcessLookupError:  # the server ended before this process began
         os._exit(1)
     signal.signal(signal.SIGTTOU, signal.SIG_IGN)  # in the background of a terminal, a message may stop it
-    # The kernel sends SIGHUP to a stopped process group that loses its last parent in the session. A server has
-    # threads, so this may come before its end of the lifeline closes: this process would die of it, the leader
-    # of each job's group with it, and what a job has started would hang on nobody.
+    # The kernel sends SIGHUP to a stopped process group that loses its last parent in the session. A server
+    # has threads, so this may come before its end of the lifeline closes: this process would die of it, the
+    # leader of each job's group with it, and what a job has started would hang on nobody.
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
     share_fairly()
     loaded = [load(module) for module in modules]
