@@ -1,7 +1,8 @@
 """CadModel: a template with a shape.
 
 A model is one file, `<id>_v<version>.py`, with one class. Its parameters are declared as in any template.
-Beyond them it says four things, and only the first of them draws:
+Beyond them it says four things, and only the first of them draws; a fifth, `toleranced`, says which faces
+carry which dimension, so that tolerances arrive in the STEP file (`cad.toleranced`):
 
 - `build()`: its parts, each one solid with the volume that it must have, from a closed form that knows
   nothing of the kernel. OpenCASCADE may return a wrong solid that calls itself valid (a drilling 10 nm wider
@@ -31,6 +32,7 @@ from cad.errors import GeometryError
 from cad.fillets import Crank
 from cad.lists import listed
 from cad.shaft import STEEL_DENSITY, Shaft
+from cad.toleranced import carried
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.language.spec import Curve
 from templates.core.language.template import Array, Template
@@ -118,6 +120,13 @@ class CadModel(Template):
 
     film_bore: ClassVar[str | None] = None
     """The parameter, by API name, that is the bore in which an oil film carries; of plain bearings."""
+
+    toleranced: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
+    """Which faces carry which parameter, in the words of `cad.toleranced`."""
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        carried(cls)
 
     def build(self) -> tuple[Part, ...]:
         """The parts, drawn from the parameters alone."""

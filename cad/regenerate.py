@@ -23,9 +23,12 @@ from cad.errors import GeometryError
 from cad.header import Header
 from cad.inspect import bounding_box, look_at, measure, summarise
 from cad.lists import rounded, written
-from cad.model import CadModel, Dimension, arrays_of_points
+from cad.model import CadModel, Dimension, arrays_of_points, mm
+from cad.pmi import Annotations
 from cad.step import read_step, write_step
 from cad.step_text import KERNEL
+from cad.toleranced import Limits, carried, in_unit, limits, limits_of
+from cad.toleranced import written as with_limits
 from templates.core.catalogue.digests import content_digest
 from templates.core.catalogue.loading import is_outside
 from templates.core.errors import InvalidInputs
@@ -36,7 +39,7 @@ __all__ = [
 ]  # fmt: skip
 
 Value = float | str | list[float]
-"""A parameter: a number, a word, or a list."""
+"""A parameter: a number, a word, or a list; beside it its limit deviations and their zone."""
 
 Report = Callable[[float, str], None]
 
@@ -73,13 +76,17 @@ def ignore(done: float, what: str) -> None:
 def as_text(model: CadModel) -> dict[str, str]:
     """Every parameter, defaults included, as it stands in the STEP file: `{"inner_diameter": "50 mm", …}`.
 
-    Twelve digits: what differs less is the same model, and gets the same bytes.
+    Twelve digits: what differs less is the same model, and gets the same bytes. A tolerance that the faces of
+    the model carry is part of it: `48 mm H7`.
     """
     return dict(_canonical(model).texts)
 
 
 def as_quantities(model: CadModel) -> dict[str, dict[str, Value]]:
-    """Every parameter in its declared unit, as in the STEP file: `{"value": 50.0, "unit": "mm"}`."""
+    """Every parameter in its declared unit, as in the STEP file: `{"value": 50.0, "unit": "mm"}`.
+
+    Beside a toleranced one stand `upper` and `lower`, its limit deviations in that unit, and its `zone`.
+    """
     return {name: dict(quantity) for name, quantity in _canonical(model).quantities.items()}
 
 
@@ -112,6 +119,9 @@ def _canonical(model: CadModel) -> _Canonical:
         texts, quantities = dict[str, str](), dict[str, dict[str, Value]]()
         for name, si in model.inputs_si().items():
             texts[name], quantities[name] = _written(model, name, si)
+        for name, within in limits(model).items():
+            texts[name], more = _within(within, texts[name], model.inputs[name].meaning.unit)
+            quantities[name] |= more
         kept = vars(model)[_KEPT] = _Canonical(texts, quantities, _key(type(model), texts))
     return kept
 
@@ -161,7 +171,7 @@ def regenerate_class(cls: type[CadModel], texts: Mapping[str, str], *, report: R
         report(0.0, "building")
         parts = model.build()
         report(0.4, "exporting")
-        step = write_step(parts, Header(cls.id, cls.version, texts, key))
+        step = write_step(parts, Header(cls.id, cls.version, texts, key), _annotations(model))
         report(0.6, "reading back")
         bodies = read_step(step)
         report(0.8, "measuring")
@@ -175,6 +185,15 @@ def regenerate_class(cls: type[CadModel], texts: Mapping[str, str], *, report: R
     report(1.0, "done")
     materials = {part.name: part.made_of for part in parts}
     return Build(key, cls.id, cls.version, _plain(model), step, measures, dimensions, materials)
+
+
+def _annotations(model: CadModel) -> Annotations | None:
+    """What the file says beside the shape; nothing where no dimension has a tolerance."""
+    if not (within := limits(model)):
+        return None
+    declared = carried(type(model))
+    sizes = {name: mm(getattr(model, model.inputs[name].attribute)) for name in declared}
+    return Annotations(declared, within, sizes)
 
 
 def _plain(model: CadModel) -> dict[str, Value]:
@@ -195,9 +214,18 @@ def _written(model: CadModel, name: str, si: Any) -> tuple[str, dict[str, Value]
     return text, {"value": float(number), "unit": meaning.unit}
 
 
+def _within(within: Limits, text: str, unit: str) -> tuple[str, dict[str, Value]]:
+    """The text of a parameter with its limits, and what stands beside it as a quantity."""
+    lower, upper = in_unit(within, unit)
+    zone: dict[str, Value] = {} if within.zone is None else {"zone": within.zone}
+    return with_limits(text, unit, within), {"upper": upper, "lower": lower, **zone}
+
+
 def _key(cls: type[CadModel], texts: Mapping[str, str]) -> str:
     identity = [cls.id, cls.version, sorted(texts.items()), KERNEL, RECIPE, *_code(cls)]
-    return hashlib.sha256(json.dumps(identity).encode()).hexdigest()
+    if cls.toleranced.keys() & limits_of(texts).keys():
+        identity.append(cls.toleranced)
+    return hashlib.sha256(json.dumps(identity, default=dict).encode()).hexdigest()
 
 
 def _code(cls: type[CadModel]) -> tuple[str, ...]:

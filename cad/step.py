@@ -27,6 +27,8 @@ from OCP.XSControl import XSControl_WorkSession
 from cad.errors import UnreadableStep
 from cad.header import Header
 from cad.model import STEEL, Colour, Part
+from cad.pmi import Annotations, Product, annotate
+from cad.properties import PartProperties, properties_of
 from cad.step_text import finished
 from templates.core.arrays import Array
 
@@ -44,23 +46,32 @@ class Body:
     places: tuple[Location, ...]
 
 
-def write_step(parts: Sequence[Part], header: Header) -> bytes:
+def write_step(parts: Sequence[Part], header: Header, annotations: Annotations | None = None) -> bytes:
     """The parts in millimetres, with product names and colours; equal parts, equal bytes.
 
-    A single part at a single place is one product; several are an assembly.
+    A single part at a single place is one product; several are an assembly. With `annotations` the file also
+    has their dimensions, and the properties of its parts; the parameters in its header are attributes then.
     """
     Interface_Static.SetCVal_s("write.step.schema", "AP242DIS")
     Interface_Static.SetCVal_s("write.step.unit", "MM")
     writer = STEPCAFControl_Writer(XSControl_WorkSession(), False)
     document = _new_document()
-    _fill(document, header.model, parts)
+    products = _fill(document, header.model, parts)
+    if annotations is not None:
+        annotate(document, products, {part.name: part.solid for part in parts}, annotations)
     stream = io.BytesIO()
     if not writer.Transfer(document, STEPControl_StepModelType.STEPControl_AsIs):
         raise RuntimeError("the kernel could not translate the parts to STEP")
     if writer.WriteStream(stream) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise RuntimeError("the kernel could not write the STEP file")
     text = stream.getvalue().decode("latin-1")
-    return finished(text, header, [part.colour for part in parts]).encode("latin-1")
+    stated = [] if annotations is None else [_properties(part, products[part.name]) for part in parts]
+    names = [] if annotations is None else annotations.order()
+    return finished(text, header, [part.colour for part in parts], names, stated).encode("latin-1")
+
+
+def _properties(part: Part, product: Product) -> PartProperties:
+    return properties_of(part.name, product.solid, part.made_of, part.density)
 
 
 def read_step(step: bytes) -> tuple[Body, ...]:
@@ -93,21 +104,25 @@ def _new_document() -> TDocStd_Document:
     return document
 
 
-def _fill(document: TDocStd_Document, title: str, parts: Sequence[Part]) -> None:
+def _fill(document: TDocStd_Document, title: str, parts: Sequence[Part]) -> dict[str, Product]:
+    """Fill a document with the parts; returns the product of each by its name."""
     shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     shapes.SetAutoNaming_s(False)
     if is_single(parts):
         (part,) = parts
         (place,) = part.places
-        shapes.SetShape(_named(shapes.NewShape(), part.name), _placed(part.solid, place).wrapped)
-        return
+        product = Product(_named(shapes.NewShape(), part.name), _placed(part.solid, place))
+        shapes.SetShape(product.label, product.solid.wrapped)
+        return {part.name: product}
+    products: dict[str, Product] = {}
     assembly = _named(shapes.NewShape(), title)
     for part in parts:
-        product = _named(shapes.NewShape(), part.name)
-        shapes.SetShape(product, part.solid.wrapped)
+        product = products[part.name] = Product(_named(shapes.NewShape(), part.name), part.solid)
+        shapes.SetShape(product.label, product.solid.wrapped)
         for name, place in zip(part.names, part.places, strict=True):
-            _named(shapes.AddComponent(assembly, product, place.wrapped), name)
+            _named(shapes.AddComponent(assembly, product.label, place.wrapped), name)
     shapes.UpdateAssemblies()
+    return products
 
 
 def is_single(parts: Sequence[Part]) -> bool:

@@ -75,6 +75,35 @@ class Seen:
         return _distinct(cylinder.diameter for cylinder in self.about(axis))
 
 
+@dataclass(frozen=True)
+class FaceSeen:
+    """A face of a solid by its number, of which sort it is, and its plane or cylinder.
+
+    Of a sphere the surface is its centre and diameter; other sorts, with the kind "", have none to speak of.
+    """
+
+    number: int
+    kind: str
+    surface: Surface
+
+
+def faces_of(solid: Shape) -> list[FaceSeen]:
+    """Every face of a solid, in the order of the solid."""
+    return [_face(n, BRepAdaptor_Surface(face.wrapped)) for n, face in enumerate(solid.Faces())]
+
+
+def _face(number: int, adaptor: BRepAdaptor_Surface) -> FaceSeen:
+    match adaptor.GetType():
+        case Kind.GeomAbs_Plane:
+            return FaceSeen(number, "plane", _surface(adaptor.Plane().Axis()))
+        case Kind.GeomAbs_Cylinder:
+            return FaceSeen(number, "cylinder", _cylinder(adaptor))
+        case Kind.GeomAbs_Sphere:
+            sphere = adaptor.Sphere()
+            return FaceSeen(number, "sphere", Surface(Vector(sphere.Location()), Z, 2 * sphere.Radius()))
+    return FaceSeen(number, "", Surface(Vector(), Z))
+
+
 def look(solid: Shape, count: int = 1) -> Seen:
     """Look at every face of a solid of which there are `count`."""
     adaptors = [BRepAdaptor_Surface(face.wrapped) for face in solid.Faces()]

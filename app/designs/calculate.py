@@ -15,6 +15,7 @@ from app.calculations.size import points, spanned
 from app.designs.calculation import DEFERRED, Analysed, Calculation, Measured, Measures, Outputs
 from app.designs.memory import memory
 from app.designs.network import Block, Cell, Graph, Node, Solid, SolidAnalysis
+from app.designs.prescribed import tolerance_of
 from app.designs.size import limit_operations, limit_values
 from app.plain import Raw
 from app.reference import Reference
@@ -188,7 +189,10 @@ def _related(result: Calculation, cell: Cell) -> Typed:
     if cell.declared is None:
         return Typed(None, "", si, {})  # it is used in SI only
     scale = cell.declared.meaning.scale
-    return Typed(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {})
+    block = result.graph.blocks.get(cell.reference.block)
+    is_of_model = block is not None and block.is_model
+    tolerance = tolerance_of(result.graph, cell, result.typed) if is_of_model else None
+    return Typed(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {}, tolerance)
 
 
 def _joined(result: Calculation, cell: Cell) -> Value:

@@ -98,6 +98,17 @@ class Shown(Measured):
 
     value: Value
     unit: str | None = Field(None, description="absent for a choice")
+    upper: float | None = Field(None, description="limit deviations of a toleranced dimension, in that unit")
+    lower: float | None = None
+    zone: str | None = Field(None, description="of ISO 286, from which the limits come")
+
+    def in_units(self, system: System) -> Self:
+        """The magnitude and its limit deviations, which are differences, in a system of units."""
+        shown = super().in_units(system)
+        if self.unit is None or self.upper is None or self.lower is None or shown.unit == self.unit:
+            return shown
+        upper, lower = (shown_value(end, self.unit, system) for end in (self.upper, self.lower))
+        return shown.model_copy(update={"upper": upper, "lower": lower})
 
 
 class Warning(Answer):

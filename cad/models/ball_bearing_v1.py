@@ -124,6 +124,12 @@ class BallBearing(CadModel):
     """Deep groove ball bearing, of standard outside dimensions at a standard bore, and of any other size."""
 
     example = {"inner_diameter": "50 mm"}
+    toleranced = {
+        "inner_diameter": {"of": "inner_ring", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
+        "outer_diameter": {"of": "outer_ring", "cylinders": "z", "cylindricity": 0.5},
+        "width": {"of": "inner_ring", "planes": "z", "perpendicularity": 1, "to": "A"},
+        "ball_diameter": {"of": "ball", "spheres": True},
+    }
 
     d: Array = given(
         "mm", "inner diameter", symbol="d", ge=1, le=2000, also=("bearing diameter", "bore", "shaft diameter")

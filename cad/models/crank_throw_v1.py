@@ -53,6 +53,16 @@ class CrankThrow(CrankModel):
         "counterweight_angle": "120 deg",
         "face_inclination": "8 deg",
     }
+    toleranced = {
+        "journal_diameter": {"cylinders": "z", "datum": "A", "cylindricity": 0.5},
+        "journal_bore": {"cylinders": "z"},
+        "pin_diameter": {"beside": "z", "cylindricity": 0.5, "parallelism": 1, "to": "A"},
+        "pin_bore": {"beside": "z"},
+        "throw": {"between": ["journal_diameter", "pin_diameter"]},
+        "oil_drilling_diameter": {"askew": True},
+        "pin_length": {"planes": "z", "levels": [[2, 3]], "perpendicularity": 1, "to": "A"},
+        "web_thickness": {"planes": "z", "levels": [[1, 2], [3, 4]]},
+    }
 
     @formula("mm", "journal length on each side", name="journal_side", symbol="L_s")
     def L_s(self) -> Array:

@@ -64,6 +64,16 @@ class Crankshaft(CrankModel):
         "rear_length": "12 mm",
         "rear_diameter": "70 mm",
     }
+    toleranced = {
+        "journal_diameter": {"cylinders": "z", "datum": "A", "cylindricity": 0.5},
+        "journal_bore": {"cylinders": "z"},
+        "pin_diameter": {"beside": "z", "cylindricity": 0.5, "parallelism": 1, "to": "A"},
+        "pin_bore": {"beside": "z"},
+        "throw": {"between": ["journal_diameter", "pin_diameter"]},
+        "oil_drilling_diameter": {"askew": True},
+        "front_diameter": {"cylinders": "z", "end": "low", "cylindricity": 0.5},
+        "rear_diameter": {"cylinders": "z", "end": "high"},
+    }
 
     @formula("mm", "journal length on each side", name="journal_side", symbol="L_s")
     def L_s(self) -> Array:

@@ -121,6 +121,16 @@ class Crankshaft(CrankRules):
         "bolt_hole_diameter": "10 mm",
         "bolt_circle_diameter": "68 mm",
     }
+    toleranced = {
+        "journal_diameter": {"cylinders": "z", "datum": "A", "cylindricity": 0.5},
+        "journal_bore": {"cylinders": "z"},
+        "pin_diameter": {"beside": "z", "cylindricity": 0.5, "parallelism": 1, "to": "A"},
+        "pin_bore": {"beside": "z"},
+        "throw": {"between": ["journal_diameter", "pin_diameter"]},
+        "oil_drilling_diameter": {"askew": True},
+        "nose_diameter": {"cylinders": "z", "end": "low", "cylindricity": 0.5},
+        "flange_diameter": {"cylinders": "z", "end": "high"},
+    }
 
     psi: Array = curve(
         "deg", "pin angles", along="throws", symbol=r"\psi", ge=-720, le=720, also=("crankpin angles",)

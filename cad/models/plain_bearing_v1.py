@@ -92,6 +92,13 @@ class PlainBearing(CadModel):
 
     example = {"inner_diameter": "48 mm"}
     film_bore = "inner_diameter"
+    toleranced = {
+        "inner_diameter": {"of": "shell", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
+        "wall": {"of": "shell", "walls": "z"},
+        "width": {"of": "shell", "planes": "z", "perpendicularity": 1, "to": "A"},
+        "oil_hole_diameter": {"of": "shell", "cylinders": "y"},
+        "oil_groove_width": {"of": "shell", "planes": "z", "levels": [[1, 2]]},
+    }
 
     d: Array = given("mm", "inner diameter", symbol="d", ge=1, le=5000, also=("bearing diameter", "bore"))
 

@@ -60,6 +60,7 @@ TIDYING = [
     ("withdrawn = None", 'withdrawn: str | None = "use 2"'),
     ("    withdrawn = None\n", ""),
     ("withdrawn = None", 'criteria = {"length": "length <= 1 m"}'),
+    ("withdrawn = None", 'toleranced = {"length": {"planes": "z"}}'),
     ("2 * self.a +", "2*(self.a) +"),
     ("return self.a\n", "return self.a  # as given\n\n"),
 ]
@@ -198,7 +199,7 @@ def silent(tree):
     """The places of docstrings and of the marks' values, which may change."""
     nodes = list(ast.walk(tree))
     marks = (node for node in nodes if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) in (
-        "withdrawn", "criteria"
+        "withdrawn", "criteria", "toleranced"
     ))  # fmt: skip
     texts = (n.value for n in nodes if isinstance(n, ast.Expr) and isinstance(n.value, ast.Constant))
     quiet = {id(part) for node in marks for part in ast.walk(node)} | {id(text) for text in texts}

@@ -1,0 +1,146 @@
+"""Find the faces of a part that carry a dimension: by what the model declares, and by their size.
+
+A face never gets the tolerance of another dimension: where none has the parameter's size, or two dimensions
+claim the same face, the build is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import isclose
+
+from cadquery import Shape, Vector
+
+from cad.errors import GeometryError
+from cad.surfaces import FaceSeen, X, Y, Z, faces_of
+from cad.toleranced import Carried
+
+_AXES = {"x": X, "y": Y, "z": Z}
+_CLOSE = 1e-6  # [mm]: a face of this size is the parameter's
+ROUND = ("cylinders", "beside", "askew", "spheres")
+"""The sorts of faces whose size is their diameter."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """The faces of a dimension by their numbers in the part; those of a distance lie on two sides."""
+
+    first: tuple[int, ...]
+    second: tuple[int, ...] = ()
+
+
+class Carriers:
+    """Finds faces of the parts of one model; `sizes` [mm] are those of all declared parameters."""
+
+    def __init__(
+        self, solids: Mapping[str, Shape], declared: Mapping[str, Carried], sizes: Mapping[str, float]
+    ) -> None:
+        self._solids, self._declared, self._sizes = solids, declared, sizes
+        self._seen: dict[str, list[FaceSeen]] = {}
+
+    def places(self, name: str) -> list[Place]:
+        """Where a dimension stands, once for each pair of levels.
+
+        Raises
+        ------
+        GeometryError
+            `tolerance`.
+        """
+        one, size = self._declared[name], self._sizes[name]
+        match one.faces:
+            case "planes":
+                return [self._levels(one, size, low, high) for low, high in one.levels]
+            case "walls":
+                return [self._walls(one, size)]
+            case "between":
+                return [self._between(one, size)]
+        faces = self._round(one)
+        for other in (n for n, o in self._declared.items() if n != name and _is_beside(o, one)):
+            if not set(faces).isdisjoint(self._round(self._declared[other])):
+                detail = f"the same faces are {size:g} mm for {name} and for {other}; change one by 0.1 %"
+                raise GeometryError("tolerance", detail, (name, other))
+        return [Place(faces or self._missing(one, size))]
+
+    def _round(self, one: Carried) -> tuple[int, ...]:
+        """The faces of a diameter; without those that belong to the dimension of an end."""
+        faces = self._of_size(one)
+        if one.end:
+            return tuple(face.number for face in _at_end(faces, one))
+        ends = (o for o in self._declared.values() if o.end and (o.part, o.where) == (one.part, one.where))
+        taken = {number for end in ends for number in self._round(end)}
+        return tuple(face.number for face in faces if face.number not in taken)
+
+    def _of_size(self, one: Carried) -> list[FaceSeen]:
+        size = self._sizes[one.name]
+        return [f for f in self._faces(one) if abs(f.surface.diameter - size) < _CLOSE and _is_meant(f, one)]
+
+    def _levels(self, one: Carried, size: float, low: int, high: int) -> Place:
+        axis = _AXES[one.where]
+        planes = [f for f in self._faces(one) if f.kind == "plane" and f.surface.along(axis)]
+        levels = sorted({round(f.surface.point.dot(axis), 6) for f in planes})
+        count = len(levels)
+        if not (-count <= low < count and -count <= high < count):
+            self._missing(one, size)
+        ends = levels[low], levels[high]
+        sides = [tuple(f.number for f in planes if abs(f.surface.point.dot(axis) - z) < _CLOSE) for z in ends]
+        if not isclose(abs(ends[1] - ends[0]), size, abs_tol=2 * _CLOSE):
+            self._missing(one, size)
+        return Place(*sides)
+
+    def _walls(self, one: Carried, size: float) -> Place:
+        axis = _AXES[one.where]
+        round_ = [f for f in self._faces(one) if f.kind == "cylinder" and f.surface.about(axis)]
+        diameters = sorted({round(f.surface.diameter, 6) for f in round_})
+        if not diameters or not isclose((diameters[-1] - diameters[0]) / 2, size, abs_tol=2 * _CLOSE):
+            self._missing(one, size)
+        ends = diameters[0], diameters[-1]
+        return Place(*(tuple(f.number for f in round_ if abs(f.surface.diameter - d) < _CLOSE) for d in ends))
+
+    def _between(self, one: Carried, size: float) -> Place:
+        (first,), (second,) = (self.places(name) for name in one.where)
+        by_number = {face.number: face.surface for face in self._faces(one)}
+        start = by_number[first.first[0]]
+        for number in second.first:
+            apart = by_number[number].point - start.point
+            if not isclose(apart.cross(start.direction).Length, size, abs_tol=2 * _CLOSE):
+                self._missing(one, size)
+        return Place(first.first, second.first)
+
+    def _faces(self, one: Carried) -> list[FaceSeen]:
+        if one.part not in self._seen:
+            self._seen[one.part] = faces_of(self._solids[one.part])
+        return self._seen[one.part]
+
+    def _missing(self, one: Carried, size: float) -> tuple[int, ...]:
+        detail = f"{one.name} has a tolerance, but no face of {one.part} shows its {size:g} mm"
+        raise GeometryError("tolerance", f"{detail}; leave the tolerance out, or give it a size", (one.name,))
+
+
+def _is_beside(other: Carried, one: Carried) -> bool:
+    """Whether another dimension might claim the same faces."""
+    return other.faces in ROUND and other.part == one.part
+
+
+def _is_meant(face: FaceSeen, one: Carried) -> bool:
+    """Whether a face is of the sort, and lies as the declaration says."""
+    if one.faces == "spheres":
+        return face.kind == "sphere"
+    if face.kind != "cylinder":
+        return False
+    if one.faces == "askew":
+        return not any(face.surface.along(axis) for axis in _AXES.values())
+    axis = _AXES[one.where]
+    return face.surface.about(axis) == (one.faces == "cylinders") and face.surface.along(axis)
+
+
+def _at_end(faces: list[FaceSeen], one: Carried) -> Iterator[FaceSeen]:
+    """Of cylinders about an axis those that begin first, or end last, along it."""
+    axis: Vector = _AXES[one.where]
+    reaches = {face.number: face.surface.turned(axis).reach for face in faces}
+    if one.end == "low":
+        last = min((low for low, _ in reaches.values()), default=0.0)
+        yield from (face for face in faces if abs(reaches[face.number][0] - last) < _CLOSE)
+    else:
+        last = max((high for _, high in reaches.values()), default=0.0)
+        yield from (face for face in faces if abs(reaches[face.number][1] - last) < _CLOSE)

@@ -1,0 +1,157 @@
+"""Semantic PMI of AP242: dimensions with their limits, datums, geometric tolerances, on the faces of parts.
+
+Traps of Open CASCADE 7.9, each met in a measurement: the schema must be AP242, with AP214 its writer dies; a
+dimension carries limits and never a class of fit, of which the writer counts the grade otherwise than ISO
+286; datums are read back only if a tolerance refers to them. Nothing is drawn: these annotations are for
+programs, a drawing is for people.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from cadquery import Shape
+from OCP.TCollection import TCollection_HAsciiString
+from OCP.TDF import TDF_Label, TDF_LabelSequence
+from OCP.TDocStd import TDocStd_Document
+from OCP.XCAFDimTolObjects import XCAFDimTolObjects_DatumObject as DatumObject
+from OCP.XCAFDimTolObjects import XCAFDimTolObjects_DimensionObject as DimensionObject
+from OCP.XCAFDimTolObjects import XCAFDimTolObjects_DimensionType as DimensionType
+from OCP.XCAFDimTolObjects import XCAFDimTolObjects_GeomToleranceObject as ToleranceObject
+from OCP.XCAFDimTolObjects import XCAFDimTolObjects_GeomToleranceType as ToleranceType
+from OCP.XCAFDoc import XCAFDoc_Datum, XCAFDoc_Dimension, XCAFDoc_DocumentTool, XCAFDoc_GeomTolerance
+
+from cad.carriers import Carriers, Place
+from cad.toleranced import Carried, Faces, Form, Limits
+
+_TYPES: Mapping[Faces, DimensionType] = {
+    "cylinders": DimensionType.XCAFDimTolObjects_DimensionType_Size_Diameter,
+    "beside": DimensionType.XCAFDimTolObjects_DimensionType_Size_Diameter,
+    "askew": DimensionType.XCAFDimTolObjects_DimensionType_Size_Diameter,
+    "spheres": DimensionType.XCAFDimTolObjects_DimensionType_Size_SphericalDiameter,
+    "planes": DimensionType.XCAFDimTolObjects_DimensionType_Location_LinearDistance,
+    "walls": DimensionType.XCAFDimTolObjects_DimensionType_Location_LinearDistance,
+    "between": DimensionType.XCAFDimTolObjects_DimensionType_Location_LinearDistance,
+}
+_FORMS: Mapping[Form, ToleranceType] = {
+    "cylindricity": ToleranceType.XCAFDimTolObjects_GeomToleranceType_Cylindricity,
+    "perpendicularity": ToleranceType.XCAFDimTolObjects_GeomToleranceType_Perpendicularity,
+    "parallelism": ToleranceType.XCAFDimTolObjects_GeomToleranceType_Parallelism,
+}
+
+
+@dataclass(frozen=True)
+class Product:
+    """A part in a document: its label there, and the solid that is written."""
+
+    label: TDF_Label
+    solid: Shape
+
+
+@dataclass(frozen=True)
+class Annotations:
+    """What is written beside the shape: the toleranced dimensions by parameter, and what declares them.
+
+    `sizes` [mm] are those of all declared parameters, toleranced or not.
+    """
+
+    declared: Mapping[str, Carried] = field(default_factory=dict)
+    limits: Mapping[str, Limits] = field(default_factory=dict)
+    sizes: Mapping[str, float] = field(default_factory=dict)
+
+    def order(self) -> list[str]:
+        """The parameter of every dimension that is written, in the order of the file."""
+        return [n for n in self.limits for _ in self.declared[n].levels]
+
+
+def annotate(
+    document: TDocStd_Document,
+    products: Mapping[str, Product],
+    drawn: Mapping[str, Shape],
+    annotations: Annotations,
+) -> None:
+    """Add every toleranced dimension to a document; `drawn` are the solids in their models' coordinates.
+
+    Raises
+    ------
+    GeometryError
+        `tolerance`, where no face shows a dimension, or two dimensions claim the same one.
+    """
+    carriers = Carriers(drawn, annotations.declared, annotations.sizes)
+    _Writer(document, products, carriers, annotations.declared).write(annotations.limits)
+
+
+class _Writer:
+    """Adds dimensions, datums and geometric tolerances to a document."""
+
+    def __init__(
+        self,
+        document: TDocStd_Document,
+        products: Mapping[str, Product],
+        carriers: Carriers,
+        declared: Mapping[str, Carried],
+    ) -> None:
+        self._shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+        self._tool = XCAFDoc_DocumentTool.DimTolTool_s(document.Main())
+        self._products, self._carriers, self._declared = products, carriers, declared
+        self._faces: dict[tuple[str, int], TDF_Label] = {}
+        self._letters: dict[str, TDF_Label] = {}
+
+    def write(self, limits: Mapping[str, Limits]) -> None:
+        """Write all dimensions, then all geometric tolerances."""
+        places = {name: self._carriers.places(name) for name in limits}
+        for name, within in limits.items():
+            for place in places[name]:
+                self._dimension(self._declared[name], place, within)
+        for name, within in limits.items():
+            one = self._declared[name]
+            for form, share in one.forms.items():
+                numbers = [n for place in places[name] for n in (*place.first, *place.second)]
+                self._form(form, within.share(share), self._labels(one, dict.fromkeys(numbers)), one.to)
+
+    def _dimension(self, one: Carried, place: Place, within: Limits) -> None:
+        size = DimensionObject()
+        size.SetType(_TYPES[one.faces])
+        size.SetValue(within.nominal)
+        size.SetUpperTolValue(within.upper)
+        size.SetLowerTolValue(within.lower)
+        label = self._tool.AddDimension()
+        XCAFDoc_Dimension.Set_s(label).SetObject(size)
+        first, second = self._labels(one, place.first), self._labels(one, place.second)
+        self._tool.SetDimension(first, second, label)
+
+    def _form(self, form: Form, width: float, faces: TDF_LabelSequence, to: str) -> None:
+        tolerance = ToleranceObject()
+        tolerance.SetType(_FORMS[form])
+        tolerance.SetValue(width)
+        label = self._tool.AddGeomTolerance()
+        XCAFDoc_GeomTolerance.Set_s(label).SetObject(tolerance)
+        self._tool.SetGeomTolerance(faces, label)
+        if form != "cylindricity":
+            self._tool.SetDatumToGeomTol(self._datum(to), label)
+
+    def _datum(self, letter: str) -> TDF_Label:
+        """The datum of a letter, which is written once."""
+        if letter not in self._letters:
+            one = next(one for one in self._declared.values() if one.datum == letter)
+            datum = DatumObject()
+            datum.SetName(TCollection_HAsciiString(letter))
+            datum.SetPosition(1)
+            label = self._tool.AddDatum()
+            XCAFDoc_Datum.Set_s(label).SetObject(datum)
+            (place,) = self._carriers.places(one.name)
+            self._tool.SetDatum(self._labels(one, place.first), label)
+            self._letters[letter] = label
+        return self._letters[letter]
+
+    def _labels(self, one: Carried, numbers: Iterable[int]) -> TDF_LabelSequence:
+        """The labels of faces of the part, each made once."""
+        product = self._products[one.part]
+        labels = TDF_LabelSequence()
+        for number in numbers:
+            if (one.part, number) not in self._faces:
+                face = product.solid.Faces()[number].wrapped
+                self._faces[one.part, number] = self._shapes.AddSubShape(product.label, face)
+            labels.Append(self._faces[one.part, number])
+        return labels

@@ -1,0 +1,214 @@
+"""Which faces of a model carry which dimension, and between which limits a user wants that dimension.
+
+A model says it in `toleranced`, by parameter, in plain words:
+
+    toleranced = {
+        "inner_diameter": {"of": "shell", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
+        "width": {"of": "shell", "planes": "z", "perpendicularity": 1, "to": "A"},
+    }
+
+`of` names the part; without it the part is named as the model. One of these says which faces are meant:
+
+- `cylinders`: those about that axis, of the parameter's diameter; `end`, `"low"` or `"high"`, takes only the
+  first or the last along the axis, which no other dimension takes then;
+- `beside`: cylinders along that axis, but not about it; `askew`: cylinders along no axis, here `True`;
+- `spheres`, here `True`;
+- `planes`: from one plane across that axis to another; `levels` counts these planes, `[[0, -1]]` if it does
+  not say, which is from the first to the last. Each pair of numbers is a dimension of its own;
+- `walls`: from the thinnest to the thickest cylinder about that axis;
+- `between`: from the axis of one dimension's cylinders to that of another's, both named.
+
+`datum` makes the faces a datum. `cylindricity`, `perpendicularity` and `parallelism` are shares of the
+dimension's own tolerance, upper less lower limit; the last two need `to`, the datum. They are written only
+where the dimension has a tolerance. Nothing here calculates: a released model may change it (`MARKS`).
+
+No kernel is imported here; `cad.pmi` finds the faces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+from templates.core.errors import FaultyText
+from templates.core.units.quantity import Typed, read
+from templates.core.units.tolerance import Tolerance
+from templates.core.units.units import unit
+
+if TYPE_CHECKING:
+    from cad.header import Header
+    from cad.model import CadModel
+
+Faces = Literal["cylinders", "beside", "askew", "spheres", "planes", "walls", "between"]
+Form = Literal["cylindricity", "perpendicularity", "parallelism"]
+FACES: tuple[Faces, ...] = get_args(Faces)
+FORMS: tuple[Form, ...] = get_args(Form)
+_BY_AXIS = ("cylinders", "beside", "planes", "walls")
+_MORE = frozenset({"of", "end", "levels", "datum", "to"})
+_DIGITS = 9  # decimals of a limit in mm: what differs less is the same limit
+
+
+@dataclass(frozen=True)
+class Carried:
+    """How the faces of a part carry a dimension.
+
+    Attributes
+    ----------
+    name
+        The parameter.
+    part
+        The part on which the faces are.
+    faces, where
+        Which sort of faces, and what the declaration says of them: an axis, `True`, or two dimensions.
+    end
+        `low` or `high`, if only the first or the last cylinder along the axis is meant.
+    levels
+        Of planes: which planes across the axis, counted from the lowest, by pairs.
+    datum
+        The letter of the datum that the faces are; empty if they are none.
+    forms
+        Geometric tolerances as shares of the dimension's own tolerance.
+    to
+        The letter of the datum to which perpendicularity and parallelism refer.
+    """
+
+    name: str
+    part: str
+    faces: Faces
+    where: Any
+    end: str = ""
+    levels: tuple[tuple[int, int], ...] = ((0, -1),)
+    datum: str = ""
+    forms: Mapping[Form, float] = field(default_factory=dict)
+    to: str = ""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """A dimension [mm] with its limit deviations [mm], and the zone of ISO 286 from which they come."""
+
+    nominal: float
+    lower: float
+    upper: float
+    zone: str | None = None
+
+    @property
+    def width(self) -> float:
+        """Upper less lower limit [mm]."""
+        return round(self.upper - self.lower, _DIGITS)
+
+    def share(self, part: float) -> float:
+        """A share of the width [mm], as geometric tolerances are declared."""
+        return round(self.width * part, _DIGITS)
+
+
+def carried(cls: type[CadModel]) -> dict[str, Carried]:
+    """What a model declares, by parameter.
+
+    Raises
+    ------
+    TypeError
+        If the declaration makes no sense; it names the parameter and says what would be right.
+    """
+    read_ = {name: _carried(cls, name, dict(said)) for name, said in cls.toleranced.items()}
+    letters = {one.datum for one in read_.values() if one.datum}
+    for name, one in read_.items():
+        if one.to and one.to not in letters:
+            raise _wrong(cls, name, f"no dimension is the datum {one.to!r}")
+        if one.faces == "between" and not (len(one.where) == 2 and {*one.where} <= read_.keys() - {name}):
+            raise _wrong(cls, name, "between names two other dimensions of toleranced")
+    return read_
+
+
+def _carried(cls: type[CadModel], name: str, said: dict[str, Any]) -> Carried:
+    if name not in cls.inputs or unit(cls.inputs[name].meaning.unit).base != unit("m").base:
+        raise _wrong(cls, name, "it is no parameter that is a length")
+    kinds = [kind for kind in FACES if kind in said]
+    if len(kinds) != 1 or not said.keys() <= {*FACES, *FORMS, *_MORE}:
+        words = ", ".join((*FACES, *FORMS, *sorted(_MORE)))
+        raise _wrong(cls, name, f"it says exactly one sort of faces; it knows the words {words}")
+    if kinds[0] in _BY_AXIS and said[kinds[0]] not in ("x", "y", "z"):
+        raise _wrong(cls, name, f"{kinds[0]} names an axis: x, y or z")
+    if said.get("end", "low") not in ("low", "high"):
+        raise _wrong(cls, name, "end is low or high")
+    forms = {form: float(said[form]) for form in FORMS if form in said}
+    if any(not 0 < share <= 1 for share in forms.values()):
+        raise _wrong(cls, name, "a geometric tolerance is a share above 0 and up to 1 of its own tolerance")
+    if bool(said.get("to")) != bool(forms.keys() - {"cylindricity"}):
+        raise _wrong(cls, name, "perpendicularity and parallelism need `to`, a datum, and nothing else does")
+    return Carried(
+        name,
+        said.get("of", cls.id),
+        kinds[0],
+        said[kinds[0]],
+        said.get("end", ""),
+        _levels(cls, name, said.get("levels", [[0, -1]])),
+        said.get("datum", ""),
+        forms,
+        said.get("to", ""),
+    )
+
+
+def _levels(cls: type[CadModel], name: str, said: Any) -> tuple[tuple[int, int], ...]:
+    pairs = [tuple(pair) if isinstance(pair, (list, tuple)) else () for pair in said]
+    if not pairs or any([type(number) for number in pair] != [int, int] for pair in pairs):
+        raise _wrong(cls, name, "levels are pairs of whole numbers, as in [[0, -1]]")
+    return tuple((low, high) for low, high in pairs)
+
+
+def _wrong(cls: type[CadModel], name: str, detail: str) -> TypeError:
+    return TypeError(f"{cls.__name__}.toleranced, {name}: {detail}")
+
+
+def limits(model: CadModel) -> dict[str, Limits]:
+    """The limits that a user gave to dimensions of a model which its faces carry, by parameter."""
+    declared = type(model).toleranced
+    pairs = ((name, model.ledger.typed.get(name)) for name in declared)
+    return dict(_single((name, typed) for name, typed in pairs if isinstance(typed, Typed)))
+
+
+def limits_in(header: Header) -> dict[str, Limits]:
+    """The limits in the header of a STEP file, by parameter; files without tolerances have none."""
+    return limits_of(header.parameters)
+
+
+def limits_of(texts: Mapping[str, str]) -> dict[str, Limits]:
+    """The limits in parameters as texts, such as `48 mm H7`, by parameter."""
+    return dict(_single(_read(texts)))
+
+
+def _read(parameters: Mapping[str, str]) -> Iterator[tuple[str, Typed]]:
+    for name, text in parameters.items():
+        if text.count(" ") < 2:
+            continue  # `48 mm` and words have no room for a tolerance
+        try:
+            yield name, read(text, "m")
+        except FaultyText:
+            continue  # a word, a count or an angle
+
+
+def _single(pairs: Iterator[tuple[str, Typed]]) -> Iterator[tuple[str, Limits]]:
+    """The limits of single values, where they leave any room."""
+    for name, typed in pairs:
+        tolerance, si = typed.tolerance, typed.si
+        if isinstance(tolerance, Tolerance) and isinstance(si, float):
+            ends = tolerance.lower, tolerance.upper
+            lower, upper = (round(float(end) * 1e3, _DIGITS) + 0.0 for end in ends)
+            if lower < upper:
+                yield name, Limits(round(si * 1e3, _DIGITS), lower, upper, tolerance.zone)
+
+
+def written(text: str, name: str, within: Limits) -> str:
+    """A quantity's text with its limits: `48 mm H7`, `48 mm +0.05/-0.02 mm`; `name` is its unit."""
+    if within.zone is not None:
+        return f"{text} {within.zone}"
+    lower, upper = in_unit(within, name)
+    return f"{text} {upper:+.12g}/{lower:+.12g} {name}"
+
+
+def in_unit(within: Limits, name: str) -> tuple[float, float]:
+    """Lower and upper limit deviation in a unit of length."""
+    factor = unit("mm").factor / unit(name).factor
+    lower, upper = (float(f"{end * factor:.12g}") for end in (within.lower, within.upper))
+    return lower, upper
