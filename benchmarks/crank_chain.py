@@ -6,7 +6,8 @@ The shaft reaches from its first mid-main to its last, one end held. Both sides 
 differs is the chain: its sections are the means that loads see, and between mains it moves as loads at mains
 and pins do. The whole is the throws' solids joined, so that mid-mains are faces of its mesh. `series`: the
 stiffness of one throw with a free end, divided by their number; `series_guided`: that of a throw guided at
-its end. The rows are printed and kept in benchmarks/results/crank_chain.json.
+its end. `throws`: of each throw in its place, torque for the rotation between its mains. The rows are printed
+and kept in benchmarks/results/crank_chain.json.
 """
 
 from __future__ import annotations
@@ -117,6 +118,20 @@ def response(system: System, mains: Sequence[str]) -> Response:
     return Response(system, ng.InnerProduct(force, shown.vec), shown, tuple(guides), tuple(moved), gram)
 
 
+def rotations(answer: Response, mains: Sequence[str]) -> list[float]:
+    """The rotations about z of the mains' sections, as means that a torque sees [rad]."""
+    system = answer.system
+    return [
+        float(
+            ng.Integrate(
+                ng.InnerProduct(section_loads(system, name)[5], answer.displacement) * ng.ds(name),
+                system.grid.mesh,
+            )
+        )
+        for name in mains
+    ]
+
+
 def compared(angles: Sequence[float]) -> Iterator[dict[str, Any]]:
     """By how much the chain differs from the whole, free and guided: relative, of stiffness and frequency."""
     throws = [one()] * len(angles)
@@ -125,6 +140,7 @@ def compared(angles: Sequence[float]) -> Iterator[dict[str, Any]]:
     for guided in (False, True):
         answer = response(system, mains if guided else [])
         stiffness, frequency = 1e-3 / answer.compliance, torsional_mode(answer).frequency
+        between = 1e-3 / np.diff(rotations(answer, mains), prepend=0.0)
         yield {
             "pins": list(angles),
             "guided": guided,
@@ -132,6 +148,7 @@ def compared(angles: Sequence[float]) -> Iterator[dict[str, Any]]:
             "frequency_of_the_whole": frequency,
             "chain": chain.stiffness(guided=guided) / stiffness - 1,
             "chain_frequency": chain.frequency(guided=guided) / frequency - 1,
+            "throws": (chain.throw_stiffnesses(guided=guided) / between - 1).tolist(),
             "series": in_series(throws, guided=False) / stiffness - 1,
             "series_guided": in_series(throws, guided=True) / stiffness - 1,
         }

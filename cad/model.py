@@ -30,10 +30,10 @@ import numpy as np
 
 from cad.errors import GeometryError
 from cad.fillets import Crank
-from cad.lists import listed
+from cad.lists import LONGEST_TEXT, listed
 from cad.shaft import STEEL_DENSITY, Shaft
 from cad.toleranced import carried
-from templates.core.errors import Fault, InvalidInputs
+from templates.core.errors import Fault, InvalidInputs, excerpt
 from templates.core.language.spec import Curve
 from templates.core.language.template import Array, Template
 from templates.core.units.quantity import Typed
@@ -162,15 +162,26 @@ class CadModel(Template):
         InvalidInputs
             Naming all that is wrong at once.
         """
-        read, empty = dict(raw), []
+        read, wrong = dict(raw), []
         for name, value in raw.items():
-            if isinstance(cls.inputs.get(name), Curve):
+            if isinstance(declared := cls.inputs.get(name), Curve):
                 read[name] = value = listed(value)
+                if isinstance(value, str) and value.lstrip()[:1] == "[":
+                    wrong.append(_no_list(name, value, declared.meaning.unit))
             if isinstance(value, Typed) and np.size(value.si) == 0:
-                empty.append(Fault(name, "empty", "an array needs at least one value"))
-        if empty:
-            raise InvalidInputs(empty)
+                wrong.append(Fault(name, "empty", "an array needs at least one value"))
+        if wrong:
+            raise InvalidInputs(wrong)
         return super().from_quantities(read, pending)
+
+
+def _no_list(name: str, text: str, unit: str) -> Fault:
+    """The fault of a text that begins as a list and is none, with what a list looks like."""
+    form = "[1.5, 2]" if unit == "1" else f"[1.5, 2] {unit}"
+    if len(text) > LONGEST_TEXT:
+        detail = f"a list as text has at most {LONGEST_TEXT} characters; give an object with `value` and `unit`"
+        return Fault(name, "too_long", detail)
+    return Fault(name, "not_a_quantity", f'{excerpt(text)} is not a list; write it as "{form}"')
 
 
 def arrays_of_points(model: CadModel) -> list[Fault]:

@@ -38,3 +38,29 @@ class PinPlace:
     throw: float
     radius: float
     length: float  # of the cylinder, between its fillets
+
+
+@dataclass(frozen=True)
+class ThrowSolid:
+    """One throw of a shaft as a STEP file of its own, from mid-main to mid-main; z = 0 is mid-pin."""
+
+    step: bytes
+    shaft: Shaft
+    pin: PinPlace
+
+
+@dataclass(frozen=True)
+class PlacedThrow:
+    """Which solid a throw of a shaft is, and how it stands there."""
+
+    solid: int  # its number among the solids, from 0
+    is_mirrored: bool  # in the plane across the shaft through mid-pin
+    angle: float  # of its pin about z [rad]
+
+
+@dataclass(frozen=True)
+class ThrowsApart:
+    """The throws of a shaft, one after the other; throws alike but for a mirror share a solid."""
+
+    solids: tuple[ThrowSolid, ...]
+    places: tuple[PlacedThrow, ...]

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from app.designs.document import Model
 from app.reference import Reference
 from app.solids.questions import Question, faults, in_order, not_offered, question
-from cad.analysis.kinds import KINDS, TABLES
+from cad.analysis.kinds import KINDS, LISTS, TABLES
 from cad.inspect import MEASURES
 from cad.model import CadModel
 from templates.core.errors import Fault, unknown_name
@@ -32,8 +32,15 @@ def is_measured(reference: Reference, declared: Iterable[str]) -> bool:
 
 
 def is_table(reference: Reference) -> bool:
-    """Whether a name means an output of an analysis that is a table; others are single values."""
-    return reference.analysis in KINDS and reference.output in TABLES
+    """Whether a name means an output of an analysis that is a table or a list; others are single values."""
+    return axes_of(reference) > 0
+
+
+def axes_of(reference: Reference) -> int:
+    """How many axes an output of an analysis has: 2 of a table, 1 of a list, 0 of a single value."""
+    if reference.analysis not in KINDS:
+        return 0
+    return 2 if reference.output in TABLES else int(reference.output in LISTS)
 
 
 def measured_names(declared: Iterable[str]) -> Iterator[str]:

@@ -69,7 +69,7 @@ class Calculation:
     def measure(self, reference: Reference) -> Value:
         """A measure of a solid, or output of its analyses [SI], by its name: `throw.torsion.stiffness`.
 
-        A number, or a table as an array [row, column].
+        A number, a table as an array [row, column], or a list as an array.
 
         Raises
         ------

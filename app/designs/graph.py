@@ -220,7 +220,7 @@ def _unknown(network: Network, links: Links) -> Iterator[Fault]:
         yield from (replace(f, name=cell) for (cell, _), f in zip(unknown, faults, strict=True))
     for through in sorted(network.assumed, key=str):
         if is_table(through):
-            detail = f"an iteration runs through one value; {through} is a table"
+            detail = f"an iteration runs through one value; {through} is a table or a list"
             yield Fault("iterations", "not_a_number", detail)
         elif through.block not in models or not is_measured(through, models[through.block]):
             detail = f"an iteration runs through a measure of a model, such as model.mass, not {through}"

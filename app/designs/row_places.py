@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.designs.analyses import is_measured, is_table
+from app.designs.analyses import axes_of, is_measured
 from app.designs.document import Document
 from app.designs.network import Block, Cell, Graph
 from app.designs.row_lists import rank_of
@@ -134,8 +134,8 @@ class Ranks:
     def _of_reference(self, reference: Reference) -> int:
         if cell := self.graph.cell(reference):
             return self._ranks[cell]
-        if is_table(reference):
-            return 2
+        if axes := axes_of(reference):
+            return axes
         block = self.graph.blocks[reference.block]
         formula = block.cls.formulas.get(reference.member)
         own = formula.axes if isinstance(formula, Profile) else 0

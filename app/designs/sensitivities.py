@@ -197,7 +197,8 @@ class Surroundings:
         """Why the design itself has no value."""
         waiting = self._net.design.needs(self.asked.wanted).waiting
         if tables := sorted(str(reference) for reference in waiting if is_table(reference)):
-            return f"{self.asked.name} follows from {listed(tables)}, a table: its slopes are not computed"
+            what = f"{listed(tables)}, a table or a list"
+            return f"{self.asked.name} follows from {what}: its slopes are not computed"
         if waiting:
             return f"{self.asked.name} waits for {listed(sorted(map(str, waiting)))}"
         refusal = table.refusals.get(0)

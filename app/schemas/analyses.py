@@ -34,9 +34,9 @@ class Span(Answer):
 class AnalysisOutput(Answer):
     """A quantity that an analysis computed; of the surface, where its file is."""
 
-    value: float | list[list[float]] | None = Field(
+    value: float | list[float] | list[list[float]] | None = Field(
         None,
-        description="a number; of a table its rows; null where the refinement did not settle, say",
+        description="a number; a list; of a table its rows; null where the refinement did not settle, say",
     )
     unit: str | None = None
     columns: list[str] | None = Field(None, description="of a table: what each number of a row is")

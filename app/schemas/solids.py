@@ -79,6 +79,7 @@ class Analysable(Answer):
 
     outputs: dict[str, str | None] = Field(description="outputs with their units; a surface has none")
     tables: dict[str, list[str]] = Field({}, description="outputs that are tables, with their columns")
+    lists: list[str] = Field([], description="outputs that are lists, with a number for each throw")
     boundaries: list[str]
     levels: list[str]
     default_level: str

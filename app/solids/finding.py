@@ -11,12 +11,13 @@ from app.solids.questions import Question
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.workers.base import Limits, Runner
-from cad.analysis.kinds import DEFAULT_LEVEL, SURFACE, UNIT_LOADS
+from cad.analysis.kinds import CHAIN, DEFAULT_LEVEL, SURFACE, UNIT_LOADS
+from cad.cranks.chain_throw import first_throw_apart, shaft_of_throws, sizes_of_throw, throws_apart
 from cad.errors import AnalysisError
 from cad.fillets import Crank
 from cad.model import CadModel
 from cad.regenerate import build_key
-from cad.shaft import Shaft
+from cad.shaft import Shaft, ThrowsApart
 from templates.core.progress import report
 
 FILE = "file"
@@ -50,18 +51,27 @@ class Analysing:
         new = {name: elsewhere[name] for name in missing if name in elsewhere}
         if unknown := tuple(name for name in missing if name not in new):
             assert step is not None, "a build has its STEP file from its first moment"
-            bytes_ = self.store.read(step.sha256)
-            computed = context.run(
-                analyse_in_worker,
-                bytes_,
-                shaft_of(shape),
-                throw_of(shape, question),
-                question,
-                unknown,
-                limits=self.limits,
-            )
+            computed = self._computed(shape, question, unknown, step.sha256, context)
             new |= {name: self._stored(output) for name, output in computed.items()}
         self.database.write(lambda session: repository.add(session, build, question, new))
+
+    def _computed(
+        self, shape: CadModel, question: Question, unknown: tuple[str, ...], step: str, context: Runner
+    ) -> dict[str, JsonObject]:
+        """Outputs from the file of the build, or from those of its throws, which are drawn for it."""
+        whole = shaft_of_throws(shape)
+        if question.kind == CHAIN:
+            if whole is None:
+                raise AnalysisError("no_throws", f"{shape.id} is not a shaft of throws")
+            apart = context.run(throws_apart, whole, limits=self.limits)
+            return context.run(analyse_chain_in_worker, apart, question, limits=self.limits)
+        shaft, throw = shaft_of(shape), throw_of(shape, question)
+        if question.kind == UNIT_LOADS and whole is not None:
+            (first,) = context.run(first_throw_apart, whole, limits=self.limits).solids
+            bytes_, shaft = first.step, first.shaft
+        else:
+            bytes_ = self.store.read(step)
+        return context.run(analyse_in_worker, bytes_, shaft, throw, question, unknown, limits=self.limits)
 
     def _stored(self, output: JsonObject) -> JsonObject:
         """An output as its row holds it: of one that is a file, what the store calls it."""
@@ -100,7 +110,8 @@ def throw_of(shape: CadModel, question: Question) -> Crank | None:
     """
     if question.kind != UNIT_LOADS:
         return None
-    sizes = shape.throw_sizes()
+    whole = shaft_of_throws(shape)
+    sizes = shape.throw_sizes() if whole is None else sizes_of_throw(whole)
     if sizes is None:
         raise AnalysisError("no_throw", f"{shape.id} is not one throw of a crank")
     return sizes
@@ -123,6 +134,22 @@ def analyse_in_worker(
             return unit_load_tables(step, shaft, crank, question.level or DEFAULT_LEVEL, report)
         computed = analyse(step, shaft, request, outputs, report).outputs
         return {name: _packed(output) if name == SURFACE else output for name, output in computed.items()}
+    except (AnalysisError, MemoryError):
+        raise
+    except Exception as error:
+        detail = f"the analysis failed: {type(error).__name__}: {error}"
+        raise AnalysisError("solver", detail) from error
+
+
+def analyse_chain_in_worker(apart: ThrowsApart, question: Question) -> dict[str, JsonObject]:
+    """`cad.analysis.chain_answers.chain_answers` with progress reported to the job; in the worker's process.
+
+    All outputs are answered, whichever are asked for: they cost the same together.
+    """
+    from cad.analysis.chain_answers import chain_answers
+
+    try:
+        return chain_answers(apart, question.boundary, question.level, question.tolerance, report)
     except (AnalysisError, MemoryError):
         raise
     except Exception as error:

@@ -18,9 +18,11 @@ from app.plain import Json, JsonObject, Raw
 from app.schemas.bounded import Bounded
 from cad.analysis.kinds import (
     BOUNDARIES,
+    CHAIN,
     DEFAULT_LEVEL,
     KINDS,
     LEVELS,
+    LISTS,
     STRESSES,
     SURFACE,
     TABLES,
@@ -112,6 +114,9 @@ def faults(kind: str, options: Options) -> list[Fault]:
     both = options.level is not None and options.tolerance is not None
     detail = "give either a level or a tolerance, which chooses the level"
     conflicts = [Fault("tolerance", "conflict", detail)] if both else []
+    if kind == CHAIN and options.load is not None:
+        detail = f"{CHAIN} answers no stress, and all else is the same under any load: leave load out"
+        return [*conflicts, Fault("load", "not_offered", detail)]
     return conflicts + ([] if options.load is None else load_faults(options.load))
 
 
@@ -156,7 +161,7 @@ def _times(load: float, output: Mapping[str, Json]) -> JsonObject:
 
 def offered(kind: str) -> tuple[str, ...]:
     """All outputs of a kind that can be asked for."""
-    return (*KINDS[kind],) if kind == UNIT_LOADS else (*KINDS[kind], SURFACE)
+    return (*KINDS[kind],) if kind in (UNIT_LOADS, CHAIN) else (*KINDS[kind], SURFACE)
 
 
 def in_order(kind: str, outputs: Container[str]) -> tuple[str, ...]:
@@ -175,8 +180,15 @@ def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
     """Why solids of a model cannot be analysed in this way; None if they can."""
     if reason := no_shaft(cls):
         return Fault("model", "no_shaft", reason)
-    if kind != UNIT_LOADS or cls.is_throw():
+    if kind not in (UNIT_LOADS, CHAIN) or (kind == UNIT_LOADS and cls.is_throw()):
         return None
+    from cad.cranks.chain_throw import has_throws  # it draws, so it brings the kernel
+
+    if has_throws(cls):
+        return None
+    if kind == CHAIN:
+        detail = f"{CHAIN} is of a shaft of throws from main to main, as crankshaft 2 is; {cls.id} is not one"
+        return Fault("model", "no_throws", detail)
     detail = f"{cls.id} is not one throw of a crank, from mid-journal to mid-journal, as crank_throw is"
     return Fault("model", "no_throw", f"{UNIT_LOADS} is of a throw: {detail}")
 
@@ -187,6 +199,7 @@ def what_can_be_asked(cls: type[CadModel]) -> JsonObject:
         kind: {
             "outputs": {name: KINDS[kind].get(name) for name in offered(kind)},
             "tables": {name: [*TABLES[name]] for name in KINDS[kind] if name in TABLES},
+            "lists": [name for name in KINDS[kind] if name in LISTS],
             "boundaries": [*BOUNDARIES] if kind != UNIT_LOADS else [*BOUNDARIES[:1]],
             "levels": [*LEVELS],
             "default_level": DEFAULT_LEVEL,

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from app.designs.analyses import is_table
+from app.designs.analyses import axes_of, is_table
 from app.designs.document import Document
 from app.designs.net import Net, Refusal
 from app.designs.network import Block
@@ -108,7 +108,8 @@ def iterated(document: Document, measures: Sequence[Reference]) -> Iterator[Faul
 def tables_among(measures: Sequence[Reference]) -> Iterator[Fault]:
     """A fault for each table of an analysis on which a study depends: a row has single values of solids."""
     for reference in filter(is_table, measures):
-        detail = "is a table of an analysis; a study takes single values of solids: write the table as values"
+        what = {1: "list", 2: "table"}[axes_of(reference)]
+        detail = f"is a {what} of an analysis; a study takes single values of solids: write the {what} as values"
         yield Fault(str(reference), "needs_solids", f"{reference} {detail}")
 
 

@@ -1,7 +1,7 @@
 """A crankshaft as a chain of throws: matrices of single throws, turned by their pins' angles and assembled.
 
 The first end is held. Guided, each main stays on the axis, as in a bearing, and may turn; else nothing else
-is held. Plain stiffnesses in series know of no bearings between the throws.
+is held. Stiffnesses of throws that were each computed alone know in series of no bearings between them.
 """
 
 from __future__ import annotations
@@ -48,12 +48,25 @@ class Chain:
 
     def stiffness(self, *, guided: bool) -> float:
         """Torque at the last section for its rotation [N m/rad], the first one held."""
+        return float(1e-3 / self._rotations(guided=guided)[-1])
+
+    def throw_stiffnesses(self, *, guided: bool) -> Array:
+        """Of each throw in its place: torque through the chain for the rotation between its mains [N m/rad].
+
+        In series they are the stiffness of the chain. Of guided mains they hold what the guides and the
+        neighbours do to a throw; a free one is alone.
+        """
+        between: Array = np.diff(self._rotations(guided=guided), prepend=0.0)
+        return 1e-3 / between
+
+    def _rotations(self, *, guided: bool) -> Array:
+        """Rotations of the mains behind each throw [rad] under a torque of 1 N mm at the last section."""
         free = self.free_to_move(guided=guided)
         torque = np.zeros(self.size)
-        last = END * len(self.throws) + 5
-        torque[last] = 1.0
-        turned_by = np.linalg.solve(self.assembled("stiffness")[np.ix_(free, free)], torque[free])
-        return float(1e-3 / turned_by[np.searchsorted(free, last)])
+        mains = END * np.arange(1, len(self.throws) + 1) + 5
+        torque[mains[-1]] = 1.0
+        moved = np.linalg.solve(self.assembled("stiffness")[np.ix_(free, free)], torque[free])
+        return np.asarray(moved[np.searchsorted(free, mains)])
 
     def frequency(self, *, guided: bool) -> float:
         """Frequency [Hz] of the mode with the largest effective inertia about z, the first section held."""

@@ -19,6 +19,9 @@ DEFAULT_LEVEL: Level = "default"
 UNIT_LOADS = "unit_loads"
 """The kind whose outputs are tables: stress tensors at the fillets of a throw under unit loads."""
 
+CHAIN = "chain"
+"""The kind that puts throws of a shaft together: each throw by finite elements, the shaft by their matrices."""
+
 _TENSOR = ("xx", "yy", "zz", "xy", "yz", "xz")
 _FORCE, _MOMENT = "MPa/kN", "MPa/(kN*m)"
 
@@ -30,6 +33,7 @@ KINDS: dict[str, dict[str, str]] = {
         **dict.fromkeys(("stress_of_moment_1", "stress_of_moment_2", "stress_of_moment_3"), _MOMENT),
         "points": "mm",
     },
+    CHAIN: {"stiffness": "N*m/rad", "throw_stiffnesses": "N*m/rad", "torsional_frequency": "Hz"},
 }
 """The outputs of each kind with their units; stress is that under a torque or moment of 1 N·m."""
 
@@ -37,6 +41,9 @@ TABLES: dict[str, tuple[str, ...]] = {
     output: ("x", "y", "z") if output == "points" else _TENSOR for output in KINDS[UNIT_LOADS]
 }
 """The columns of those outputs that are tables; they have a row for each point."""
+
+LISTS = frozenset({"throw_stiffnesses"})
+"""Those outputs that are lists; they have a number for each throw."""
 
 SURFACE = "surface"
 """An output of torsion and bending, the surface for a picture. No relation can use it: it is no quantity."""

@@ -15,15 +15,15 @@ Lengths in mm, forces in N, masses in t.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Self
 
 import ngsolve as ng
 import numpy as np
 
 from cad.analysis.elastic import System
 from cad.analysis.levels import LEVELS, Level
-from cad.analysis.mesh import make_grid
+from cad.analysis.mesh import Grid, make_grid
 from cad.analysis.solid import FREE, LOADED, read_solid
 from cad.shaft import PinPlace, Shaft
 from templates.core.arrays import Array
@@ -43,12 +43,23 @@ class ThrowMatrix:
     mass: Array
     pitch: float  # [mm]
     throw: float  # [mm]
+    degrees_of_freedom: int = 0  # of the elements behind it
+
+    def mirrored(self) -> Self:
+        """The same of the throw's image in the plane across the shaft through mid-pin."""
+        flip = _image()
+        return replace(self, stiffness=flip.T @ self.stiffness @ flip, mass=flip.T @ self.mass @ flip)
 
 
 def throw_matrix(step: bytes, shaft: Shaft, pin: PinPlace, level: Level = LEVELS[1]) -> ThrowMatrix:
     """Stiffness and mass of the throw in a STEP file, which reaches from `shaft.held` to `shaft.loaded`."""
     solid = read_solid(step, shaft, mirrors=())
-    system = System(make_grid(solid, level.fineness), level.order, shaft.material, "torsion")
+    return matrix_on(make_grid(solid, level.fineness), level.order, shaft, pin)
+
+
+def matrix_on(grid: Grid, order: int, shaft: Shaft, pin: PinPlace) -> ThrowMatrix:
+    """Stiffness and mass of a throw on its mesh, in elements of an order."""
+    system = System(grid, order, shaft.material, "torsion")
     pitch = shaft.loaded - shaft.held
     loads = [*(system.traction(field) for field in section_loads(system, LOADED)), *_on_the_pin(system, pin)]
     moved = [system.solve(load) for load in loads]
@@ -61,6 +72,7 @@ def throw_matrix(step: bytes, shaft: Shaft, pin: PinPlace, level: Level = LEVELS
         mass=basis.T @ _mass(system, shaft.held, moved) @ basis,
         pitch=pitch,
         throw=pin.throw,
+        degrees_of_freedom=system.space.ndof,
     )
 
 
@@ -87,6 +99,15 @@ def relative_motion(pitch: float, throw: float) -> Array:
     relative[6, 0], relative[6, 4] = -1, -pitch / 2
     relative[7, 1], relative[7, 3], relative[7, 5] = -1, pitch / 2, -throw
     return relative
+
+
+def _image() -> Array:
+    """Freedoms of a throw from those of its mirror image: ends change places, z and turns across it sign."""
+    end = np.diag([1.0, 1, -1, -1, -1, 1])
+    flip = np.zeros((FREEDOMS, FREEDOMS))
+    flip[:END, END : 2 * END] = flip[END : 2 * END, :END] = end
+    flip[2 * END :, 2 * END :] = np.eye(PIN)
+    return flip
 
 
 def _on_the_pin(system: System, pin: PinPlace) -> list[Any]:

@@ -1,6 +1,6 @@
-"""One throw of a shaft as a STEP file, from mid-main to mid-main, for the finite elements of a chain.
+"""Single throws of a shaft as STEP files, from mid-main to mid-main, for finite elements.
 
-It has no oil drilling: the section at mid-main would cut the mouth of the drilling of the throw before it.
+They have no oil drilling: the section at mid-main would cut the mouth of the drilling of the throw before it.
 """
 
 from __future__ import annotations
@@ -9,12 +9,55 @@ from dataclasses import replace
 
 from cadquery.func import fuse
 
-from cad.cranks.throw import bore
+from cad.cranks.throw import Throw, bore
 from cad.cranks.whole import WholeShaft
+from cad.fillets import Crank
 from cad.header import Header
-from cad.model import Part
-from cad.shaft import PinPlace, Shaft
+from cad.model import CadModel, Part
+from cad.shaft import PinPlace, PlacedThrow, Shaft, ThrowsApart, ThrowSolid
 from cad.step import write_step
+
+
+def has_throws(cls: type[CadModel]) -> bool:
+    """Whether a model is a shaft of throws: its `drawn` answers a `WholeShaft`."""
+    declared = getattr(getattr(cls, "drawn", None), "__annotations__", {})
+    return declared.get("return") in (WholeShaft, WholeShaft.__name__)
+
+
+def shaft_of_throws(shape: CadModel) -> WholeShaft | None:
+    """The throws of a shaft; None if the model is none."""
+    if not has_throws(type(shape)):
+        return None
+    drawn = getattr(shape, "drawn")()  # noqa: B009 - the base of models does not declare it
+    return drawn if isinstance(drawn, WholeShaft) else None
+
+
+def sizes_of_throw(whole: WholeShaft) -> Crank:
+    """The plain sizes of a shaft's throws, which differ in their counterweights alone."""
+    like = whole.like
+    return Crank(
+        like.outline.throw, like.pin, like.pin_length, like.journal, like.web_thickness, like.fillet
+    )
+
+
+def first_throw_apart(whole: WholeShaft) -> ThrowsApart:
+    """The first throw of a shaft alone."""
+    return throws_apart(replace(whole, throws=whole.throws[:1]))
+
+
+def throws_apart(whole: WholeShaft) -> ThrowsApart:
+    """All throws of a shaft; one that is another's mirror image, or like it, is drawn once."""
+    numbers: dict[tuple[Throw, Throw], int] = {}
+    solids, places = [], []
+    for number, throw in enumerate(whole.throws):
+        as_it_is, mirrored = (throw.front, throw.rear), (throw.rear, throw.front)
+        is_mirrored = as_it_is not in numbers and mirrored in numbers
+        if not is_mirrored and as_it_is not in numbers:
+            numbers[as_it_is] = len(solids)
+            solids.append(ThrowSolid(*throw_step(whole, number)))
+        place = numbers[mirrored if is_mirrored else as_it_is]
+        places.append(PlacedThrow(place, is_mirrored, throw.angle))
+    return ThrowsApart(tuple(solids), tuple(places))
 
 
 def throw_step(whole: WholeShaft, number: int) -> tuple[bytes, Shaft, PinPlace]:

@@ -98,6 +98,21 @@ class TestOnItsOwn:
         answer = http.post(f"{SHAFT}/build", json={"parameters": {**PLAIN, **parameters}}, headers=WAIT)
         problem(answer, 422, "invalid-inputs")
 
+    @pytest.mark.parametrize("text", ["[] deg", "[a, b] deg", "[1, 2", "[1, 2] deg deg [", "[[1], [2]] deg"])
+    def test_what_is_no_list_is_refused_with_a_list_for_an_example(self, http, text):
+        answer = http.post(f"{SHAFT}/build", json={"parameters": {**PLAIN, "pin_angles": text}}, headers=WAIT)
+        problem(answer, 422, "invalid-inputs")
+        (error,) = answer.json()["errors"]
+        assert error["name"] == "pin_angles"
+        assert '"[1.5, 2] deg"' in error["detail"]
+        assert text.split()[0][:5] in error["detail"]
+
+    def test_a_list_that_is_too_long_a_text_is_refused_with_the_limit(self, http):
+        text = f"[{', '.join(['1'] * 2000)}] deg"
+        answer = http.post(f"{SHAFT}/build", json={"parameters": {**PLAIN, "pin_angles": text}}, headers=WAIT)
+        assert faults(answer) == {"pin_angles": "too_long"}
+        assert "2000 characters" in answer.json()["errors"][0]["detail"]
+
     def test_schema_says_that_it_is_a_list(self, http):
         shown = http.get(SHAFT).json()["parameters"]["properties"]["pin_angles"]
         assert shown["unit"] == "deg"

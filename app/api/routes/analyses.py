@@ -39,7 +39,10 @@ router = APIRouter(prefix="/api/v1", tags=["models"], route_class=StrictRoute)
 
 Id = Annotated[str, Path(max_length=64, examples=["crank_throw"])]
 Kind = Annotated[
-    str, Path(max_length=64, examples=["torsion"], description="`torsion`, `bending` or `unit_loads`")
+    str,
+    Path(
+        max_length=64, examples=["torsion"], description="`torsion`, `bending`, `unit_loads` or `chain`"
+    ),
 ]
 
 
@@ -65,7 +68,8 @@ async def analyse_model(
     The shaft is held at one end; at the other acts a torque about z (`torsion`), or a moment about y in the
     plane of the throw (`bending`). Stress is the greatest von Mises stress under `load`, of 1 N·m if
     none is given. Of one throw, `unit_loads` are tables: the stress tensors at points of its fillets under
-    1 kN on the pin along and across the throw, and under torque and bending moments of 1 kN·m.
+    1 kN on the pin along and across the throw, and under torque and bending moments of 1 kN·m. `chain` is
+    of a shaft of several throws, from its first main to its last: stiffness, that of each throw, frequency.
     """
     if kind not in KINDS:
         raise NotFound(f"there is no analysis {kind[:60]!r}; there are {', '.join(KINDS)}")

@@ -2,6 +2,7 @@
 import { percent, quantityText } from "./numbers.js";
 import { cells, numberOf, warning } from "./results.js";
 
+const LOADED = ["torsion", "bending"]; // kinds that a load belongs to
 const HEADS = ["Quantity", "Value", "Unit", "Error, estimated", "Elements / degrees of freedom"];
 
 // Put an analysis into a list of them: in the place of its own table, else first. A surface alone has none.
@@ -16,15 +17,13 @@ function table(analysis) {
   const place = element("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: kind });
   place.dataset.analysis = analysis.id;
   const asked = analysis.tolerance === null ? `level ${analysis.level}` : `within ${percent(analysis.tolerance)}`;
-  const caption = element("caption", {}, `${kind} `, element("span", { className: "muted" }, `${words(analysis.boundary)}, ${asked}${hasTables(analysis) ? "" : `; under ${quantityText(analysis.load)}`}`));
+  const caption = element("caption", {}, `${kind} `, element("span", { className: "muted" }, `${words(analysis.boundary)}, ${asked}${LOADED.includes(analysis.kind) ? `; under ${quantityText(analysis.load)}` : ""}`));
   const head = element("thead", {}, element("tr", {}, ...HEADS.map((text) => element("th", { scope: "col" }, text))));
   const rows = Object.entries(analysis.outputs).filter(([name]) => name !== "surface").flatMap(rowsOf);
   place.append(element("table", { className: "results elements-results" }, caption, head, element("tbody", {}, ...rows)));
   if (analysis.warnings.length) place.append(element("ul", { className: "warnings" }, ...analysis.warnings.map(warning)));
   return place;
 }
-
-const hasTables = (analysis) => Object.values(analysis.outputs).some((output) => output.columns);
 
 function rowsOf(named) {
   const [name, { columns, value }] = named;

@@ -61,11 +61,13 @@ async function analysed(place) {
 function asked(place, parameters) {
   const level = ask(place, "level").value, kind = ask(place, "kind").selectedOptions[0].dataset;
   const load = ask(place, "load").value.replaceAll("·", "*"), boundary = ask(place, "boundary").value;
+  const outputs = kind.outputs.split(" ");
   return {
     parameters: Object.fromEntries(Object.entries(parameters).map(([name, { value, unit }]) => [name, unit ? { value, unit } : value])),
-    ...("tables" in kind ? {} : { boundary, load }), // tables are under unit loads, held in one way
+    ...("tables" in kind ? {} : { boundary }), // tables are under unit loads, held in one way
+    ...(outputs.includes(EXTRA) ? { load } : {}), // a load belongs to stress
     ...(Number(level) ? { tolerance: Number(level) } : { level }),
-    outputs: kind.outputs.split(" ").filter((name) => name !== EXTRA || ask(place, EXTRA).checked),
+    outputs: outputs.filter((name) => name !== EXTRA || ask(place, EXTRA).checked),
   };
 }
 

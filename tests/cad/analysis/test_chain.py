@@ -1,14 +1,25 @@
 """A chain of throws' matrices: rigid motions, symmetry, and the finite elements of a whole shaft."""
 
-from math import pi
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from math import pi, sqrt
 from typing import Any
 
 import numpy as np
 import pytest
 
-from benchmarks.crank_chain import CASES, compared, one, shaft
+from benchmarks.crank_chain import CASES, GIVEN, RESULTS, compared, one, shaft
 from cad.analysis.chain import Chain, in_series, turned
-from cad.analysis.throw_matrix import ThrowMatrix, relative_motion
+from cad.analysis.chain_answers import OF_THE_CHAIN, SolvedThrows, chain_answers, judged
+from cad.analysis.levels import LEVELS
+from cad.analysis.throw_matrix import ThrowMatrix, relative_motion, throw_matrix
+from cad.cranks.chain_throw import has_throws, shaft_of_throws, throw_step, throws_apart
+from cad.cranks.whole import WholeShaft
+from cad.models.crank_throw_v1 import CrankThrow
+from cad.models.crankshaft_v2 import Crankshaft
+from cad.regenerate import ignore
+from cad.shaft import PlacedThrow
 
 RIGID = np.array([
     [1, 0, 0, 0, 0, 0], [0, 1, 0, 0, 0, 0], [0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 0, 0], [0, 0, 0, 0, 1, 0],
@@ -22,7 +33,57 @@ def rigid_motions(throw: ThrowMatrix) -> Any:
     return np.vstack([RIGID, -relative[:, :6]])
 
 
+def softer(throw: ThrowMatrix, *parts: float) -> ThrowMatrix:
+    """The throw with more flexibility, each part a share of what it has: no mirror image of itself."""
+    flexibility = np.linalg.inv(throw.stiffness[6:, 6:])
+    flexibility += np.diag(np.diag(flexibility) * parts)
+    relative = relative_motion(throw.pitch, throw.throw)
+    return replace(throw, stiffness=relative.T @ np.linalg.solve(flexibility, relative))
+
+
+def weighted() -> WholeShaft:
+    """A shaft of four throws with counterweights, each pair of throws mirror images."""
+    radii = {"value": [70, 0, 0, 70, 60, 0, 70, 0], "unit": "mm"}
+    pins = {"value": [0, 180, 180, 0], "unit": "deg"}
+    given = {**GIVEN, "pin_angles": pins, "counterweight_radius": radii}
+    drawn = shaft_of_throws(Crankshaft.from_quantities(given))
+    assert drawn is not None
+    return drawn
+
+
+class TestThrowsApart:
+    def test_mirror_images_share_a_solid(self) -> None:
+        apart = throws_apart(weighted())
+        assert [(place.solid, place.is_mirrored) for place in apart.places] == [
+            (0, False), (0, True), (1, False), (0, False),
+        ]  # fmt: skip
+        assert [place.angle for place in apart.places] == pytest.approx([0, pi, pi, 0])
+        assert len(apart.solids) == 2
+        assert all(one.shaft.loaded == -one.shaft.held == weighted().pitch / 2 for one in apart.solids)
+
+    def test_only_a_shaft_of_throws_has_them(self) -> None:
+        assert has_throws(Crankshaft)
+        assert not has_throws(CrankThrow)
+        assert shaft_of_throws(CrankThrow.from_quantities(CrankThrow.example)) is None
+
+
 class TestOneThrow:
+    def test_its_mirror_image_resists_no_rigid_motion(self) -> None:
+        """The rigid motions of the image are those of a throw: a wrong sign of an axis resists."""
+        lopsided = softer(one(), 0.1, 0, 0.3, 0, 0.2, 0, 0.1, 0.4)
+        image = lopsided.mirrored()
+        for name in ("stiffness", "mass"):
+            assert np.allclose(getattr(image.mirrored(), name), getattr(lopsided, name), rtol=1e-12)
+        force = image.stiffness @ rigid_motions(image)
+        scale = np.abs(image.stiffness) @ np.abs(rigid_motions(image))
+        assert np.abs(force).max() < 1e-9 * scale.max()
+        assert np.abs(image.stiffness - lopsided.stiffness).max() > 0.01 * np.abs(image.stiffness).max()
+
+    def test_a_throw_with_webs_alike_is_its_own_image(self) -> None:
+        d = np.sqrt(np.diag(one().stiffness))
+        apart = (one().mirrored().stiffness - one().stiffness) / d / d[:, None]
+        assert np.abs(apart).max() < 5e-3  # the mesh is no mirror image
+
     def test_rigid_motions_meet_no_resistance(self) -> None:
         force = one().stiffness @ rigid_motions(one())
         scale = np.abs(one().stiffness) @ np.abs(rigid_motions(one()))
@@ -72,11 +133,82 @@ class TestChain:
     def test_inertia_adds_up(self) -> None:
         assert Chain([one()] * 3, [0, 2, 4]).inertia() == pytest.approx(3 * Chain([one()], [0]).inertia())
 
+    @pytest.mark.parametrize("guided", [False, True])
+    def test_throws_in_their_places_are_in_series(self, guided: bool) -> None:
+        chain = Chain([one(), softer(one(), *[0.2] * 8), one()], [0, 2, 4])
+        between = chain.throw_stiffnesses(guided=guided)
+        assert 1 / sum(1 / between) == pytest.approx(chain.stiffness(guided=guided), rel=1e-9)
+        alone = [Chain([throw], [0.0]).stiffness(guided=False) for throw in chain.throws]
+        assert (between == pytest.approx(alone, rel=1e-7)) is not guided
+
+    def test_a_free_chain_is_as_stiff_seen_from_its_other_end(self) -> None:
+        first, second = softer(one(), 0, 0.5, 0, 0.2, 0, 0.1, 0, 0), softer(one(), 0.3, 0, 0, 0, 0.4, 0, 0.2, 0)
+        seen = Chain([first, second], [0.3, 2.0])
+        from_behind = Chain([second.mirrored(), first.mirrored()], [2.0, 0.3])
+        assert from_behind.stiffness(guided=False) == pytest.approx(seen.stiffness(guided=False), rel=1e-9)
+        assert from_behind.inertia() == pytest.approx(seen.inertia(), rel=1e-9)
+
     def test_guides_make_it_stiffer_and_series_is_too_soft(self) -> None:
         chain = Chain([one()] * 4, [0, pi, pi, 0])
         free, guided = (chain.stiffness(guided=guided) for guided in (False, True))
         assert guided > free
         assert in_series([one()] * 4, guided=False) < 0.96 * guided
+
+
+class TestAnswers:
+    """What two orders of elements say together."""
+
+    PLACES = (PlacedThrow(0, False, 0.0), PlacedThrow(0, True, pi))
+
+    def answers(self, low: ThrowMatrix, boundary: Any = "free_end") -> dict[str, dict[str, Any]]:
+        solved = SolvedThrows([low], [one()], elements=10, degrees_of_freedom=90, is_sharp=False)
+        return judged(solved, self.PLACES, boundary, LEVELS[0], seconds=1.0)
+
+    def test_values_are_those_of_the_higher_order(self) -> None:
+        for boundary, guided in (("free_end", False), ("guided_end", True)):
+            answers = self.answers(replace(one(), stiffness=1.01 * one().stiffness), boundary)
+            chain = Chain([one(), one().mirrored()], [0.0, pi])
+            assert answers["stiffness"]["value"] == chain.stiffness(guided=guided)
+            assert answers["torsional_frequency"]["value"] == chain.frequency(guided=guided)
+            assert answers["throw_stiffnesses"]["value"] == chain.throw_stiffnesses(guided=guided).tolist()
+
+    def test_errors_are_that_of_the_mesh_and_that_of_the_chain(self) -> None:
+        answers = self.answers(replace(one(), stiffness=1.01 * one().stiffness))
+        for name, change in (("stiffness", 0.01), ("torsional_frequency", sqrt(1.01) - 1)):
+            of_the_mesh = LEVELS[0].factor * change + LEVELS[0].floor
+            assert answers[name]["error"] == pytest.approx(of_the_mesh + OF_THE_CHAIN[name], rel=1e-6)
+        listed = LEVELS[0].factor * 0.01 + LEVELS[0].floor + OF_THE_CHAIN["throw_stiffnesses"]
+        assert answers["throw_stiffnesses"]["error"] == pytest.approx(listed, rel=1e-6)
+
+    def test_orders_far_apart_give_a_reason(self) -> None:
+        answers = self.answers(replace(one(), stiffness=3 * one().stiffness))
+        for answer in answers.values():
+            assert answer["value"] is None
+            assert "too large" in answer["reason"]
+
+
+@pytest.mark.slow
+def test_image_of_a_counterweighted_throw_is_what_its_own_elements_say() -> None:
+    drawn = weighted()
+    first, second = (throw_matrix(*throw_step(drawn, number), LEVELS[0]) for number in (0, 1))
+    d = np.sqrt(np.diag(first.stiffness))
+    apart = (first.mirrored().stiffness - second.stiffness) / d / d[:, None]
+    assert np.abs(apart).max() < 0.01
+    m = np.sqrt(np.diag(first.mass))
+    assert np.abs((first.mirrored().mass - second.mass) / m / m[:, None]).max() < 0.01
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("boundary", ["free_end", "guided_end"])
+def test_the_whole_shaft_lies_within_the_error(boundary: Any) -> None:
+    """The whole is on the mesh of the same level, so what the mesh leaves is common to both."""
+    answers = chain_answers(throws_apart(shaft(CASES[0])), boundary, "coarse", None, ignore)
+    rows: Sequence[Any] = json.loads(RESULTS.read_text())["rows"]
+    guided = boundary == "guided_end"
+    whole = next(row for row in rows if row["pins"] == [*CASES[0]] and row["guided"] is guided)
+    for name, kept in (("stiffness", "stiffness"), ("torsional_frequency", "frequency")):
+        answer = answers[name]
+        assert abs(answer["value"] / whole[f"{kept}_of_the_whole"] - 1) < OF_THE_CHAIN[name] < answer["error"]
 
 
 @pytest.mark.slow
@@ -85,3 +217,4 @@ def test_chain_is_the_whole_shaft_within_1_percent(angles: tuple[float, ...]) ->
     for row in compared(angles):
         assert abs(row["chain"]) < 0.01
         assert abs(row["chain_frequency"]) < 0.01
+        assert max(map(abs, row["throws"])) < 0.01

@@ -1,0 +1,130 @@
+"""A shaft as a chain of its throws, as the outputs of an analysis: each with its error.
+
+Each solid is meshed once and solved in elements of two orders. The error of an output has two parts: what the
+mesh leaves, from the two orders as for every other analysis (`cad.analysis.levels`), and what the chain
+leaves against finite elements of the whole shaft. The second part is `OF_THE_CHAIN`: above the largest
+differences of three shafts, free and guided (`python -m benchmarks.crank_chain`).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cad.analysis.chain import Chain
+from cad.analysis.kinds import CHAIN, KINDS, Boundary
+from cad.analysis.levels import Level, ladder
+from cad.analysis.mesh import make_grid
+from cad.analysis.solid import read_solid
+from cad.analysis.throw_matrix import ThrowMatrix, matrix_on
+from cad.shaft import PlacedThrow, ThrowsApart
+
+Report = Callable[[float, str], None]
+
+OF_THE_CHAIN = {"stiffness": 0.003, "throw_stiffnesses": 0.01, "torsional_frequency": 0.01}
+"""What the chain leaves, relative."""
+
+WORST = 0.25
+"""The relative error from which on no value is returned."""
+
+
+@dataclass(frozen=True)
+class SolvedThrows:
+    """The solids of throws in elements of two orders, the lower one first."""
+
+    low: Sequence[ThrowMatrix]
+    high: Sequence[ThrowMatrix]
+    elements: int  # of all solids together
+    degrees_of_freedom: int
+    is_sharp: bool
+
+
+def chain_answers(
+    apart: ThrowsApart, boundary: Boundary, level: str | None, tolerance: float | None, report: Report
+) -> dict[str, dict[str, Any]]:
+    """All outputs of the kind `chain`, which cost the same together; level after level to a tolerance."""
+    answers: dict[str, dict[str, Any]] = {}
+    rungs = ladder(level, tolerance)
+    for number, rung in enumerate(rungs):
+
+        def on_this_rung(done: float, what: str, number: int = number) -> None:
+            report((number + done) / len(rungs), what)
+
+        started = time.perf_counter()
+        solved = solve(apart, rung, on_this_rung)
+        answers = judged(solved, apart.places, boundary, rung, time.perf_counter() - started)
+        if tolerance is None or max(answer["error"] for answer in answers.values()) <= tolerance:
+            break
+    report(1.0, "done")
+    return answers
+
+
+def solve(apart: ThrowsApart, level: Level, report: Report) -> SolvedThrows:
+    """The matrices of each solid on its mesh of a level."""
+    orders = (level.order - 1, level.order)
+    matrices: tuple[list[ThrowMatrix], list[ThrowMatrix]] = ([], [])
+    elements, freedoms, is_sharp = 0, 0, False
+    for number, one in enumerate(apart.solids):
+        which = f"level {level.name}, throw {number + 1} of {len(apart.solids)}"
+        report(number / len(apart.solids), f"{which}: meshing")
+        grid = make_grid(read_solid(one.step, one.shaft, mirrors=()), level.fineness)
+        elements, is_sharp = elements + grid.mesh.ne, is_sharp or grid.is_sharp
+        for place, order in enumerate(orders):
+            done = (number + 0.1 + 0.4 * place) / len(apart.solids)
+            report(done, f"{which}: solving {grid.mesh.ne} elements of order {order}")
+            matrix = matrix_on(grid, order, one.shaft, one.pin)
+            matrices[place].append(matrix)
+        freedoms += matrices[1][-1].degrees_of_freedom
+    return SolvedThrows(*matrices, elements, freedoms, is_sharp)
+
+
+def judged(
+    solved: SolvedThrows, places: Sequence[PlacedThrow], boundary: Boundary, level: Level, seconds: float
+) -> dict[str, dict[str, Any]]:
+    """The outputs of the higher order with their errors; no value where orders differ too much."""
+    guided = boundary == "guided_end"
+    low, high = (values_of(chain_of(each, places), guided=guided) for each in (solved.low, solved.high))
+    common = {
+        "level": level.name,
+        "mesh": {
+            "elements": solved.elements,
+            "degrees_of_freedom": solved.degrees_of_freedom,
+            "order": level.order,
+            "mirror_plane": None,
+        },
+        "seconds": seconds,
+    }
+    answers: dict[str, dict[str, Any]] = {}
+    for name, unit in KINDS[CHAIN].items():
+        pairs = list(zip(np.atleast_1d(low[name]), np.atleast_1d(high[name]), strict=True))
+        error, value = WORST, None
+        if all(0 < number < np.inf for pair in pairs for number in pair):
+            of_the_mesh = max(level.error(*pair, is_sharp=solved.is_sharp) for pair in pairs)
+            error, value = float(of_the_mesh) + OF_THE_CHAIN[name], high[name]
+        answer: dict[str, Any] = {"value": value, "unit": unit, "error": error, **common}
+        if error >= WORST:
+            reason = f"the elements of level {level.name} are too large for this shaft: ask for a finer one"
+            answer |= {"value": None, "error": WORST, "reason": reason}
+        answers[name] = answer
+    return answers
+
+
+def chain_of(matrices: Sequence[ThrowMatrix], places: Sequence[PlacedThrow]) -> Chain:
+    """The throws of a shaft in their places."""
+    throws = [
+        matrices[place.solid].mirrored() if place.is_mirrored else matrices[place.solid] for place in places
+    ]
+    return Chain(throws, [place.angle for place in places])
+
+
+def values_of(chain: Chain, *, guided: bool) -> dict[str, float | list[float]]:
+    """The outputs of a chain in their units."""
+    return {
+        "stiffness": chain.stiffness(guided=guided),
+        "throw_stiffnesses": chain.throw_stiffnesses(guided=guided).tolist(),
+        "torsional_frequency": chain.frequency(guided=guided),
+    }
