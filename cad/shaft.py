@@ -54,13 +54,12 @@ class PlacedThrow:
     """Which solid a throw of a shaft is, and how it stands there."""
 
     solid: int  # its number among the solids, from 0
-    is_mirrored: bool  # in the plane across the shaft through mid-pin
     angle: float  # of its pin about z [rad]
 
 
 @dataclass(frozen=True)
 class ThrowsApart:
-    """The throws of a shaft, one after the other; throws alike but for a mirror share a solid."""
+    """The throws of a shaft, one after the other; throws alike share a solid."""
 
     solids: tuple[ThrowSolid, ...]
     places: tuple[PlacedThrow, ...]

@@ -109,7 +109,9 @@ def tables_among(measures: Sequence[Reference]) -> Iterator[Fault]:
     """A fault for each table of an analysis on which a study depends: a row has single values of solids."""
     for reference in filter(is_table, measures):
         what = {1: "list", 2: "table"}[axes_of(reference)]
-        detail = f"is a {what} of an analysis; a study takes single values of solids: write the {what} as values"
+        detail = (
+            f"is a {what} of an analysis; a study takes single values of solids: write the {what} as values"
+        )
         yield Fault(str(reference), "needs_solids", f"{reference} {detail}")
 
 

@@ -115,10 +115,7 @@ def judged(
 
 def chain_of(matrices: Sequence[ThrowMatrix], places: Sequence[PlacedThrow]) -> Chain:
     """The throws of a shaft in their places."""
-    throws = [
-        matrices[place.solid].mirrored() if place.is_mirrored else matrices[place.solid] for place in places
-    ]
-    return Chain(throws, [place.angle for place in places])
+    return Chain([matrices[place.solid] for place in places], [place.angle for place in places])
 
 
 def values_of(chain: Chain, *, guided: bool) -> dict[str, float | list[float]]:

@@ -20,7 +20,7 @@ UNIT_LOADS = "unit_loads"
 """The kind whose outputs are tables: stress tensors at the fillets of a throw under unit loads."""
 
 CHAIN = "chain"
-"""The kind that puts throws of a shaft together: each throw by finite elements, the shaft by their matrices."""
+"""The kind that puts a shaft of throws together: throws by finite elements, the shaft by their matrices."""
 
 _TENSOR = ("xx", "yy", "zz", "xy", "yz", "xz")
 _FORCE, _MOMENT = "MPa/kN", "MPa/(kN*m)"

@@ -15,8 +15,8 @@ Lengths in mm, forces in N, masses in t.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any, Self
+from dataclasses import dataclass
+from typing import Any
 
 import ngsolve as ng
 import numpy as np
@@ -44,11 +44,6 @@ class ThrowMatrix:
     pitch: float  # [mm]
     throw: float  # [mm]
     degrees_of_freedom: int = 0  # of the elements behind it
-
-    def mirrored(self) -> Self:
-        """The same of the throw's image in the plane across the shaft through mid-pin."""
-        flip = _image()
-        return replace(self, stiffness=flip.T @ self.stiffness @ flip, mass=flip.T @ self.mass @ flip)
 
 
 def throw_matrix(step: bytes, shaft: Shaft, pin: PinPlace, level: Level = LEVELS[1]) -> ThrowMatrix:
@@ -99,15 +94,6 @@ def relative_motion(pitch: float, throw: float) -> Array:
     relative[6, 0], relative[6, 4] = -1, -pitch / 2
     relative[7, 1], relative[7, 3], relative[7, 5] = -1, pitch / 2, -throw
     return relative
-
-
-def _image() -> Array:
-    """Freedoms of a throw from those of its mirror image: ends change places, z and turns across it sign."""
-    end = np.diag([1.0, 1, -1, -1, -1, 1])
-    flip = np.zeros((FREEDOMS, FREEDOMS))
-    flip[:END, END : 2 * END] = flip[END : 2 * END, :END] = end
-    flip[2 * END :, 2 * END :] = np.eye(PIN)
-    return flip
 
 
 def _on_the_pin(system: System, pin: PinPlace) -> list[Any]:

@@ -35,9 +35,7 @@ def shaft_of_throws(shape: CadModel) -> WholeShaft | None:
 def sizes_of_throw(whole: WholeShaft) -> Crank:
     """The plain sizes of a shaft's throws, which differ in their counterweights alone."""
     like = whole.like
-    return Crank(
-        like.outline.throw, like.pin, like.pin_length, like.journal, like.web_thickness, like.fillet
-    )
+    return Crank(like.outline.throw, like.pin, like.pin_length, like.journal, like.web_thickness, like.fillet)
 
 
 def first_throw_apart(whole: WholeShaft) -> ThrowsApart:
@@ -46,17 +44,15 @@ def first_throw_apart(whole: WholeShaft) -> ThrowsApart:
 
 
 def throws_apart(whole: WholeShaft) -> ThrowsApart:
-    """All throws of a shaft; one that is another's mirror image, or like it, is drawn once."""
+    """All throws of a shaft; throws alike are drawn once."""
     numbers: dict[tuple[Throw, Throw], int] = {}
     solids, places = [], []
     for number, throw in enumerate(whole.throws):
-        as_it_is, mirrored = (throw.front, throw.rear), (throw.rear, throw.front)
-        is_mirrored = as_it_is not in numbers and mirrored in numbers
-        if not is_mirrored and as_it_is not in numbers:
-            numbers[as_it_is] = len(solids)
+        webs = throw.front, throw.rear
+        if webs not in numbers:
+            numbers[webs] = len(solids)
             solids.append(ThrowSolid(*throw_step(whole, number)))
-        place = numbers[mirrored if is_mirrored else as_it_is]
-        places.append(PlacedThrow(place, is_mirrored, throw.angle))
+        places.append(PlacedThrow(numbers[webs], throw.angle))
     return ThrowsApart(tuple(solids), tuple(places))
 
 

@@ -1,4 +1,4 @@
-"""A shaft of several throws as a chain: lists as outputs of an analysis, stored, answered and used by relations.
+"""A shaft of several throws as a chain: lists as outputs of an analysis, stored, answered, used by relations.
 
 The solver is replaced by rows that it would have written; one slow test goes the whole way.
 """
@@ -108,10 +108,12 @@ def test_page_report_and_table_show_it(http, design):
     assert 'data-analysis-output="throw_stiffnesses"' in page
     assert "under 1 N" not in page.partition("Chain <span")[2].partition("</caption>")[0]
     report = http.get(f"{DESIGNS}/{design['id']}/report.html").text
-    assert "chain: throw stiffnesses" in report
+    assert "Chain: throw stiffnesses" in report
     rows = http.get(f"{DESIGNS}/{design['id']}/worksheet.csv").text.splitlines()
     assert len([row for row in rows if ",chain.throw_stiffnesses," in row]) == 2
-    assert http.get(f"/models/crankshaft/2?{'&'.join(f'{k}={v}' for k, v in SIZES.items())}").status_code == 200
+    assert (
+        http.get(f"/models/crankshaft/2?{'&'.join(f'{k}={v}' for k, v in SIZES.items())}").status_code == 200
+    )
 
 
 class TestRefused:

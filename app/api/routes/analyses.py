@@ -40,9 +40,7 @@ router = APIRouter(prefix="/api/v1", tags=["models"], route_class=StrictRoute)
 Id = Annotated[str, Path(max_length=64, examples=["crank_throw"])]
 Kind = Annotated[
     str,
-    Path(
-        max_length=64, examples=["torsion"], description="`torsion`, `bending`, `unit_loads` or `chain`"
-    ),
+    Path(max_length=64, examples=["torsion"], description="`torsion`, `bending`, `unit_loads` or `chain`"),
 ]
 
 
