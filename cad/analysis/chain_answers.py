@@ -25,7 +25,7 @@ from cad.shaft import PlacedThrow, ThrowsApart
 
 Report = Callable[[float, str], None]
 
-OF_THE_CHAIN = {"stiffness": 0.003, "throw_stiffnesses": 0.01, "torsional_frequency": 0.01}
+OF_THE_CHAIN = {"stiffness": 0.003, "throw_stiffnesses": 0.005, "torsional_frequency": 0.01}
 """What the chain leaves, relative."""
 
 WORST = 0.25

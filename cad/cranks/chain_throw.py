@@ -46,7 +46,8 @@ def first_throw_apart(whole: WholeShaft) -> ThrowsApart:
 def throws_apart(whole: WholeShaft) -> ThrowsApart:
     """All throws of a shaft; throws alike are drawn once."""
     numbers: dict[tuple[Throw, Throw], int] = {}
-    solids, places = [], []
+    solids: list[ThrowSolid] = []
+    places: list[PlacedThrow] = []
     for number, throw in enumerate(whole.throws):
         webs = throw.front, throw.rear
         if webs not in numbers:
