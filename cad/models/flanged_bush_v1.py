@@ -1,0 +1,279 @@
+"""Flanged bush of copper alloy: a cylinder with a flange, chamfers, an oil groove and an oil hole.
+
+What its words mean is said in the class below, which users read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from cadquery import Shape
+from cadquery.func import cut
+
+from cad.model import BRONZE, Box, CadModel, Part, mm
+from cad.surfaces import Seen, Y, Z
+from cad.turned import Point, drill, drilled_volume, outline, turned, turned_volume
+from templates.core.language.template import Array, Truth, derived, formula, given, require, units
+
+
+@units("m", returns="1")
+def drawable(length: Array) -> Truth:
+    """Whether a length [m] is none, or one that the kernel can tell from none."""
+    return (length <= 0) | (length >= 1e-5)
+
+
+@dataclass(frozen=True)
+class Bush:
+    """What is drawn [mm]: radii from the axis, levels from the face of the flange."""
+
+    bore: float
+    outside: float
+    flange: float
+    flange_thickness: float
+    width: float
+    inner_chamfer: float
+    outer_chamfer: float
+    groove: float  # radius of its bottom; that of the bore if there is no groove
+    half_groove: float
+    hole: float
+
+    @property
+    def middle(self) -> float:
+        """The level of oil groove and oil hole: mid-length beyond the flange."""
+        return (self.flange_thickness + self.width) / 2
+
+    def section(self) -> list[Point]:
+        """The cross-section as a closed line through (r, z)."""
+        r, g, c, z, w = self.bore, self.groove, self.inner_chamfer, self.middle, self.half_groove
+        groove: list[Point] = [(r, z + w), (g, z + w), (g, z - w), (r, z - w)] if g > r and w > 0 else []
+        return outline(
+            (r, c),
+            (r + c, 0.0),
+            (self.flange, 0.0),
+            (self.flange, self.flange_thickness),
+            (self.outside, self.flange_thickness),
+            (self.outside, self.width - self.outer_chamfer),
+            (self.outside - self.outer_chamfer, self.width),
+            (r + c, self.width),
+            (r, self.width - c),
+            *groove,
+        )
+
+    def solid(self) -> Shape:
+        """The section turned about z, less the hole at the crown."""
+        body = turned(self.section())
+        return cut(body, drill(self.hole, self.outside, self.middle)) if self.hole > 0 else body
+
+    def volume(self) -> float:
+        """The turned section less the hole [mm³]."""
+        half_groove = self.half_groove if self.groove > self.bore else 0.0
+        hole = drilled_volume(self.hole, self.outside, self.bore, self.groove, half_groove)
+        return turned_volume(self.section()) - hole
+
+
+class FlangedBush(CadModel):
+    """Flanged bush of copper alloy, with chamfers, an oil groove round the bore and an oil hole.
+
+    z is along the shaft; the outer face of the flange lies on z = 0, the bush beyond it on the side +z. Oil
+    groove and oil hole are at mid-length beyond the flange, the hole at the crown +y. Chamfers are of 45°: of
+    the bore at both ends, of the outside at the end that is pressed in first. A hole of no diameter, a groove
+    of no width or no depth and a chamfer of no width are none.
+
+    The bore is the finished one, as pressed in: the caller adds the clearance.
+
+    Limits
+    ------
+    Proportions by default are near those of ISO 4379, form F (flange about one wall wide, one wall thick);
+    its table is not built in, so give the standard's dimensions where you need them. The undercut beneath the
+    flange and the edges of the flange are not drawn, nor is the seam that a wrapped bush of ISO 3547 has.
+
+    References
+    ----------
+    ISO 4379:2018, Plain bearings, copper alloy bushes: the features of form F.
+    ISO 3547-1:2017, Plain bearings, wrapped bushes, part 1: dimensions.
+    """
+
+    example = {
+        "inner_diameter": "20 mm",
+        "wall": "3 mm",
+        "flange_diameter": "32 mm",
+        "flange_thickness": "3 mm",
+        "width": "30 mm",
+        "inner_chamfer": "0.5 mm",
+        "outer_chamfer": "0.8 mm",
+        "oil_hole_diameter": "3 mm",
+        "oil_groove_width": "4 mm",
+        "oil_groove_depth": "0.8 mm",
+    }
+    film_bore = "inner_diameter"
+
+    d: Array = given("mm", "inner diameter", symbol="d", ge=1, le=5000, also=("bearing diameter", "bore"))
+
+    @derived("mm", "wall", symbol="t", ge=0.04, le=1000)
+    def t(self) -> Array:
+        return 0.12 * self.d
+
+    @derived("mm", "width", symbol="B", ge=0.1, le=10000, also=("bearing width",))
+    def B(self) -> Array:
+        """Over all, with the flange."""
+        return self.d
+
+    @derived("mm", "flange diameter", symbol="D_f", ge=1, le=10000)
+    def D_f(self) -> Array:
+        return self.d + 4 * self.t
+
+    @derived("mm", "flange thickness", symbol="b_f", ge=0.02, le=1000)
+    def b_f(self) -> Array:
+        return self.t
+
+    @derived("mm", "inner chamfer", symbol="c_i", ge=0, le=500)
+    def c_i(self) -> Array:
+        return 0.15 * self.t
+
+    @derived("mm", "outer chamfer", symbol="c_o", ge=0, le=500)
+    def c_o(self) -> Array:
+        return 0.25 * self.t
+
+    @derived("mm", "oil hole diameter", symbol="d_h", ge=0, le=1000)
+    def d_h(self) -> Array:
+        """None."""
+        return 0 * self.d
+
+    @derived("mm", "oil groove width", symbol="w_g", ge=0, le=1000)
+    def w_g(self) -> Array:
+        return 1.25 * self.d_h
+
+    @derived("mm", "oil groove depth", symbol="t_g", ge=0, le=500)
+    def t_g(self) -> Array:
+        return 0.3 * self.t * np.sign(self.w_g)
+
+    @formula("mm", "outer diameter", symbol="D")
+    def D(self) -> Array:
+        return self.d + 2 * self.t
+
+    @formula("mm", "length beyond the flange", name="shank", symbol="L")
+    def L(self) -> Array:
+        return self.B - self.b_f
+
+    @require("flange_diameter", "inner_diameter", "wall", remedy="make the flange larger")
+    def flange_stands_out(self) -> Truth:
+        """The flange is at least 1 % larger than the outside of the bush."""
+        return self.D_f >= 1.01 * self.D
+
+    @require("flange_thickness", "width", remedy="make the flange thinner or the bush longer")
+    def flange_leaves_a_bush(self) -> Truth:
+        """The flange takes at most 80 % of the width."""
+        return self.b_f <= 0.8 * self.B
+
+    @require("inner_chamfer", "outer_chamfer", "wall", remedy="make the chamfers smaller")
+    def chamfers_leave_a_face(self) -> Truth:
+        """The chamfers together take at most 80 % of the wall."""
+        return self.c_i + self.c_o <= 0.8 * self.t
+
+    @require(
+        "inner_chamfer", "outer_chamfer", "width", "flange_thickness", remedy="make the chamfers smaller"
+    )
+    def chamfers_leave_a_length(self) -> Truth:
+        """A chamfer takes at most 40 % of the length beyond the flange."""
+        return (self.c_i <= 0.4 * self.L) & (self.c_o <= 0.4 * self.L)
+
+    @require(
+        "oil_groove_width", "inner_chamfer", "outer_chamfer", "width", "flange_thickness",
+        remedy="make the groove narrower, the chamfers smaller or the bush longer",
+    )  # fmt: skip
+    def groove_keeps_off_the_ends(self) -> Truth:
+        """Oil groove and chamfers take at most 95 % of the length beyond the flange."""
+        return self.w_g + 2 * np.maximum(self.c_i, self.c_o) <= 0.95 * self.L
+
+    @require(
+        "oil_hole_diameter", "inner_chamfer", "outer_chamfer", "width", "flange_thickness",
+        remedy="make the hole smaller, the chamfers smaller or the bush longer",
+    )  # fmt: skip
+    def hole_keeps_off_the_ends(self) -> Truth:
+        """Oil hole and chamfers take at most 95 % of the length beyond the flange."""
+        return self.d_h + 2 * np.maximum(self.c_i, self.c_o) <= 0.95 * self.L
+
+    @require("oil_groove_depth", "wall", remedy="make the groove shallower or the wall thicker")
+    def groove_within_wall(self) -> Truth:
+        """The oil groove takes at most 80 % of the wall."""
+        return self.t_g <= 0.8 * self.t
+
+    @require("oil_groove_depth", "oil_groove_width", remedy="give the groove a width, or no depth")
+    def groove_has_width(self) -> Truth:
+        """An oil groove that has a depth has a width."""
+        return (self.t_g <= 0) | (self.w_g > 0)
+
+    @require("oil_hole_diameter", "inner_diameter", remedy="make the hole smaller")
+    def hole_within_bore(self) -> Truth:
+        """The oil hole takes at most 80 % of the bore, so that it has a wall all around."""
+        return self.d_h <= 0.8 * self.d
+
+    @require(
+        "oil_hole_diameter", "oil_groove_width",
+        remedy="make the hole as wide as the groove, or change it by 1 %",
+    )  # fmt: skip
+    def hole_clears_groove_edge(self) -> Truth:
+        """An oil hole wider than its groove is wider by 1 %; for less, OpenCASCADE returns wrong solids."""
+        return (self.t_g <= 0) | (self.w_g <= 0) | (self.d_h <= self.w_g) | (self.d_h >= 1.01 * self.w_g)
+
+    @require(
+        "oil_hole_diameter", "oil_groove_width", "oil_groove_depth", "inner_chamfer", "outer_chamfer",
+        remedy="use 0 for none",
+    )  # fmt: skip
+    def features_are_drawable(self) -> Truth:
+        """Hole, groove and chamfers measure 0, or at least the 10 µm that the kernel draws reliably."""
+        hole = drawable(self.d_h) & drawable(self.w_g) & drawable(self.t_g)
+        return hole & drawable(self.c_i) & drawable(self.c_o)
+
+    def build(self) -> tuple[Part, ...]:
+        """One bush."""
+        bush = self.drawn()
+        return (Part("bush", bush.solid(), bush.volume(), BRONZE, density=8800, material="CuSn8P"),)
+
+    def drawn(self) -> Bush:
+        """The parameters as radii and levels."""
+        return Bush(
+            bore=mm(self.d) / 2,
+            outside=mm(self.D) / 2,
+            flange=mm(self.D_f) / 2,
+            flange_thickness=mm(self.b_f),
+            width=mm(self.B),
+            inner_chamfer=mm(self.c_i),
+            outer_chamfer=mm(self.c_o),
+            groove=mm(self.d) / 2 + mm(self.t_g),
+            half_groove=mm(self.w_g) / 2,
+            hole=mm(self.d_h) / 2,
+        )
+
+    def bounding_box(self) -> Box:
+        """As wide as the flange."""
+        radius = mm(self.D_f) / 2
+        return Box((-radius, -radius, 0.0), (radius, radius, mm(self.B)))
+
+    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+        """Every length that the bush has; no groove and no hole show none."""
+        bush = seen["bush"]
+        about, levels, holes = (
+            bush.about(Z),
+            bush.levels(Z),
+            [c.diameter for c in bush.cylinders if c.along(Y)],
+        )
+        diameters = bush.diameters(Z)
+        bore = [c.reach for c in about if abs(c.diameter - diameters[0]) < 1e-6]
+        outside = [c.reach for c in about if abs(c.diameter - diameters[-2]) < 1e-6]
+        sizes = {
+            "inner_diameter": diameters[0],
+            "wall": (diameters[-2] - diameters[0]) / 2,
+            "flange_diameter": diameters[-1],
+            "flange_thickness": levels[1] - levels[0],
+            "width": levels[-1] - levels[0],
+            "inner_chamfer": min(low for low, _ in bore) - levels[0],
+            "outer_chamfer": levels[-1] - max(high for _, high in outside),
+            "oil_hole_diameter": holes[0] if holes else 0.0,
+        }
+        if len(levels) == 5:  # both ends, the back of the flange, both sides of a groove
+            sizes["oil_groove_width"] = levels[3] - levels[2]
+            sizes["oil_groove_depth"] = (diameters[1] - diameters[0]) / 2
+        return sizes

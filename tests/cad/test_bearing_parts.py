@@ -1,0 +1,139 @@
+"""Random and hostile parameters of the parts beside shafts: a checked solid, or a refusal by name.
+
+A solid passes the checks of `regenerate`: volume by its closed form, box, and every parameter read back.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from seeds import seeded
+
+from cad.catalogue import models
+from cad.model import CadModel
+from cad.regenerate import as_text, regenerate
+from templates.core.errors import InvalidInputs
+from templates.core.language.spec import Choice, Derived
+
+NEW = [("thrust_washer", 2), ("flanged_bush", 1)]
+NONE_BY_DEFAULT = {
+    "oil_grooves": (1, 7), "pin_hole_diameter": (0.02, 0.3), "lug_width": (0.02, 0.6),
+    "oil_hole_diameter": (0.02, 0.3), "oil_groove_width": (0.02, 0.4), "oil_groove_depth": (0.005, 0.1),
+    "crush_height": (2e-4, 5e-3), "free_spread": (2e-3, 5e-2), "flange_diameter": (1.2, 2),
+}  # fmt: skip
+"""Sizes of what there is none of by default, as shares of the required diameter; a count as it is."""
+LIMITS = {  # what a random set must reach: the least share of 300 that makes a solid
+    "thrust_washer": 0.3,
+    "flanged_bush": 0.3,
+}
+HOSTILE_VALUES = (math.nan, math.inf, -math.inf, -1.0, -1e-3, 0.0, 1e-12, 1e-9, 1e-7, 1e-6, 1e9, 1e300)
+BAD = (*HOSTILE_VALUES[:5], 1e9, 1e300)
+
+EVERY = [pytest.param(models().get(*one), id=f"{one[0]}_v{one[1]}") for one in NEW]
+
+
+def sample(cls: type[CadModel], rng: np.random.Generator) -> dict[str, Any]:
+    """Random parameters [SI]: each is left out, none, or anything about what it is by default."""
+    (first,) = (name for name, declared in cls.inputs.items() if declared.required)
+    size = float(10 ** rng.uniform(-2.2, -0.2))
+    chosen: dict[str, Any] = {first: size}
+    for name, declared in cls.inputs.items():
+        if isinstance(declared, Choice):
+            chosen[name] = rng.choice(declared.options).item()
+    defaults = cls.from_si({first: size}).inputs_si()
+    for name, declared in cls.inputs.items():
+        if name in chosen or rng.random() < 0.55:
+            continue
+        default, whole = float(defaults[name]), declared.meaning.integer
+        if default == 0 and name in NONE_BY_DEFAULT:
+            low, high = NONE_BY_DEFAULT[name]
+            value = low * (high / low) ** rng.random() * (1 if whole else size)
+        else:
+            value = default * 2 ** rng.uniform(-1.5, 1.5)
+        if default and declared.meaning.domain_si.ge == 0 and rng.random() < 0.2:
+            value = 0.0
+        chosen[name] = float(round(value)) if whole else value
+    return chosen
+
+
+def refused(cls: type[CadModel], given: dict[str, Any]) -> set[str]:
+    try:
+        as_text(cls.from_si(given))
+    except InvalidInputs as error:
+        return {name for fault in error.faults for name in fault.names}
+    return set()
+
+
+def drawn(cls: type[CadModel], given: dict[str, Any]) -> bool:
+    """Whether a solid was made of it, each of its dimensions as asked; refusals name what was given."""
+    if named := refused(cls, given):
+        assert named <= set(cls.inputs)
+        assert named & set(given)
+        return False
+    model, result = cls.from_si(given), regenerate(cls.id, cls.version, given)
+    for name, value in result.dimensions.items():
+        declared = cls.inputs[name]
+        wanted = float(np.asarray(declared.meaning.scale.from_si(getattr(model, declared.attribute))))
+        assert value == pytest.approx(wanted, rel=1e-12, abs=1e-6), name
+    volume = sum(part.volume * len(part.places) for part in model.build())
+    assert result.measures["volume"] == pytest.approx(volume, rel=1e-9)
+    return True
+
+
+def solids_among(cls: type[CadModel], sets: int, seed: int) -> int:
+    rng = np.random.default_rng(seed)
+    return sum(drawn(cls, sample(cls, rng)) for _ in range(sets))
+
+
+def hostile(cls: type[CadModel]) -> list[dict[str, Any]]:
+    """Sixty sets or more: the example with each parameter absurd, and with one equal to another."""
+    example = {
+        name: value if isinstance(value, str) else float(value)
+        for name, value in cls.from_quantities(cls.example).inputs_si().items()
+    }
+    numbers = [name for name, value in example.items() if not isinstance(value, str)]
+    sets = [{**example, name: value} for name in numbers for value in HOSTILE_VALUES]
+    lengths = [name for name in numbers if cls.inputs[name].meaning.unit == "mm"]
+    sets += [{**example, one: example[other]} for one in lengths for other in lengths if one != other]
+    tiny = [{**example, one: example[one] * (1 + 1e-9)} for one in numbers]
+    return [*sets, *tiny]
+
+
+@pytest.mark.parametrize("cls", EVERY)
+def test_property_some_random_parts(cls: type[CadModel]) -> None:
+    assert 1 <= solids_among(cls, 10, seed=3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("cls", EVERY)
+def test_property_many_random_parts(cls: type[CadModel]) -> None:
+    assert LIMITS[cls.id] * 300 < solids_among(cls, 300, seed=seeded(4)) < 300
+
+
+def judged(cls: type[CadModel], sets: list[dict[str, Any]]) -> None:
+    for given in sets:
+        assert not (drawn(cls, given) and any(value in BAD or value != value for value in given.values()))
+
+
+@pytest.mark.parametrize("cls", EVERY)
+def test_property_some_hostile_parts(cls: type[CadModel]) -> None:
+    sets = hostile(cls)
+    judged(cls, sets[:: len(sets) // 10])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("cls", EVERY)
+def test_property_hostile_parts(cls: type[CadModel]) -> None:
+    sets = hostile(cls)
+    assert len(sets) >= 60
+    judged(cls, sets)
+
+
+@pytest.mark.parametrize("cls", EVERY)
+def test_optional_sizes_may_be_left_out(cls: type[CadModel]) -> None:
+    """The example has every feature; what is left out has a size that is drawable."""
+    required = {name: value for name, value in cls.example.items() if cls.inputs[name].required}
+    build = regenerate(cls.id, cls.version, cls.from_quantities(required).inputs_si())
+    assert build.measures["volume"] > 0
+    assert any(isinstance(declared, Derived) for declared in cls.inputs.values())
