@@ -22,6 +22,7 @@ from ezdxf.filemanagement import new
 from cad.drafting.lanes import Lanes
 from cad.drafting.matching import Dimension, matched, references
 from cad.drafting.measures import Measure, measures
+from cad.drafting.standing import standing
 from cad.drafting.views import Point, Polyline, View, hatch, views
 from cad.header import Header
 from cad.stamp import BLOCK, MARK, line_of
@@ -82,7 +83,7 @@ def _no_times() -> Iterator[None]:
 def draw(bodies: Sequence[Body], header: Header | None) -> Drawing:
     """The drawing as a document of ezdxf."""
     section, end = views(bodies)
-    seen = measures(bodies, section, end)
+    seen = [*measures(bodies, section, end), *standing(bodies, section, end)]
     parameters = header.parameters if header else {}
     matches, unseen = matched(parameters, seen)
     plan = Plan.of(section, end, [*matches, *references(matches, seen)])
