@@ -2,8 +2,9 @@
 
 Traps of Open CASCADE 7.9, each met in a measurement: the schema must be AP242, with AP214 its writer dies; a
 dimension carries limits and never a class of fit, of which the writer counts the grade otherwise than ISO
-286; datums are read back only if a tolerance refers to them. Nothing is drawn: these annotations are for
-programs, a drawing is for people.
+286; the writer takes a lower deviation with its sign turned round, and writes deviations without their type
+(`cad.step_text` adds it); datums are read back only if a tolerance refers to them. Nothing is drawn: these
+annotations are for programs, a drawing is for people.
 """
 
 from __future__ import annotations
@@ -60,9 +61,20 @@ class Annotations:
     limits: Mapping[str, Limits] = field(default_factory=dict)
     sizes: Mapping[str, float] = field(default_factory=dict)
 
-    def order(self) -> list[str]:
+    @property
+    def dimensions(self) -> list[str]:
         """The parameter of every dimension that is written, in the order of the file."""
         return [n for n in self.limits for _ in self.declared[n].levels]
+
+    @property
+    def forms(self) -> list[tuple[str, Form]]:
+        """The parameter and the form of every geometric tolerance, in the order of the file."""
+        return [(n, form) for n in self.limits for form in self.declared[n].forms]
+
+    @property
+    def names(self) -> list[str]:
+        """The parameters by which dimensions, and then geometric tolerances, are named."""
+        return [*self.dimensions, *(name for name, _ in self.forms)]
 
 
 def annotate(
@@ -115,7 +127,7 @@ class _Writer:
         size.SetType(_TYPES[one.faces])
         size.SetValue(within.nominal)
         size.SetUpperTolValue(within.upper)
-        size.SetLowerTolValue(within.lower)
+        size.SetLowerTolValue(-within.lower)  # which the writer turns round
         label = self._tool.AddDimension()
         XCAFDoc_Dimension.Set_s(label).SetObject(size)
         first, second = self._labels(one, place.first), self._labels(one, place.second)

@@ -15,6 +15,7 @@ from cadquery import Shape
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 
+from cad.model import Part
 from cad.part21 import quoted
 
 VALIDATION = "geometric validation property"
@@ -46,16 +47,16 @@ class PartProperties:
     density: float
 
 
-def properties_of(part: str, solid: Shape, material: str, density: float) -> PartProperties:
-    """The properties of a solid, integrated to the accuracy of `cad.inspect.measure`, to twelve digits."""
+def properties_of(part: Part, solid: Shape) -> PartProperties:
+    """The properties of a part on its solid, integrated as `cad.inspect.measure` does, to twelve digits."""
+    material = part.made_of.rpartition(" (")[0] or part.made_of  # without its density
     volume, area = GProp_GProps(), GProp_GProps()
     BRepGProp.VolumeProperties_s(solid.wrapped, volume, _ACCURACY, False)
     BRepGProp.SurfaceProperties_s(solid.wrapped, area, _ACCURACY, False)
     centre = volume.CentreOfMass()
     x, y, z = (round(value, 9) + 0.0 for value in (centre.X(), centre.Y(), centre.Z()))
-    return PartProperties(
-        part, _digits(volume.Mass()), _digits(area.Mass()), (x, y, z), material, _digits(density)
-    )
+    measures = _digits(volume.Mass()), _digits(area.Mass()), (x, y, z)
+    return PartProperties(part.name, *measures, material, _digits(part.density))
 
 
 def _digits(value: float) -> float:

@@ -25,6 +25,8 @@ from cad.inspect import bounding_box, look_at, measure, summarise
 from cad.lists import rounded, written
 from cad.model import CadModel, Dimension, arrays_of_points, mm
 from cad.pmi import Annotations
+from cad.stated import check_statements
+from cad.statements import read_statements
 from cad.step import read_step, write_step
 from cad.step_text import KERNEL
 from cad.toleranced import Limits, carried, in_unit, limits, limits_of
@@ -171,7 +173,8 @@ def regenerate_class(cls: type[CadModel], texts: Mapping[str, str], *, report: R
         report(0.0, "building")
         parts = model.build()
         report(0.4, "exporting")
-        step = write_step(parts, Header(cls.id, cls.version, texts, key), _annotations(model))
+        annotations = _annotations(model)
+        step = write_step(parts, Header(cls.id, cls.version, texts, key), annotations)
         report(0.6, "reading back")
         bodies = read_step(step)
         report(0.8, "measuring")
@@ -180,6 +183,8 @@ def regenerate_class(cls: type[CadModel], texts: Mapping[str, str], *, report: R
     check_bodies(model, parts, bodies, measured)
     check_box(model, box)
     dimensions = check_dimensions(model, look_at(bodies))
+    if annotations is not None:
+        check_statements(parts, bodies, annotations, read_statements(step))
     densities = {part.name: part.density for part in parts}
     measures = summarise(bodies, measured, densities, box)
     report(1.0, "done")

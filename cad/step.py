@@ -28,7 +28,7 @@ from cad.errors import UnreadableStep
 from cad.header import Header
 from cad.model import STEEL, Colour, Part
 from cad.pmi import Annotations, Product, annotate
-from cad.properties import PartProperties, properties_of
+from cad.properties import properties_of
 from cad.step_text import finished
 from templates.core.arrays import Array
 
@@ -65,13 +65,9 @@ def write_step(parts: Sequence[Part], header: Header, annotations: Annotations |
     if writer.WriteStream(stream) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise RuntimeError("the kernel could not write the STEP file")
     text = stream.getvalue().decode("latin-1")
-    stated = [] if annotations is None else [_properties(part, products[part.name]) for part in parts]
-    names = [] if annotations is None else annotations.order()
+    stated = [] if annotations is None else [properties_of(p, products[p.name].solid) for p in parts]
+    names = [] if annotations is None else annotations.names
     return finished(text, header, [part.colour for part in parts], names, stated).encode("latin-1")
-
-
-def _properties(part: Part, product: Product) -> PartProperties:
-    return properties_of(part.name, product.solid, part.made_of, part.density)
 
 
 def read_step(step: bytes) -> tuple[Body, ...]:

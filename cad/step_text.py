@@ -20,7 +20,8 @@ SCHEMA = "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 
 KERNEL = f"CadQuery {version('cadquery')}, Open CASCADE {version('cadquery-ocp')}"
 
 _USAGE = re.compile(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\(')\d+'")
-_DIMENSION = re.compile(r"(SHAPE_DIMENSION_REPRESENTATION\()''")
+_NAMELESS = re.compile(r"(SHAPE_DIMENSION_REPRESENTATION\(|CYLINDRICITY_TOLERANCE\(|GEOMETRIC_TOLERANCE\()''")
+_DEVIATION = re.compile(r"(= MEASURE_WITH_UNIT\()(?:-(?=0\.,))?(-?[0-9.][0-9.E+-]*),")
 _NUMBER = re.compile(r"^#(\d+) = ", re.MULTILINE)
 _PRODUCT = re.compile(r"ADVANCED_BREP_SHAPE_REPRESENTATION\('[^']*',\(([^)]*)\),(#\d+)\)")
 _SOLID = re.compile(r"^(#\d+) = (?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\(", re.MULTILINE)
@@ -30,12 +31,13 @@ def finished(
     text: str,
     header: Header,
     colours: Sequence[Colour],
-    dimensions: Sequence[str] = (),
+    names: Sequence[str] = (),
     properties: Sequence[PartProperties] = (),
 ) -> str:
     """The kernel's text with our header, and with colours, one for each product in the order of the file.
 
-    `dimensions` are the parameters of its dimensions, in the order of the file; `properties` those of parts.
+    `names` are the parameters of its dimensions and then of its geometric tolerances, in the order of the
+    file; `properties` are those of its parts.
     """
     data = text[text.index("ENDSEC;") + len("ENDSEC;") :]
     number = count(1)
@@ -46,14 +48,15 @@ def finished(
         first = int(_NUMBER.findall(body)[-1]) + 1
         attributes = {"model": header.title, "build": header.build, **header.parameters}
         lines = entities(body, first, header.model, attributes, properties)
-        body = _with_names(body, dimensions) + "".join(f"{line}\n" for line in lines)
+        body = _annotated(body, names) + "".join(f"{line}\n" for line in lines)
     return f"ISO-10303-21;\n{write_header(header, SCHEMA, KERNEL)}{body}{end}{rest}"
 
 
-def _with_names(data: str, names: Sequence[str]) -> str:
-    """The data with its parameter as the name of each dimension, in the order of the file."""
+def _annotated(data: str, names: Sequence[str]) -> str:
+    """The data with parameters as names of dimensions and tolerances, and with the types of deviations."""
     number = iter(names)
-    return _DIMENSION.sub(lambda found: f"{found[1]}'{next(number)}'", data)
+    named = _NAMELESS.sub(lambda found: f"{found[1]}'{next(number)}'", data)
+    return _DEVIATION.sub(r"\1LENGTH_MEASURE(\2),", named)
 
 
 def _styles(data: str, colours: Iterable[Colour]) -> str:

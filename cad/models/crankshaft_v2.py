@@ -130,6 +130,7 @@ class Crankshaft(CrankRules):
         "oil_drilling_diameter": {"askew": True},
         "nose_diameter": {"cylinders": "z", "end": "low", "cylindricity": 0.5},
         "flange_diameter": {"cylinders": "z", "end": "high"},
+        "bolt_hole_diameter": {"beside": "z"},
     }
 
     psi: Array = curve(

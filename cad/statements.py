@@ -1,0 +1,230 @@
+"""What the text of a STEP file states beside the shape: dimensions, datums, tolerances, properties.
+
+No kernel reads it: a client may send any bytes. The text is passed over once, statement by statement, and
+only statements of the few sorts that are needed are taken apart, so the time is linear in its length.
+What does not fit together is left out; a comparison with what should be there then shows it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import zip_longest
+
+from cad.part21 import plain
+from cad.properties import ATTRIBUTE, MATERIAL, VALIDATION
+
+Value = float | str
+
+UNITS = {
+    "dimension": "mm", "cylindricity": "mm", "perpendicularity": "mm", "parallelism": "mm",
+    "volume": "mm**3", "surface area": "mm**2", "centroid": "mm", "density": "kg/m**3",
+}  # fmt: skip
+"""The units of what a statement of each kind states; texts have none."""
+
+_PIECE = re.compile(rb"'[^']*'|;|[^';]+|'")
+_START = re.compile(r"\s*#(\d{1,18})\s*=\s*(\(?)\s*([A-Z_0-9]+)")
+_TOKEN = re.compile(r"#(\d{1,18})|('(?:[^']|'')*')|([A-Z][A-Z_0-9]*)|([-+]?\d+\.\d*(?:E[-+]?\d{1,4})?)")
+_TOLERANCES = {
+    "CYLINDRICITY_TOLERANCE": "cylindricity",
+    "PERPENDICULARITY_TOLERANCE": "perpendicularity",
+    "PARALLELISM_TOLERANCE": "parallelism",
+}
+_SORTS = frozenset(
+    {
+        "DIMENSIONAL_SIZE", "DIMENSIONAL_LOCATION", "PLUS_MINUS_TOLERANCE", "TOLERANCE_VALUE",
+        "MEASURE_WITH_UNIT", "LENGTH_MEASURE_WITH_UNIT", "DIMENSIONAL_CHARACTERISTIC_REPRESENTATION",
+        "SHAPE_DIMENSION_REPRESENTATION", "DATUM", "DATUM_SYSTEM", "DATUM_REFERENCE_COMPARTMENT",
+        "PROPERTY_DEFINITION", "PROPERTY_DEFINITION_REPRESENTATION", "REPRESENTATION",
+        "MEASURE_REPRESENTATION_ITEM", "DESCRIPTIVE_REPRESENTATION_ITEM", "GENERAL_PROPERTY",
+        "GENERAL_PROPERTY_ASSOCIATION", "PRODUCT", "PRODUCT_DEFINITION", "PRODUCT_DEFINITION_FORMATION",
+        "PRODUCT_DEFINITION_SHAPE", "GEOMETRIC_TOLERANCE", *_TOLERANCES,
+    }
+)  # fmt: skip
+_POINT = "'centre point'"
+
+
+@dataclass(frozen=True)
+class Statement:
+    """One statement: its kind, of what it is, and its values in the unit of its kind.
+
+    A dimension has its nominal size, lower and upper deviation; a geometric tolerance its width and the
+    letters of its datums.
+    """
+
+    kind: str
+    name: str
+    values: tuple[Value, ...]
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A statement that a file should make beside the one that it makes; None where it makes none."""
+
+    kind: str
+    name: str
+    expected: tuple[Value, ...] | None
+    stated: tuple[Value, ...] | None
+
+    @property
+    def agrees(self) -> bool:
+        """Whether both are there and equal."""
+        return self.expected is not None and self.expected == self.stated
+
+
+@dataclass(frozen=True)
+class _Entity:
+    """An entity taken apart: its words in their order, whatever brackets stand between them."""
+
+    sorts: tuple[str, ...]
+    refs: tuple[int, ...]
+    texts: tuple[str, ...]
+    numbers: tuple[float, ...]
+
+
+def read_statements(step: bytes) -> list[Statement]:
+    """Every statement of a STEP file, in the order of the file, each kind by itself."""
+    return list(_Reader(_entities(step)).statements())
+
+
+def compared(expected: Sequence[Statement], stated: Sequence[Statement]) -> list[Compared]:
+    """Statement by statement, each kind in its order; parts may have other names: a download renames them."""
+    one, other = _by_kind(expected), _by_kind(stated)
+    return [_pair(kind, *pair) for kind in {**one, **other} for pair in zip_longest(one[kind], other[kind])]
+
+
+def _pair(kind: str, expected: Statement | None, stated: Statement | None) -> Compared:
+    named = expected or stated
+    assert named is not None, "one of both is there"
+    is_of_part = kind in ("volume", "surface area", "centroid", "density", "material")
+    if expected and stated and expected.name != stated.name and not is_of_part:
+        return Compared(kind, expected.name, expected.values, None)
+    values = (one.values if one is not None else None for one in (expected, stated))
+    return Compared(kind, named.name, *values)
+
+
+def _by_kind(statements: Sequence[Statement]) -> defaultdict[str, list[Statement]]:
+    kinds = defaultdict[str, list[Statement]](list)
+    for statement in statements:
+        kinds[statement.kind].append(statement)
+    return kinds
+
+
+def _entities(step: bytes) -> dict[int, _Entity]:
+    """The entities of the sorts that are needed, by their number."""
+    entities: dict[int, _Entity] = {}
+    for statement in _split(step):
+        start = _START.match(statement)
+        if start is None:
+            continue
+        sort = start[3]
+        if start[2] or sort in _SORTS or (sort == "CARTESIAN_POINT" and _POINT in statement):
+            entities[int(start[1])] = _taken_apart(statement[start.end(1) :])
+    return entities
+
+
+def _split(step: bytes) -> Iterator[str]:
+    """The statements of a text, which end with semicolons outside of strings."""
+    pieces: list[bytes] = []
+    for match in _PIECE.finditer(step):
+        if match[0] == b";":
+            yield b"".join(pieces).decode("latin-1")
+            pieces = []
+        else:
+            pieces.append(match[0])
+
+
+def _taken_apart(statement: str) -> _Entity:
+    sorts, refs, texts, numbers = list[str](), list[int](), list[str](), list[float]()
+    for ref, text, sort, number in _TOKEN.findall(statement):
+        if ref:
+            refs.append(int(ref))
+        elif text:
+            texts.append(plain(text))
+        elif sort:
+            sorts.append(sort)
+        else:
+            numbers.append(float(number))
+    return _Entity(tuple(sorts), tuple(refs), tuple(texts), tuple(numbers))
+
+
+class _Reader:
+    """Follows the references between entities."""
+
+    def __init__(self, entities: dict[int, _Entity]) -> None:
+        self._all = entities
+        self._of = defaultdict[str, list[tuple[int, _Entity]]](list)
+        for number, entity in sorted(entities.items()):
+            for sort in dict.fromkeys(entity.sorts):
+                self._of[sort].append((number, entity))
+
+    def statements(self) -> Iterator[Statement]:
+        """All statements."""
+        yield from self._dimensions()
+        for _, datum in self._of["DATUM"]:
+            if datum.sorts[0] == "DATUM" and datum.texts:
+                yield Statement("datum", datum.texts[-1], ())
+        yield from self._tolerances()
+        yield from self._properties()
+
+    def _dimensions(self) -> Iterator[Statement]:
+        limits = {e.refs[1]: e.refs[0] for _, e in self._of["PLUS_MINUS_TOLERANCE"] if len(e.refs) == 2}
+        for _, entity in self._of["DIMENSIONAL_CHARACTERISTIC_REPRESENTATION"]:
+            shown = self._follow(entity.refs[1:])
+            if shown is None or not shown.texts or not entity.refs:
+                continue
+            nominal = self._number(shown.refs[:1])
+            ends = self._follow([limits.get(entity.refs[0], -1)])
+            lower, upper = (self._number(ends.refs[i : i + 1]) if ends else None for i in (0, 1))
+            values = tuple(v for v in (nominal, lower, upper) if v is not None)
+            yield Statement("dimension", shown.texts[0], values)
+
+    def _tolerances(self) -> Iterator[Statement]:
+        letters = {n: e.texts[-1] for n, e in self._of["DATUM"] if e.texts}
+        for _, entity in sorted(self._all.items()):
+            kind = next((_TOLERANCES[sort] for sort in entity.sorts if sort in _TOLERANCES), None)
+            if kind is None or not entity.texts:
+                continue
+            width = self._number(entity.refs[:1])
+            systems = filter(None, (self._follow([ref]) for ref in entity.refs[2:]))
+            parts = filter(None, (self._follow([ref]) for system in systems for ref in system.refs))
+            datums = [letters[ref] for part in parts for ref in part.refs if ref in letters]
+            yield Statement(kind, entity.texts[0], (*(() if width is None else (width,)), *datums))
+
+    def _properties(self) -> Iterator[Statement]:
+        pairs = (entity.refs for _, entity in self._of["PROPERTY_DEFINITION_REPRESENTATION"])
+        shown = {refs[0]: refs[1] for refs in pairs if len(refs) == 2}
+        general = {n for n, e in self._of["GENERAL_PROPERTY"] if ATTRIBUTE in e.texts}
+        links = self._of["GENERAL_PROPERTY_ASSOCIATION"]
+        attributed = {e.refs[1] for _, e in links if len(e.refs) == 2 and e.refs[0] in general}
+        for number, entity in self._of["PROPERTY_DEFINITION"]:
+            representation = self._follow([shown.get(number, -1)])
+            if representation is None or entity.sorts[0] != "PROPERTY_DEFINITION":
+                continue
+            items = [item for ref in representation.refs[:-1] if (item := self._follow([ref]))]
+            if number in attributed:
+                yield from (Statement("attribute", i.texts[0], i.texts[1:]) for i in items if i.texts)
+            elif len(entity.texts) > 1 and entity.texts[0] in (VALIDATION, MATERIAL):
+                kind = "material" if entity.texts[1] == "material name" else entity.texts[1]
+                values = (i.texts[:1] if kind == "material" else i.numbers for i in items)
+                yield Statement(kind, self._part(entity), next(values, ()))
+
+    def _part(self, entity: _Entity) -> str:
+        """The name of the product that a property is of: by shape, definition and formation."""
+        for _ in range(4):
+            following = self._follow(entity.refs[:1])
+            if following is None:
+                return ""
+            if following.sorts[0] == "PRODUCT":
+                return following.texts[1] if len(following.texts) > 1 else ""
+            entity = following
+        return ""
+
+    def _follow(self, refs: Sequence[int]) -> _Entity | None:
+        return self._all.get(refs[0]) if refs else None
+
+    def _number(self, refs: Sequence[int]) -> float | None:
+        entity = self._follow(refs)
+        return entity.numbers[0] if entity and entity.numbers else None
