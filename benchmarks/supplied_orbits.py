@@ -3,11 +3,14 @@
     nice python -m benchmarks.supplied_orbits ensemble [duties]     marches, 300 unless given
     nice python -m benchmarks.supplied_orbits finer [duties]        a fifth of them twice as fine
     nice python -m benchmarks.supplied_orbits why                   those that miss: cycles, mesh or step
+    nice python -m benchmarks.supplied_orbits near [duties]         holes under the load: meshes of version 3
     python -m benchmarks.supplied_orbits                            prints the tables
 
 `finer` takes two of ten, engines and Fourier loads of every kind of supply alike. `why` marches each duty
 whose least gap changes by more than 2 % three times more, from its result: further cycles of the same march,
-twice the cells with the same step, half the step with the same cells.
+twice the cells with the same step, half the step with the same cells. `near` marches those whose holes stay
+under the load on the meshes that `oil_film_cycle` 3 adds, and on a finest one: three times the cells around,
+10 rows and half the step; some 40 s a duty, those that miss first.
 
 Every duty is written to benchmarks/results/supplied_orbits.json as soon as it is marched, and is not marched
 again. Processor seconds are those of one process on the machine named in the results, without compiling.
@@ -28,6 +31,8 @@ from templates.physics.supplied.supplied_orbit import (
     COARSE,
     FINE,
     MORE_ROWS,
+    NEAR_HOLES,
+    STAYS,
     THIN,
     Meshing,
     SuppliedOrbit,
@@ -39,15 +44,19 @@ RESULTS = Path("benchmarks/results/supplied_orbits.json")
 SEED, DUTIES = 17, 300
 MISS = 0.02
 """Change of the least gap by a finer mesh of which the cause is looked for [-]."""
+FINEST = Meshing(384, 10, FINE.step / 2, FINE.most, near_edges=True, cells=3.0)
+"""The mesh against which those near holes are held."""
 FILMS = (Verdict.REPEATING.value, Verdict.WANDERING.value)
 """Verdicts that report a film."""
 Row = dict[str, Any]
 
 
-def marched(duty: RandomDuty, meshes: tuple[Meshing, ...] = (COARSE, FINE)) -> tuple[SuppliedOrbit, float]:
+def marched(
+    duty: RandomDuty, meshes: tuple[Meshing, ...] = (COARSE, FINE), near_holes: tuple[Meshing, ...] = ()
+) -> tuple[SuppliedOrbit, float]:
     """The orbit of a duty and its processor time [s]."""
     begin = process_time()
-    orbit = supplied_orbit(duty.load, duty.sliding, duty.ratio, duty.supply, meshes)
+    orbit = supplied_orbit(duty.load, duty.sliding, duty.ratio, duty.supply, meshes, near_holes=near_holes)
     return orbit, process_time() - begin
 
 
@@ -106,6 +115,20 @@ def why(duty: RandomDuty, kept: Row) -> dict[str, Row]:
     }
 
 
+def near(duty: RandomDuty) -> Row:
+    """Smallest gap of the meshes of version 3, the error that it states for them, and that of the finest."""
+    orbit, seconds = marched(duty, near_holes=NEAR_HOLES)
+    finest, _ = marched(duty, near_holes=(*NEAR_HOLES, FINEST))
+    return {
+        "least_gap": orbit.least_gap,
+        "mesh_error": orbit.mesh_error,
+        "verdict": orbit.verdict.value,
+        "cycles": list(orbit.cycles),
+        "seconds": seconds,
+        "finest": {"least_gap": finest.least_gap, "verdict": finest.verdict.value},
+    }
+
+
 def change(kept: Row, other: Row) -> float:
     """Of the least gap, relative [-]."""
     return float(kept["least_gap"] / other["least_gap"] - 1)
@@ -124,7 +147,7 @@ def run(what: str, duties: int) -> None:
     kept = results()
     rows = kept["duties"]
     marched(random_duty(SEED, 1))  # compiles
-    for number in range(duties):
+    for number in sorted(range(duties), key=lambda n: not missed(rows.get(str(n), {}))):
         duty, own = random_duty(SEED, number), rows.get(str(number))
         if what == "ensemble" and own is None:
             rows[str(number)] = row(duty)
@@ -132,9 +155,16 @@ def run(what: str, duties: int) -> None:
             own["finer"] = continued(duty, own, cells=2, steps=2)
         elif what == "why" and own and missed(own) and "why" not in own:
             own["why"] = why(duty, own)
+        elif what == "near" and own and stays(own) and "near" not in own:
+            own["near"] = near(duty)
         else:
             continue
         RESULTS.write_text(json.dumps(kept, indent=1, default=str) + "\n", encoding="utf-8")
+
+
+def stays(kept: Row) -> bool:
+    """Whether every hole stays under the load, and there is a film."""
+    return bool(kept["under_load"] > STAYS and kept["verdict"] in FILMS)
 
 
 def missed(kept: Row) -> bool:
@@ -180,6 +210,17 @@ def finer_tables(rows: list[Row]) -> None:
                   f"{kept['ratio']:.2f}, gap {kept['least_gap']:.4f}, hole under the load "
                   f"{kept['under_load']:.2f}, cycles {kept['cycles']}, change "
                   f"{change(kept, kept['finer']):+.4f}, alone {alone}")  # fmt: skip
+
+    near_table()
+
+
+def near_table() -> None:
+    """Meshes near holes under the load: error of both versions against the finest mesh, and that stated."""
+    for number, kept in results()["duties"].items():
+        if (own := kept.get("near")) and own["finest"]["verdict"] in FILMS:
+            print(f"duty {number}: under the load {kept['under_load']:.2f}, version 2 "
+                  f"{change(kept, own['finest']):+.4f}, 3 {change(own, own['finest']):+.4f}, stated "
+                  f"{own['mesh_error']:.4f}, cycles {own['cycles']}, {own['seconds']:.1f} s")  # fmt: skip
 
 
 if __name__ == "__main__":

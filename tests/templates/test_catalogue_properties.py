@@ -31,7 +31,11 @@ EVERY = [pytest.param(cls, id=f"{cls.id}-{cls.version}") for cls in chain(BUILT_
 every_template = pytest.mark.parametrize("cls", EVERY)
 SAMPLED = {("cycle_heat_balance", 1): 9}
 """Of these versions one golden case in so many: test_golden_at_length.py calculates the others."""
-SLOW_LEVELS = {("oil_film_cycle", 1, "transient"), ("oil_film_cycle", 2, "supplied")}
+SLOW_LEVELS = {
+    ("oil_film_cycle", 1, "transient"),
+    ("oil_film_cycle", 2, "supplied"),
+    ("oil_film_cycle", 3, "supplied"),
+}
 """Levels of which one golden case takes seconds: that file calculates them too."""
 
 SNAKE_CASE = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")

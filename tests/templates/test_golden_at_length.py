@@ -9,13 +9,19 @@ import pytest
 from test_catalogue_properties import GOLDEN, SAMPLED, SLOW_LEVELS, check_case
 
 from templates.core.catalogue import golden
-from templates.oil_film import cycle_heat_balance_v1, oil_film_cycle_v1, oil_film_cycle_v2
+from templates.oil_film import (
+    cycle_heat_balance_v1,
+    oil_film_cycle_v1,
+    oil_film_cycle_v2,
+    oil_film_cycle_v3,
+)
 
 pytestmark = pytest.mark.slow
 VERSIONS = [
     cycle_heat_balance_v1.CycleHeatBalance,
     oil_film_cycle_v1.OilFilmCycle,
     oil_film_cycle_v2.OilFilmCycle,
+    oil_film_cycle_v3.OilFilmCycle,
 ]
 
 

@@ -146,6 +146,50 @@ class GroovedLaw:
         return (1 - s) * M + s / left * M_land, (1 - s) * slopes + s / left * slopes_land
 
 
+def lift_of(share: Array, extent: Array, pressure: Array) -> Array:
+    """What a supply pressure bears at rest in a groove and over its lands, as a load number; 0 without one.
+
+    Over the lands the pressure falls evenly to that of the ends: the groove counts with its width and half of
+    theirs. Of an arc only the part along its middle is left, P (1 + g)/2 sin(extent/2).
+
+    Parameters
+    ----------
+    share
+        Width of the groove over that of the bearing, g, 0 where there is none [-].
+    extent
+        How far it goes around [rad].
+    pressure
+        P = p psi²/(eta Omega) [-].
+
+    Examples
+    --------
+    >>> round(float(lift_of(np.array(0.2), np.array(np.pi), np.array(0.5))), 3)
+    0.3
+    """
+    grooved = np.asarray(share) > 0
+    return np.asarray(np.where(grooved, pressure * (1 + share) / 2 * np.sin(extent / 2), 0.0))[()]
+
+
+def lifting(lift: Array, sleeve: Turning, groove: Groove, angle: Array) -> Array:
+    """The force of the supply pressure on the journal, against which the load presses, (2, C, N) [-].
+
+    Parameters
+    ----------
+    lift
+        (C,) its size, a load number [-].
+    sleeve
+        How the sleeve turns.
+    groove
+        Its middle is where the force comes from.
+    angle
+        (N,) crank angles [rad].
+    """
+    middle = sleeve.at(angle, sleeve.swing) + (groove.start + groove.extent / 2)[:, None]
+    force = np.where(lift > 0, lift, 0.0)[:, None]
+    middle = np.where(force > 0, np.nan_to_num(middle), 0.0)
+    return np.stack([force * np.cos(middle), force * np.sin(middle)])
+
+
 def grooved_orbit(passing: Passing, ratio: Array) -> Orbit:
     """The periodic orbit of each case by the mobility beside its groove; NaN where none was found.
 

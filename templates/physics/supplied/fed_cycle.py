@@ -7,6 +7,10 @@ Orbit, pressure, loss and flow:
     mobility_grooved  the same, with a groove in the sleeve: where the load passes it, two lands bear
     supplied          mass-conserving cavities in time, fed by grooves and holes; one case at a time
 
+Two things go beyond `oil_film_cycle` 2 and are asked for by a duty (`FedDuty`): `lift`, what the supply
+pressure bears at rest in a groove, which level mobility_grooved takes from the load; and `near_holes`, meshes
+of level supplied that follow a hole under the load.
+
 Everything is dimensionless: P = p psi²/(eta Omega), load S = F psi²/(B D eta Omega), psi the diametral
 clearance over the diameter, Omega the speed of the crank. The load is what the journal pushes with, in a
 frame whose axes sleeve and journal share at crank angle 0; a positive speed turns x to y. A massless journal
@@ -25,6 +29,8 @@ from templates.physics.orbits.grooved_mobility import (
     Passing,
     grooved_film_under_load,
     grooved_orbit,
+    lift_of,
+    lifting,
 )
 from templates.physics.orbits.journal_orbit import CyclicLoad, Orbit, periodic_orbit
 from templates.physics.orbits.mobility_law import MapLaw, ShortLaw
@@ -32,7 +38,7 @@ from templates.physics.orbits.mobility_map import NARROWEST, WIDEST, mapped_film
 from templates.physics.orbits.short_mobility import short_film_under_load
 from templates.physics.orbits.turning import turning
 from templates.physics.supplied.feeding import Feeding, supply_of
-from templates.physics.supplied.supplied_orbit import SuppliedOrbit, Verdict, supplied_orbit
+from templates.physics.supplied.supplied_orbit import NEAR_HOLES, SuppliedOrbit, Verdict, supplied_orbit
 from templates.physics.supplied.supply import Supply
 
 LEVELS = ("mobility_short", "mobility", "mobility_grooved", "supplied")
@@ -44,6 +50,10 @@ BOUNDARY = {
     "in grooves and holes; oil in a cavity stays where it is",
 }
 """What each level takes for the pressure at the film's borders."""
+BOUNDARY_RELIEVED = BOUNDARY | {
+    "mobility_grooved": BOUNDARY["mobility_grooved"] + "; less load, by what the supply bears there at rest"
+}
+"""The same where a duty has a lift."""
 WIDTHS = {"mobility_short": (0.01, 100.0), **dict.fromkeys(LEVELS[1:], (NARROWEST, WIDEST))}
 """Width ratios B/D that each level takes [-]."""
 UNREPEATED = (Verdict.STARVED, Verdict.UNSETTLED)
@@ -64,6 +74,11 @@ class FedDuty:
     """How far it goes in the sense x to y, (...) [rad]."""
     supply: Supply | None = None
     """Grooves and holes and their pressure, of the one point of level supplied."""
+    lift: Array | None = None
+    """What the supply pressure bears at rest in the groove and over its lands, as a load number, (...); level
+    mobility_grooved takes it from the load. None leaves the load as it is [-]."""
+    near_holes: bool = False
+    """Whether level supplied goes on, on finer meshes, where every hole stays under the load."""
 
 
 @dataclass(frozen=True)
@@ -159,7 +174,10 @@ def fed_orbit(level: str, fed: FedDuty) -> FedOrbit:
         return _shaped(_periodic(level, cases), cases)
     if fed.supply is None or not np.isfinite(cases.load.w).all():
         return _shaped(_nowhere(cases.load), cases)
-    marched = supplied_orbit(cases.load, cases.sliding[0], float(cases.ratio[0]), fed.supply)
+    further = NEAR_HOLES if fed.near_holes else ()
+    marched = supplied_orbit(
+        cases.load, cases.sliding[0], float(cases.ratio[0]), fed.supply, near_holes=further
+    )
     if marched.verdict in UNREPEATED:
         return _filmless(_shaped(_nowhere(cases.load), cases, marched))
     return _shaped(_sampled(marched, cases.load), cases, marched)
@@ -200,23 +218,34 @@ def fed_duty(duty: Duty, feeding: Feeding, pressure: Array) -> FedDuty:
     return FedDuty(duty, share, feeding.groove_start, feeding.groove_extent, supply)
 
 
+def relieved_duty(duty: Duty, feeding: Feeding, pressure: Array) -> FedDuty:
+    """The same with what the supply pressure bears in a groove, and with meshes for holes under the load."""
+    fed = fed_duty(duty, feeding, pressure)
+    return replace(fed, lift=lift_of(fed.groove_share, fed.groove_extent, pressure), near_holes=True)
+
+
 def _cases(level: str, fed: FedDuty) -> _Cases:
     """Make the points of a duty dimensionless; NaN speeds where the level does not take the width."""
     duty, period = fed.duty, cycle_of(fed.duty.angle)
-    single = (duty.Omega, duty.scale, duty.ratio, fed.groove_share, fed.groove_start, fed.groove_extent)
+    lifted = level == "mobility_grooved" and fed.lift is not None
+    of_groove = (fed.groove_share, fed.groove_start, fed.groove_extent, fed.lift if lifted else 0.0)
+    single = (duty.Omega, duty.scale, duty.ratio, *of_groove)
     Omega, scale, *flat = (np.asarray(v)[..., None] for v in single)
     speeds = (duty.omega_J / Omega, duty.omega_B / Omega, duty.omega_F / Omega)
     curves = np.broadcast_arrays(duty.F_x * scale, duty.F_y * scale, *speeds, *flat, duty.angle)
     points = curves[0].shape[:-1]
     x, y, journal, sleeve, frame, *rows, _ = (np.reshape(c, (-1, duty.angle.size)) for c in curves)
-    ratio, share, start, extent = (row[:, 0] for row in rows)
+    ratio, share, start, extent, lift = (row[:, 0] for row in rows)
     groove = Groove(np.nan_to_num(share), np.nan_to_num(start), np.nan_to_num(extent))
     turned = turning(duty.angle, period, sleeve - frame)
     taken = _taken(level, ratio, groove, turned.turns)
     rests = replace(turned, turns=np.where(taken, np.nan_to_num(turned.turns), turned.turns))
     whole = Groove(np.where(taken, groove.share, 0.0), groove.start, groove.extent)
     w = np.where(taken[:, None], (journal + sleeve) / 2 - frame, np.nan)
-    passing = Passing(CyclicLoad(duty.angle, period, np.stack([x, y]), w), rests, whole)
+    S = np.stack([x, y])
+    if lifted:
+        S = S - lifting(lift, rests, whole, duty.angle)
+    passing = Passing(CyclicLoad(duty.angle, period, S, w), rests, whole)
     return _Cases(passing, np.where(taken, ratio, 1.0), journal - sleeve, points)
 
 
@@ -287,7 +316,8 @@ def _sampled(marched: SuppliedOrbit, load: CyclicLoad) -> Orbit:
     """A marched orbit at the load's angles."""
     eps = np.stack([_at(marched, e, load) for e in marched.eps])
     gap, angle, error = (
-        np.array([v]) for v in (marched.least_gap, marched.least_angle, marched.repeat_error)
+        np.array([v])
+        for v in (marched.least_gap, marched.least_angle, marched.repeat_error + marched.mesh_error)
     )
     return Orbit(eps[:, None], gap, angle, error, gap, error)
 

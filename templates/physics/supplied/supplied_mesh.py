@@ -46,6 +46,7 @@ def supplied_mesh(
     edges: tuple[float, ...] = (),
     grooved: bool = False,
     gap: float = 1.0,
+    finest: float = 1.0,
 ) -> Mesh:
     """A mesh with rows of nodes on the edges of pockets, and one more row for each edge after the first.
 
@@ -64,11 +65,13 @@ def supplied_mesh(
     gap
         Least gap to be expected: where it is thin, the film is short around, and its pressure falls nearer to
         the edges [-].
+    finest
+        Largest spacing of the rows at the edges over that of equal ones [-].
     """
     inner = _inner_cells(edges[0], across) if edges else 0
     edge, rows = (edges[-1], across - inner + 1) if edges else (0.0, across + 1)
     fades = min(_FADES, _FADES_THIN * np.sqrt(2 * gap))
-    fine, t = min(1.0, fades / (ratio * (1 - edge))), np.linspace(0, 1, rows)
+    fine, t = min(finest, fades / (ratio * (1 - edge))), np.linspace(0, 1, rows)
     t = t - (1 - fine) * np.sin(2 * np.pi * t) / (2 * np.pi) if grooved else _towards_end(t, fine)
     zeta = np.concatenate(
         [np.arange(inner) / max(inner, 1) * min(edges, default=0.0), edges[:-1], edge + (1 - edge) * t]

@@ -54,6 +54,10 @@ class Meshing:
     step: float
     """[rad]."""
     most: int
+    near_edges: bool = False
+    """Whether rows are finer at both sides of a hole's edge, as they are at a groove's."""
+    cells: float = 1.0
+    """Cells around over those that a thin gap asks for, where the mesh follows it [-]."""
 
 
 COARSE = Meshing(64, 4, np.radians(4.0), 30)
@@ -63,6 +67,19 @@ FINE = Meshing(128, 6, np.radians(2.0), 24)
 RESOLVED, MOST_AROUND = 0.3, 384
 """Largest width of a cell over that of the least gap, sqrt(2 (1 − eps)), up to so many cells [-]."""
 
+NEAR_HOLES = (
+    Meshing(192, 6, np.radians(2.0), 24, near_edges=True, cells=1.5),
+    Meshing(256, 8, np.radians(2.0), 24, near_edges=True, cells=2.0),
+)
+"""Meshes that follow where every hole stays under the load: there all oil enters against the film's pressure,
+through the hole's edges, and the mesh at these edges decides how much."""
+REMAINS = 3.0
+"""Error that the last of them leaves over its change of the least gap: an error of first order goes from 2/3
+to 1/2 of that of the mesh before them, so three times the change is left [-]."""
+NEAR_EDGES = 0.4
+"""Spacing of their rows at the edges over that of equal ones, at most [-]."""
+STAYS = 0.6
+"""Share of the cycle under the load above which they do [-]."""
 THIN, MORE_ROWS = 0.002, 4
 """Least gap below which a mesh after the first has so many more rows across [-]."""
 
@@ -95,6 +112,9 @@ class SuppliedOrbit:
     repeat_error: float
     """Change of the least gap from the cycle before, relative; unless it repeats the largest of the last
     three, infinite if there were not two cycles."""
+    mesh_error: float
+    """Error of the least gap by the mesh, from its change, where holes under the load asked for further
+    meshes; else 0, which says nothing of the mesh [-]."""
     drift: float
     """Change of the eccentricity from the cycle before, over the gap, mean over the cycle; likewise."""
     cycles: tuple[int, ...]
@@ -135,6 +155,7 @@ def supplied_orbit(
     meshes: tuple[Meshing, ...] = (COARSE, FINE),
     mass: float = MASS,
     refined: bool = True,
+    near_holes: tuple[Meshing, ...] = (),
 ) -> SuppliedOrbit:
     """March one case until it repeats, or until it is clear that it starves.
 
@@ -157,6 +178,9 @@ def supplied_orbit(
         Mass of the journal m c Omega psi²/(B D eta), c radial [-].
     refined
         Whether meshes after the first follow a thin gap: more cells around, and rows nearer to the edges.
+    near_holes
+        Meshes to march on after these where every pocket stays under the load, for more than `STAYS` of the
+        cycle.
 
     Raises
     ------
@@ -165,23 +189,33 @@ def supplied_orbit(
     """
     duty = Duty(load, np.asarray(sliding, float), supply, mass)
     _require_return(duty)
+    further = near_holes if near_holes and under_load(duty) > STAYS else ()
+    meshes = (*meshes, *further)
     runs: list[Run] = []
     for number, meshing in enumerate(meshes):
         gap = min(runs[-1].gaps, default=0.0) if runs and refined else 1.0
-        around = max(meshing.around, _cells(gap))
+        around = max(meshing.around, _cells(gap, meshing.cells))
         across = meshing.across + (MORE_ROWS if gap < THIN else 0)
-        mesh = supplied_mesh(ratio, around, across, supply.edges, supply.grooved, max(gap, THINNEST))
+        near, finest = supply.grooved or meshing.near_edges, NEAR_EDGES if meshing.near_edges else 1.0
+        mesh = supplied_mesh(ratio, around, across, supply.edges, near, max(gap, THINNEST), finest)
         state = start(mesh, duty) if not runs else transferred(runs[-1].mesh, mesh, runs[-1].states[-1])
         progress = _Progress(number, meshes)
         runs.append(run_in(mesh, duty, state, meshing.step, meshing.most, progress))
         if runs[-1].ending is Ending.THINNING:
             break
-    return _measured(duty, runs)
+    return _measured(duty, runs, mesh_error=_mesh_error(runs) if further else 0.0)
 
 
-def _cells(gap: float) -> int:
-    """Cells around that resolve a gap, in steps of 16."""
-    wanted = 2 * np.pi / (RESOLVED * np.sqrt(2 * max(gap, THINNEST)))
+def _mesh_error(runs: list[Run]) -> float:
+    """Error of the least gap by its change from the last but one mesh; infinite without a cycle there [-]."""
+    if not (len(runs) > 1 and runs[-1].gaps and runs[-2].gaps):
+        return np.inf
+    return REMAINS * abs(runs[-1].gaps[-1] / runs[-2].gaps[-1] - 1)
+
+
+def _cells(gap: float, times: float = 1.0) -> int:
+    """So many times the cells around that resolve a gap, in steps of 16."""
+    wanted = times * 2 * np.pi / (RESOLVED * np.sqrt(2 * max(gap, THINNEST)))
     return int(min(16 * np.ceil(wanted / 16), MOST_AROUND))
 
 
@@ -234,7 +268,7 @@ def _require_return(duty: Duty) -> None:
         )
 
 
-def _measured(duty: Duty, runs: list[Run]) -> SuppliedOrbit:
+def _measured(duty: Duty, runs: list[Run], mesh_error: float = 0.0) -> SuppliedOrbit:
     """What the last cycle was like."""
     run = next((run for run in reversed(runs) if run.gaps), runs[-1])
     mesh, states = run.mesh, run.states[1:] or run.states
@@ -259,6 +293,7 @@ def _measured(duty: Duty, runs: list[Run]) -> SuppliedOrbit:
         least_angle=angle + shift,
         verdict=_verdict(runs[-1], share),
         repeat_error=run.repeat_error,
+        mesh_error=mesh_error,
         drift=run.drift,
         cycles=tuple(len(run.gaps) for run in runs),
         around=mesh.order.size,

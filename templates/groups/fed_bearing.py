@@ -1,0 +1,172 @@
+"""Group: a bearing over a cycle, and the groove and holes that feed it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from templates.core.language.declare import limits
+from templates.core.language.template import (
+    Array,
+    Template,
+    Truth,
+    choice,
+    curve,
+    derived,
+    formula,
+    given,
+    require,
+    shared,
+    text,
+)
+from templates.physics.orbits.cyclic_film import Duty, cycle_length, largest_load, mean_speed
+from templates.physics.supplied.feeding import Feeding, is_back, supply_kind, within_bearing
+
+FED = (
+    "level supplied needs to know how oil comes in: give groove_width, sleeve_hole_length or pin_hole_length "
+    "in mm, and supply_pressure in bar"
+)
+BACK = "let it rest in the frame, turn whole times a cycle, or give a groove of 360 deg"
+
+
+class FedBearing(Template):
+    """Load, speeds and sizes of a bearing over a cycle, and the groove and holes that feed it."""
+
+    theta: Array = curve("deg", "crank angle", symbol=r"\theta", ge=-720, le=1440)
+    F_x: Array = curve("N", "load x")
+    F_y: Array = curve("N", "load y")
+    sense: str = choice(
+        "journal_on_sleeve", "sleeve_on_journal", words="load sense", default="journal_on_sleeve"
+    )
+    omega_J: Array = curve("rpm", "speed", constant=True, also=("journal speed",))
+    omega_B: Array = curve("rpm", "sleeve speed", constant=True, default="0 rpm")
+    omega_F: Array = curve("rpm", "frame speed", constant=True, default="0 rpm")
+    D: Array = given("mm", "bearing diameter", gt=0)
+    W: Array = given("mm", "bearing width", gt=0)
+    c: Array = given("mm", "diametral clearance", gt=0)
+    W_g: Array = given("mm", "groove width", symbol="B_{g}", alternative=True, gt=0)
+    phi_g: Array = given("deg", "groove start", symbol=r"\varphi_{g}", default="0 deg", ge=-360, le=360)
+    ext_g: Array = given("deg", "groove extent", symbol=r"\Delta\varphi_{g}", default="360 deg", gt=0, le=360)
+    l_B: Array = given("mm", "sleeve hole length", symbol="l_{B}", alternative=True, gt=0)
+    phi_B: Array = given("deg", "sleeve hole angle", symbol=r"\varphi_{B}", default="0 deg", ge=-360, le=360)
+    l_J: Array = given("mm", "pin hole length", symbol="l_{J}", alternative=True, gt=0)
+    phi_J: Array = given("deg", "pin hole angle", symbol=r"\varphi_{J}", default="0 deg", ge=-360, le=360)
+    p_s: Array = given("bar", "supply pressure", alternative=True, gt=0)
+
+    @derived("rpm", "crank speed", symbol=r"\Omega", gt=0, remedy="give it where the journal does not turn")
+    def Omega(self) -> Array:
+        """Speed of the crank; the mean of the journal unless it is given."""
+        return mean_speed(self.omega_J)
+
+    @derived("mm", "sleeve hole arc", symbol="a_{B}", gt=0, absent="the sleeve has no hole")
+    def a_B(self) -> Array:
+        """Extent of the hole along the circumference; as its length unless it is given."""
+        return 1 * self.l_B
+
+    @derived("mm", "pin hole arc", symbol="a_{J}", gt=0, absent="the pin has no hole")
+    def a_J(self) -> Array:
+        """Extent of the hole along the circumference; as its length unless it is given."""
+        return 1 * self.l_J
+
+    @require("crank_angle", remedy="12 to 3600 angles, the last point not repeated, no gap in between")
+    def one_cycle(self) -> Truth:
+        """The crank angles rise and cover one cycle of 360° or 720° once."""
+        return bool(np.isfinite(self.period))
+
+    @require("diametral_clearance", "bearing_diameter", remedy="give the clearance as bore minus journal")
+    def clearance_within_bearing(self) -> Truth:
+        """The diametral clearance is smaller than the bearing diameter."""
+        return self.c < self.D
+
+    @require("groove_width", "bearing_width", remedy="give the groove's width in mm, across the bearing")
+    def groove_within_bearing(self) -> Truth:
+        """The groove takes at most 95 % of the bearing's width."""
+        return within_bearing(self.W_g, self.W, self.W_g, self.D)
+
+    @require("sleeve_hole_length", "sleeve_hole_arc", "bearing_width", remedy="give both in mm")
+    def sleeve_hole_within_bearing(self) -> Truth:
+        """The sleeve's hole takes at most 95 % of the bearing's width and goes around once at most."""
+        return within_bearing(self.l_B, self.W, self.a_B, self.D)
+
+    @require("pin_hole_length", "pin_hole_arc", "bearing_width", remedy="give both in mm")
+    def pin_hole_within_bearing(self) -> Truth:
+        """The pin's hole takes at most 95 % of the bearing's width and goes around once at most."""
+        return within_bearing(self.l_J, self.W, self.a_J, self.D)
+
+    @require("supply_pressure", missing=True, remedy="give the pressure above ambient, such as 4 bar")
+    def fed_under_pressure(self) -> Truth:
+        """The supply pressure is known where a groove or a hole feeds oil."""
+        return np.isfinite(self.p_s) | (self.feeding.count == 0)
+
+    @require("sleeve_speed", "frame_speed", remedy=BACK)
+    def sleeve_comes_back(self) -> Truth:
+        """A sleeve with a hole or a groove that ends is back at its place in the frame after the cycle."""
+        return is_back(self.motion, self.omega_B, self.feeding.sleeve_holed | self.feeding.partial())
+
+    @require("speed", "crank_speed", "frame_speed", remedy=BACK)
+    def journal_comes_back(self) -> Truth:
+        """A journal with a hole is back at its place in the frame after the cycle."""
+        return is_back(self.motion, self.omega_J, self.feeding.pin_holed)
+
+    @shared
+    def period(self) -> Array:
+        """The cycle [rad]; NaN where the angles are none."""
+        return cycle_length(self.theta)
+
+    @formula("deg", "cycle", symbol="T")
+    def cycle(self) -> Array:
+        """From the first angle until the load repeats."""
+        return cycle_length(self.theta)
+
+    @formula("1", "relative clearance", symbol=r"\psi")
+    def psi(self) -> Array:
+        """Diametral clearance over bearing diameter."""
+        return self.c / self.D
+
+    @formula(
+        "1", "width ratio", ge=0.02, le=10, remedy="level mobility_short takes 0.01 … 100",
+        per_level={"mobility_short": limits(0.01, 100, published=(None, 0.25))},
+    )  # fmt: skip
+    def b(self) -> Array:
+        """Width over diameter."""
+        return self.W / self.D
+
+    @shared
+    def feeding(self) -> Feeding:
+        """Groove and holes."""
+        return Feeding(
+            self.D, self.W, self.W_g, self.phi_g, self.ext_g,
+            self.l_B, self.a_B, self.phi_B, self.l_J, self.a_J, self.phi_J,
+        )  # fmt: skip
+
+    @formula("1", "inlets", remedy=FED, per_level={"supplied": limits(ge=1)})
+    def inlets(self) -> Array:
+        """How many of groove, sleeve hole and pin hole there are."""
+        return self.feeding.count
+
+    @text("supply")
+    def supply(self) -> str:
+        """The kind of supply."""
+        return supply_kind(self.feeding)
+
+    @formula(
+        "1", "land ratio", symbol="b_{g}", ge=0, absent="no groove is given",
+        remedy="each land beside the groove has at least 2 % of the diameter: give a narrower groove_width",
+        per_level={"mobility_grooved": limits(0.02, 5)},
+    )  # fmt: skip
+    def b_g(self) -> Array:
+        """Width over diameter of each land beside the groove."""
+        return (self.W - self.W_g) / (2 * self.D)
+
+    @formula("N", "largest load", symbol=r"F_{max}")
+    def F_max(self) -> Array:
+        """The largest load of the cycle."""
+        return largest_load(self.F_x, self.F_y)
+
+    @shared
+    def motion(self) -> Duty:
+        """What the bearing has to do, with a load that is not scaled."""
+        sign = 1.0 if self.sense == "journal_on_sleeve" else -1.0
+        return Duty(
+            self.theta, sign * self.F_x, sign * self.F_y, self.omega_J, self.omega_B, self.omega_F,
+            self.Omega, np.asarray(1.0), self.b,
+        )  # fmt: skip

@@ -1,0 +1,363 @@
+"""Oil film of a journal bearing under a load that repeats, fed by grooves and holes, at four levels.
+
+The orbit of the journal, the smallest film and where in the cycle it is, pressure, loss and flow.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from templates.core.language.template import (
+    Array,
+    Truth,
+    formula,
+    given,
+    profile,
+    require,
+    shared,
+    text,
+)
+from templates.groups.fed_bearing import FedBearing
+from templates.physics.numerics.reserve import above, below
+from templates.physics.orbits.cyclic_film import CycleFilm, Duty
+from templates.physics.pads.slider_film import spread
+from templates.physics.supplied.fed_cycle import (
+    BOUNDARY_RELIEVED,
+    FedDuty,
+    FedOrbit,
+    fed_film,
+    fed_orbit,
+    relieved_duty,
+)
+from templates.physics.supplied.feeding import feed_under_load, supply_kind
+
+BOOKER = "Booker 1965"
+STARVED = (
+    "no film repeats, see verdict and verdict_reason. Starved: the oil's inlet stays under the load, see "
+    "feed_under_load, and the film thins from cycle to cycle: move groove or hole. Unsettled: no orbit found"
+)
+UNBORNE = (
+    "no orbit that repeats bears this with a film that can be told: the load may turn at the mean speed of "
+    "journal and sleeve, or be too large"
+)
+UNTOLD = (
+    "below, the load does not say where the journal runs (without any load it runs anywhere); above, no film "
+    "is left"
+)
+MARCHED_ONLY = "level supplied alone follows the oil; a starved film has no flow that repeats"
+UNKNOWN_STEP = "no film repeats, or the gap changes too much from ring to ring to read an error from it"
+MARCH_IT = "take level supplied"
+NO_FEED = "no groove and no hole is given"
+CYCLE = "crank_angle"
+
+
+class OilFilmCycle(FedBearing):
+    """Oil film of a journal bearing under a load that repeats, fed by grooves and holes, at four levels.
+
+    The orbit of the journal by the mobility method, with or without a groove, or by a film that conserves its
+    oil and is fed as an engine feeds it; the smallest film and where in the cycle it is, pressure, loss and
+    flow. Each answer says by which level.
+
+    Limits
+    ------
+    Rigid, aligned, laminar, isothermal film at one viscosity; a journal without mass; plain bore.
+    The load is the force of the journal on the sleeve. bearing_load gives the opposite force, of the sleeve
+    on the journal (rod on crank, frame on crank): say load_sense sleeve_on_journal with it. The wrong sense
+    puts grooves and holes on the wrong side.
+    Axes turn with frame_speed; x turns to y with a positive speed. All speeds are those seen from the
+    engine's block. Load and speeds are linear between the angles.
+    At crank angle 0 the axes of frame, sleeve and journal coincide, as in bearing_load: x, the rod's axis
+    and the throw all point to the cylinder head. Angles of a groove or hole in the sleeve count from the
+    sleeve's (the rod's) axis, those of a hole in the pin from the throw, all in the sense x to y.
+    The angles rise and cover one cycle of 360° or 720°; equal steps are not needed. Time runs with the crank,
+    whose speed is that of the journal, in the mean, unless crank_speed says otherwise.
+    Groove, holes and slots lie midway across and hold oil at the supply pressure, which is above ambient.
+    Level mobility_short: Booker's closed form, itself a fit: its mobility errs by up to 2.6 % to eps 0.5 and
+    7.5 % to 0.9 against the short bearing's half film, which bears too much where B/D exceeds 1/4.
+    Level mobility: the finite bearing's mobility, B/D 0.02 … 10. Both take the film as always full of oil and
+    know no groove; they overstate the film of a half-grooved bearing about twofold.
+    Level mobility_grooved, the default where a groove is given: where the load passes the groove, two lands
+    bear, as a blend over the 90° around the load. What the supply pressure bears at rest, in the groove and
+    evenly falling over its lands, is taken from the load. Always full of oil; holes do not count.
+    Level supplied: conserves the oil, which enters by groove and holes alone. One point at a time, seconds.
+    Where every hole is under the load for more than 60 % of the cycle it goes on, on finer meshes: there the
+    film hangs on what enters at the edges of the holes.
+    Its verdict is repeating, wandering (numerical_error is how far, 3 % at most), or starved or unsettled,
+    which have no film.
+    Boundary conditions differ between the levels and from those of oil_film 2: see boundary_condition.
+    Largest pressure, loss and flow follow from the film under the load along the orbit. Power loss is the
+    shear of the oil by the difference of journal and sleeve speed, and the work of the load on the film.
+    Side flow is what the motion of the journal displaces from the ends; at level supplied also what the
+    supply pressure drives.
+    Rigid and isoviscous: criteria with warnings say where the pressure deforms steel by the clearance, or
+    makes the oil 22 000 times as thick, and where the film is below 0.05 µm.
+    A load number below 1e-4 is refused: with a mean speed of half the crank's, a journal in a four-stroke
+    engine may then whirl as it likes.
+    Two errors are told apart. numerical_error, an output, bounds the error of the smallest film by the step,
+    from three rings. At level supplied it is the change from cycle to cycle; where holes are under the load
+    for more than 60 % of the cycle, three times the change from the last but one mesh is added.
+    The error in the answer is that of the model: how far the level may be from level supplied, a one-sided
+    bound from random duties of the same kind of supply. It is null where fewer than 59 duties support it,
+    where no or several inlets are given, and for pressures.
+
+    References
+    ----------
+    Booker: Journal of Basic Engineering 87, 1965, p. 537; Journal of Lubrication Technology 93, 1971, p. 168.
+    Campbell, Love, Martin, Rafique: Proc. Inst. Mech. Eng. 182 (3A), 1967, p. 51, bearings for engines.
+    Woloszynski, Podsiadlo, Stachowiak: Tribology Letters 58:18, 2015, for mass-conserving cavitation.
+    """
+
+    levels = ("mobility_short", "mobility", "mobility_grooved", "supplied")
+    default_level = "mobility"
+    most_points = {"mobility_short": 20_000, "mobility": 20_000, "mobility_grooved": 20_000, "supplied": 1}
+    precision = 1e-7
+    level_precision = {"supplied": 1e-6}  # its numerical_error is a small difference of films
+    example = {
+        "crank_angle": {"value": [15.0 * k for k in range(24)], "unit": "deg"},
+        "load_x": {
+            "value": [
+                -8.5, -14.4, -13.3, -9.9, -6.9, -5.0, -3.6, -2.2, -0.6, 1.1, 2.5, 3.4,
+                3.7, 3.4, 2.5, 1.1, -0.6, -2.2, -3.4, -4.0, -4.3, -4.4, -4.5, -5.6,
+            ],
+            "unit": "kN",
+        },
+        "load_y": {
+            "value": [
+                0.0, 1.9, 2.9, 3.0, 2.5, 2.1, 1.9, 1.8, 1.7, 1.4, 1.0, 0.5,
+                0.0, -0.5, -1.0, -1.4, -1.7, -1.8, -1.8, -1.6, -1.3, -0.9, -0.5, -0.2,
+            ],
+            "unit": "kN",
+        },
+        "speed": "3000 rpm",
+        "bearing_diameter": "48 mm",
+        "bearing_width": "18 mm",
+        "diametral_clearance": "0.055 mm",
+        "dynamic_viscosity": "10 mPa*s",
+        "groove_width": "3 mm",
+        "groove_start": "-90 deg",
+        "groove_extent": "180 deg",
+        "supply_pressure": "4 bar",
+    }  # fmt: skip
+    criteria = {
+        "film": {
+            "require": "minimum_film_thickness >= permissible_film",
+            "words": "the smallest film of the cycle is not thinner than the permissible one",
+        },
+        "film_exists": {
+            "require": "minimum_film_thickness >= 0.05 um",
+            "words": "the film is not thinner than the finest surfaces are rough",
+            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
+            "warning": "film_too_thin",
+        },
+        "pressure": {
+            "require": "maximum_pressure <= permissible_pressure",
+            "words": "the largest pressure of the cycle is within the permissible one",
+        },
+        "rigid": {
+            "require": "maximum_pressure <= 231 GPa * relative_clearance",
+            "words": "the pressure deforms the steel by less than the clearance",
+            "source": "elasticity: steel deforms by about p D/E' with E' = 210 GPa/(1 - 0.3**2) = 231 GPa",
+            "warning": "pressure_deforms_bearing",
+        },
+        "isoviscous": {
+            "require": "maximum_pressure <= 500 MPa",
+            "words": "the pressure does not make the oil thousands of times thicker",
+            "source": "Barus 1893, 20 1/GPa for mineral oil: at 500 MPa it is e**10 = 22 000 times as thick",
+            "warning": "pressure_thickens_oil",
+        },
+        "specific_load": {
+            "require": "largest_load / (bearing_diameter * bearing_width) <= permissible_specific_load",
+            "words": "the largest load over bore times width is within what the bearing material bears",
+            "limits": {
+                "permissible_specific_load": {
+                    "unit": "MPa",
+                    "words": "largest load over bore times width that the bearing material bears",
+                    "from": "bearing_material",
+                }
+            },
+        },
+        "hole_leaves_the_load": {
+            "require": "feed_under_load <= 0.6",
+            "words": "the oil's only inlet is not under the load for most of the cycle",
+            "source": "98 marched duties: of those below 60 %, every film with oil repeats, see the docs",
+            "warning": "feed_under_load",
+        },
+    }
+
+    eta: Array = given("mPa*s", "dynamic viscosity", gt=0)
+    h_lim: Array = given("um", "permissible film", symbol=r"h_{lim}", alternative=True, ge=0)
+    p_lim: Array = given("MPa", "permissible pressure", symbol=r"p_{lim}", alternative=True, gt=0)
+
+    @require("groove_width", warning="unused_input", remedy="take level mobility_grooved or supplied")
+    def groove_counts(self) -> Truth:
+        """A groove counts at levels mobility_grooved and supplied."""
+        return self.level in ("mobility_grooved", "supplied") or ~self.feeding.grooved
+
+    @require("sleeve_hole_length", warning="unused_input", remedy=MARCH_IT)
+    def sleeve_hole_counts(self) -> Truth:
+        """A hole in the sleeve feeds the film at level supplied alone."""
+        return (self.level == "supplied") | ~self.feeding.sleeve_holed
+
+    @require("pin_hole_length", warning="unused_input", remedy=MARCH_IT)
+    def pin_hole_counts(self) -> Truth:
+        """A hole in the pin feeds the film at level supplied alone."""
+        return (self.level == "supplied") | ~self.feeding.pin_holed
+
+    @require("supply_pressure", warning="unused_input", remedy="leave it out, or see the other warnings")
+    def pressure_counts(self) -> Truth:
+        """The supply pressure counts at level supplied, and where level mobility_grooved has a groove."""
+        counts = self.feeding.grooved if self.level == "mobility_grooved" else self.level == "supplied"
+        return counts | np.isnan(self.p_s)
+
+    @require("permissible_film", warning="below_permissible_film", remedy="see minimum_film_angle")
+    def film_is_permitted(self) -> Truth:
+        """The smallest film is not below the permissible one."""
+        return above(self.h_lim, lambda: self.h_0)
+
+    @require(
+        "permissible_pressure", warning="above_permissible_pressure", remedy="see maximum_pressure_angle"
+    )
+    def pressure_is_permitted(self) -> Truth:
+        """The largest pressure is not above what the bearing's material permits."""
+        return below(self.p_lim, lambda: self.p_max)
+
+    def ladder(self) -> tuple[str, ...]:
+        """The levels that know how the bearing is fed; level supplied only where something feeds it."""
+        grooved = bool(np.any(np.isfinite(self.W_g)))
+        holed = bool(np.any(np.isfinite(self.l_B)) or np.any(np.isfinite(self.l_J)))
+        cheap = ("mobility_grooved",) if grooved else ("mobility_short", "mobility")
+        return (*cheap, "supplied") if grooved or holed else cheap
+
+    def starting_level(self) -> str:
+        """The cheap level that knows the groove, if there is one."""
+        return next(level for level in ("mobility", "mobility_grooved") if level in self.ladder())
+
+    def measured_case(self) -> str:
+        """The kind of supply; none of holes that are under the load for more than a tenth of the cycle."""
+        kind = supply_kind(self.feeding)
+        return kind if kind.endswith("groove") or np.all(self.under_load <= 0.1) else ""
+
+    @formula("1/N", "load scale", symbol="s")
+    def s(self) -> Array:
+        return self.psi**2 / (self.D * self.W * self.eta * self.Omega)
+
+    @formula("1", "load number", symbol=r"S_{max}", ge=1e-4, le=1e6, remedy=UNTOLD, source=BOOKER)
+    def S_max(self) -> Array:
+        return self.F_max * self.s
+
+    @formula("1", "relative supply pressure", symbol=r"\bar p_{s}", absent="no supply pressure is given")
+    def P_s(self) -> Array:
+        return self.p_s * self.psi**2 / (self.eta * self.Omega)
+
+    @shared
+    def duty(self) -> Duty:
+        """What the bearing has to do."""
+        return replace(self.motion, scale=self.s)
+
+    @formula("1", "feed under load", absent=NO_FEED)
+    def under_load(self) -> Array:
+        return feed_under_load(self.motion, self.feeding)
+
+    @shared
+    def fed(self) -> FedDuty:
+        """The same with what feeds it, and what its pressure bears in a groove."""
+        return relieved_duty(self.duty, self.feeding, self.P_s)
+
+    @shared
+    def any_orbit(self) -> FedOrbit:
+        """The orbit at this level, wherever it leads."""
+        return fed_orbit(self.level, self.fed)
+
+    @formula(
+        "1", "maximum eccentricity", symbol=r"\epsilon_{max}", lt=1, absent=STARVED, remedy=UNBORNE,
+        assumes=("b", "b_g", "inlets", "S_max"),
+    )  # fmt: skip
+    def eps_max(self) -> Array:
+        return self.any_orbit.eps_max
+
+    @shared
+    def orbit(self) -> FedOrbit:
+        """The orbit, where it bears the load."""
+        return self.any_orbit.admitted(self.eps_max)
+
+    @shared
+    def film(self) -> CycleFilm:
+        """Pressure, loss and flow along the orbit."""
+        return fed_film(self.level, self.fed, self.orbit)
+
+    @text("boundary condition")
+    def boundary(self) -> str:
+        return self.boundary_of_level
+
+    @shared
+    def boundary_of_level(self) -> str:
+        """What the level takes for the pressure at the film's borders."""
+        return BOUNDARY_RELIEVED[self.level]
+
+    @formula("um", "minimum film thickness", symbol=r"h_{0}", source=BOOKER, absent=STARVED)
+    def h_0(self) -> Array:
+        return self.c * (1 - self.eps_max) / 2
+
+    @formula("deg", "minimum film angle", symbol=r"\theta_{h}", absent=STARVED)
+    def theta_h(self) -> Array:
+        return self.orbit.angle
+
+    @profile("um", "film thickness", along=CYCLE, symbol="h", absent=STARVED,
+             latex=r"\frac{c}{2}\left(1-\epsilon\right)")  # fmt: skip
+    def h(self) -> Array:
+        return spread(self.c / 2, self.orbit.gap)
+
+    @profile("1", "eccentricity x", along=CYCLE, symbol=r"\epsilon_{x}", source=BOOKER, absent=STARVED)
+    def eps_x(self) -> Array:
+        return self.orbit.eps_x
+
+    @profile("1", "eccentricity y", along=CYCLE, symbol=r"\epsilon_{y}", source=BOOKER, absent=STARVED)
+    def eps_y(self) -> Array:
+        return self.orbit.eps_y
+
+    @profile("MPa", "peak pressure", along=CYCLE, symbol=r"\hat{p}", absent=STARVED,
+             latex=r"\frac{\eta\,\Omega}{\psi^{2}}\,P\left(\theta\right)")  # fmt: skip
+    def p(self) -> Array:
+        return spread(self.eta * self.Omega / self.psi**2, self.film.P)
+
+    @formula("MPa", "maximum pressure", symbol=r"p_{max}", absent=STARVED)
+    def p_max(self) -> Array:
+        return self.film.P_max * self.eta * self.Omega / self.psi**2
+
+    @formula("deg", "maximum pressure angle", symbol=r"\theta_{p}", absent=STARVED)
+    def theta_p(self) -> Array:
+        return self.film.P_angle
+
+    @formula("W", "power loss", symbol="P", absent=STARVED)
+    def P(self) -> Array:
+        return self.film.loss * self.W * self.D**2 * self.eta * self.Omega**2 / (2 * self.psi)
+
+    @formula("l/min", "side flow", symbol="Q", absent=STARVED)
+    def Q(self) -> Array:
+        return self.film.side_flow * self.W * self.D * self.c * self.Omega / 2
+
+    @formula("1", "numerical error", symbol=r"\delta_{n}", absent=UNKNOWN_STEP)
+    def numerical_error(self) -> Array:
+        return self.orbit.numerical_error
+
+    @text("verdict", absent=MARCHED_ONLY)
+    def verdict(self) -> str:
+        return self.any_orbit.verdict
+
+    @text("verdict reason", absent="a film repeats, or the level does not follow the oil")
+    def why(self) -> str:
+        return self.any_orbit.reason
+
+    @formula("1", "cycles run", symbol="n_{c}", absent=MARCHED_ONLY)
+    def cycles(self) -> Array:
+        return self.any_orbit.cycles
+
+    @formula("1", "mass balance", symbol=r"\delta_{m}", absent=MARCHED_ONLY)
+    def mass_balance(self) -> Array:
+        return self.any_orbit.mass_balance
+
+    @formula("l/min", "supply flow", symbol="Q_{s}", absent=MARCHED_ONLY)
+    def Q_s(self) -> Array:
+        return self.any_orbit.feed * self.W * self.D * self.c * self.Omega / 2

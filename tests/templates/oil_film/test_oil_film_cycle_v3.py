@@ -1,0 +1,138 @@
+"""What `oil_film_cycle` 3 changes: the load that a groove's pressure bears, holes under the load, warnings.
+
+Analytic: the pressure integrated by hand, a load that is less by as much. What it shares with version 2 is
+tested there.
+"""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from templates.core.language.evaluate import evaluate
+from templates.oil_film.oil_film_cycle_v2 import OilFilmCycle as SecondVersion
+from templates.oil_film.oil_film_cycle_v3 import OilFilmCycle
+from templates.physics.orbits.grooved_mobility import Groove, lift_of, lifting
+from templates.physics.orbits.turning import Turning
+
+D, PSI, ETA, OMEGA, RATIO = 0.1, 1e-3, 0.02, 300.0, 0.5
+COUNT = 72
+ANGLE = np.arange(COUNT) * 2 * np.pi / COUNT
+SCALE = ETA * OMEGA * D * D * RATIO / PSI**2
+X, Y = 2 + 3 * np.exp(6 * (np.cos(ANGLE - 0.4) - 1)) + 0.5 * np.cos(2 * ANGLE), np.sin(ANGLE)
+PRESSURE = 3e5
+P_S = PRESSURE * PSI**2 / (ETA * OMEGA)
+FULL = {"groove_width": "10 mm", "supply_pressure": "3 bar"}
+HALF = {**FULL, "groove_start": "-90 deg", "groove_extent": "180 deg"}
+PIN = {"pin_hole_length": "5 mm", "supply_pressure": "3 bar"}
+FILM = ("minimum_film_thickness", "film_thickness", "maximum_pressure", "power_loss", "side_flow")
+
+
+def si(value, unit):
+    return {"value": np.asarray(value, dtype=float).tolist(), "unit": unit}
+
+
+def inputs(x, y, **changes):
+    x, y = (np.broadcast_to(np.asarray(v, dtype=float), (COUNT,)) for v in (x, y))
+    return {
+        "crank_angle": si(np.degrees(ANGLE), "deg"),
+        "load_x": si(x * SCALE, "N"),
+        "load_y": si(y * SCALE, "N"),
+        "speed": si(OMEGA, "rad/s"),
+        "bearing_diameter": si(D, "m"),
+        "bearing_width": si(D * RATIO, "m"),
+        "diametral_clearance": si(D * PSI, "m"),
+        "dynamic_viscosity": si(ETA, "Pa*s"),
+        **changes,
+    }
+
+
+def outputs(raw, version=OilFilmCycle, level=None):
+    return {name: answer.value for name, answer in evaluate(version, raw, level=level).outputs.items()}
+
+
+def unused(raw, level=None):
+    warnings = evaluate(OilFilmCycle, raw, level=level).warnings
+    return {warning.name for warning in warnings if warning.code == "unused_input"}
+
+
+class TestLift:
+    @pytest.mark.parametrize("extent", [0.3, np.pi / 2, np.pi, 4.0, 2 * np.pi])
+    def test_analytic_lift_is_the_pressure_over_groove_and_lands(self, extent):
+        """p falls evenly over the lands: its mean over the width is p (1 + g)/2, at every angle."""
+        share, pressure = 0.2, 0.5
+        across = 2 * quad(lambda z: min(1.0, (1 - z) / (1 - share)), 0, 1, points=[share])[0] / 2
+        along = quad(lambda angle: np.cos(angle) / 2, -extent / 2, extent / 2)[0]
+        lift = lift_of(np.array(share), np.array(extent), np.array(pressure))
+        assert float(lift) == pytest.approx(pressure * across * along, abs=1e-9)
+
+    def test_analytic_no_groove_lifts_nothing(self):
+        assert float(lift_of(np.array(0.0), np.array(np.pi), np.array(np.nan))) == 0
+
+    def test_analytic_force_comes_out_of_the_groove_and_turns_with_the_sleeve(self):
+        angle = np.array([0.0, np.pi / 2, np.pi])
+        sleeve = Turning(np.array([1.0]), 2 * np.pi, np.zeros((1, 3)))
+        groove = Groove(np.array([0.2]), np.array([-np.pi / 2]), np.array([np.pi]))
+        force = lifting(np.array([2.0]), sleeve, groove, angle)
+        assert force[:, 0] == pytest.approx(np.array([[2, 0, -2], [0, 2, 0]]), abs=1e-12)
+
+    def test_analytic_groove_under_a_load_bears_a_part_of_it(self):
+        """The same film as version 2 under a load that is less by the lift."""
+        lift = float(lift_of(np.array(0.2), np.array(np.pi), np.array(P_S)))
+        assert lift > 0.02
+        three, two = outputs(inputs(X, Y, **HALF)), outputs(inputs(X - lift, Y, **HALF), SecondVersion)
+        for name in FILM:
+            assert three[name] == pytest.approx(two[name], rel=1e-9), name
+
+    def test_analytic_groove_all_around_and_no_groove_are_as_in_version_2(self):
+        for raw in (inputs(X, Y, **FULL), inputs(X, Y)):
+            three, two = outputs(raw), outputs(raw, SecondVersion)
+            for name in FILM:
+                assert three[name] == pytest.approx(two[name], rel=1e-9), name
+
+    def test_property_more_pressure_under_a_constant_load_means_more_film(self):
+        films = [
+            outputs(inputs(3.0, 0.0, **HALF | {"supply_pressure": f"{bar} bar"}))["minimum_film_thickness"]
+            for bar in (1, 5, 20)
+        ]
+        assert films[0] < films[1] < films[2]
+
+    def test_property_many_points_at_once(self):
+        raw = inputs(X, Y, **HALF)
+        pressures = [1.0, 4.0, 9.0]
+        many = outputs(raw | {"supply_pressure": si(pressures, "bar")})
+        for k, bar in enumerate(pressures):
+            alone = outputs(raw | {"supply_pressure": f"{bar} bar"})
+            for name in FILM:
+                assert many[name][k] == pytest.approx(alone[name], rel=1e-9), name
+
+
+class TestWarnings:
+    def test_property_inputs_that_a_level_does_not_read_are_named(self):
+        assert unused(inputs(X, Y, **HALF)) == set()
+        assert unused(inputs(X, Y, **HALF), "mobility") == {"groove_width", "supply_pressure"}
+        assert unused(inputs(X, Y, **PIN)) == {"pin_hole_length", "supply_pressure"}
+        assert unused(inputs(X, Y, **PIN | HALF)) == {"pin_hole_length"}
+        assert unused(inputs(X, Y)) == set()
+
+
+class TestSupplied:
+    """Half of the angles, and loads that repeat fast, keep these short."""
+
+    @pytest.mark.slow
+    def test_analytic_hole_that_is_seldom_under_the_load_is_as_in_version_2(self):
+        raw = inputs(X, Y, **PIN, pin_hole_angle="180 deg")
+        three, two = outputs(raw, level="supplied"), outputs(raw, SecondVersion, level="supplied")
+        assert three["feed_under_load"] <= 0.6
+        for name in (*FILM, "numerical_error", "cycles_run"):
+            assert three[name] == pytest.approx(two[name], rel=1e-9), name
+
+    @pytest.mark.slow
+    def test_convergence_hole_under_the_load_goes_on_to_finer_meshes(self):
+        raw = inputs(X, Y, sleeve_hole_length="10 mm", sleeve_hole_angle="20 deg", supply_pressure="3 bar")
+        three, two = outputs(raw, level="supplied"), outputs(raw, SecondVersion, level="supplied")
+        assert three["feed_under_load"] > 0.6
+        assert three["verdict"] == "repeating"
+        assert three["cycles_run"] > two["cycles_run"]
+        change = abs(three["minimum_film_thickness"] / two["minimum_film_thickness"] - 1)
+        assert 0 < change < 0.1
+        assert 1e-5 < three["numerical_error"] < 0.1
