@@ -12,6 +12,10 @@ from app.api.services import Services
 from app.api.threads import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import Approving
+from app.brought.programs import assembled as assembled_programs
+from app.brought.service import IMPORT as MODEL_IMPORT
+from app.brought.service import ModelImports
+from app.brought.shelf import Shelf
 from app.calculations.assembly import Calculations, assemble_calculations
 from app.calculations.cache import results
 from app.calculations.jobs import CALCULATION, SOLUTION, TOLERANCE
@@ -100,10 +104,15 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     sealer = Sealer(database)
     sealer.start()
     stack.callback(sealer.stop)
+    shelf = Shelf(database, catalogues, is_shared=database.is_shared)
+    shelf.start()
+    stack.callback(shelf.stop)
     published = published_worksheets(database, catalogues, stack)
     calculations = assemble_calculations(settings, stack, catalogues, database, store, jobs, NETWORK, SHEETS)
     recent = Recent()
-    builds = Builds(database, store)
+    programs = assembled_programs(settings, store)
+    stack.callback(programs.close)
+    builds = Builds(database, store, programs)
     analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
     register_jobs(jobs, builds, analysing, catalogues, calculations, recent)
     about = database, catalogues, store, jobs, calculations.steps
@@ -118,6 +127,8 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     worksheets = Worksheets(database, catalogues, calculations.pool, published)
     imports = Imports(database, store, jobs, catalogues, worksheets)
     jobs.register(IMPORT, imports, imports.failed)
+    model_imports = ModelImports(database, store, jobs, catalogues, programs, shelf)
+    jobs.register(MODEL_IMPORT, model_imports, model_imports.failed)
     jobs.start({**calculations.lanes, **LANES})
     stack.callback(jobs.stop)
     models = Models(database, store, jobs, catalogues)
@@ -145,6 +156,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
         variant_details=variant_details,
         impacts=impacts,
         models=models,
+        model_imports=model_imports,
         analyses=analyses,
         healing=Healing(database, store, models, analyses),
         approving=Approving(database, store),

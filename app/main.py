@@ -26,6 +26,7 @@ from app.api.routes import health
 from app.api.routes.analyses import router as analyses
 from app.api.routes.approvals import router as approvals
 from app.api.routes.audit import router as audit
+from app.api.routes.brought_models import router as brought_models
 from app.api.routes.calculations import router as calculations
 from app.api.routes.calculations import worksheets
 from app.api.routes.catalogue import router as faults
@@ -106,6 +107,7 @@ ROUTERS = (
     design_events,
     study_tables,
     studies,
+    brought_models,
     models,
     analyses,
     jobs,
@@ -115,7 +117,8 @@ ROUTERS = (
 )
 """They are tried one after another; that of `evaluate`, which is called most, is the first.
 
-Reports come before variants: `…/variants/report.pdf` is not a variant.
+Reports come before variants: `…/variants/report.pdf` is not a variant. Imports of models come before models:
+`/models/import` is not one.
 """
 
 

@@ -66,6 +66,13 @@ class Settings(BaseSettings):
     template_seconds: float = Field(
         30.0, gt=0, description="longest time in which a team's file is loaded and checked [s]"
     )
+    freecad: Path | None = Field(
+        None, description="folder of FreeCAD's modules; where Linux distributions have it if not given"
+    )
+    freecad_python: str = Field(
+        "/usr/bin/python3",
+        description="the Python that FreeCAD was built for: it draws models in .FCStd files",
+    )
     wait_seconds: float = Field(2.0, ge=0, description="how long an answer waits for its job [s]")
     queue_limit: int = Field(1000, gt=0, description="jobs that may be queued before new ones are refused")
     client_queue_limit: int = Field(50, gt=0, description="jobs of one client that may be queued")

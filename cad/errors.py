@@ -28,6 +28,21 @@ class UnreadableStep(ValueError):
     """Bytes that are not a STEP file, or one without a shape."""
 
 
+class UnreadableModel(ValueError):
+    """A file of a model that is not opened; `code` says why. It survives pickling."""
+
+    def __init__(self, code: str, detail: str) -> None:
+        self.code, self.detail = code, detail
+        super().__init__(code, detail)
+
+    def __str__(self) -> str:
+        return self.detail
+
+
+class ProgramMissing(GeometryError):
+    """A program that draws is not installed here, or not reachable; the detail says how to have it."""
+
+
 class AnalysisError(Exception):
     """A solid that cannot be analysed as requested.
 

@@ -37,7 +37,7 @@ from templates.core.errors import InvalidInputs
 
 __all__ = [
     "Build", "as_quantities", "as_text", "build_key", "made_by", "regenerate", "regenerate_class",
-    "regenerate_from_text",
+    "regenerate_from_text", "regenerate_shape",
 ]  # fmt: skip
 
 Value = float | str | list[float]
@@ -168,7 +168,13 @@ def regenerate_from_text(
 
 def regenerate_class(cls: type[CadModel], texts: Mapping[str, str], *, report: Report = ignore) -> Build:
     """Build a model of a class from its parameters as `as_text` writes them; raises as `regenerate` does."""
-    model, key = cls.from_quantities(texts), _key(cls, texts)
+    return regenerate_shape(cls.from_quantities(texts), texts, report=report)
+
+
+def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Report = ignore) -> Build:
+    """Build a model, of which these are the parameters as `as_text` writes them; raises as `regenerate`."""
+    cls = type(model)
+    key = _key(cls, texts)
     with _kernel(model):
         report(0.0, "building")
         parts = model.build()

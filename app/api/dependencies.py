@@ -20,6 +20,7 @@ from app.api.services import Services
 from app.api.threads import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import Approving
+from app.brought.service import ModelImports
 from app.calculations.steps import Caller, call_as
 from app.catalogue.catalogues import Catalogues
 from app.designs.asking import Asking
@@ -81,6 +82,7 @@ TheTolerances = Annotated[Asking[ToleranceAnalysis], Depends(_part("tolerances")
 TheVariantDetails = Annotated[VariantDetails, Depends(_part("variant_details"))]
 TheImpacts = Annotated[Impacts, Depends(_part("impacts"))]
 TheModels = Annotated[Models, Depends(_part("models"))]
+TheModelImports = Annotated[ModelImports, Depends(_part("model_imports"))]
 TheAnalyses = Annotated[Analyses, Depends(_part("analyses"))]
 TheHealing = Annotated[Healing, Depends(_part("healing"))]
 TheApproving = Annotated[Approving, Depends(_part("approving"))]

@@ -19,12 +19,14 @@ from app.api.reading import (
     NotCsv,
     NotForm,
     NotJson,
+    NotModel,
     NotSheet,
     NotStep,
     PreconditionRequired,
     TooIntricate,
 )
 from app.approvals import errors as approvals
+from app.brought.errors import ModelIdTaken
 from app.calculations.errors import InvalidBody, NoArray, TooManyValues
 from app.designs import errors as designs
 from app.identity import errors as identity
@@ -38,7 +40,7 @@ from app.studies.errors import RowsLost
 from app.workers import errors as workers
 from app.worksheets import errors as worksheets
 from app.worksheets.importing.errors import SheetNotRead
-from cad.errors import AnalysisError, GeometryError, UnreadableStep
+from cad.errors import AnalysisError, GeometryError, ProgramMissing, UnreadableModel, UnreadableStep
 from templates.core import errors as templates
 from templates.library.tables import UnknownTable
 
@@ -121,6 +123,9 @@ TABLE: dict[type[Exception], Kind] = {
     NotSheet: Kind(
         "not-sheet", 415, "The body is not said to be a file", "send the file as application/octet-stream"
     ),
+    NotModel: Kind(
+        "not-model", 415, "The body is not said to be a file", "send the file as application/octet-stream"
+    ),
     NotStep: Kind("not-step", 415, "The body is not said to be STEP", "send the file as model/step"),
     NotForm: Kind("not-a-form", 415, "The body is not a form", "send application/x-www-form-urlencoded"),
     BadHost: Kind("bad-host", 400, "The request names no host", "send one header Host, and the path alone"),
@@ -187,6 +192,11 @@ TABLE: dict[type[Exception], Kind] = {
     ),
     RowsLost: REBUILDING,
     storage.StorageError: Kind("storage", 503, "The storage is not available", "retry; ask the operator"),
+    ProgramMissing: Kind(
+        "program-missing", 503, "The program that draws the model is not here", "install it; see `detail`"
+    ),
+    UnreadableModel: Kind("unreadable-model", 422, "The file is not taken as a model", "see `detail`"),
+    ModelIdTaken: Kind("model-id-taken", 409, "The id is taken", "choose another id; see `detail`"),
     GeometryError: Kind("geometry", 422, "No sound solid came out", "change the parameters in `errors`"),
     AnalysisError: Kind(
         "analysis", 422, "The solid could not be analysed", "see `errors`; fillets and less accuracy help"

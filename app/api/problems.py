@@ -29,7 +29,7 @@ from app.storage.errors import CannotRebuild
 from app.studies.errors import RowsLost
 from app.workers import errors as workers
 from app.worksheets import errors as worksheets
-from cad.errors import AnalysisError, GeometryError
+from cad.errors import AnalysisError, GeometryError, UnreadableModel
 from templates.core import errors as templates
 
 logger = logging.getLogger(__name__)
@@ -110,6 +110,7 @@ _CARRIED: dict[type[Exception], Callable[..., dict[str, object]]] = {
     InvalidBody: _validation,
     templates.Unreachable: _unreachable,
     GeometryError: _geometry,
+    UnreadableModel: lambda error: {"errors": [{"name": "file", "code": error.code, "detail": error.detail}]},
     AnalysisError: lambda error: {
         "errors": [{"name": error.name, "code": error.code, "detail": error.detail}]
     },

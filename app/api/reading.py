@@ -27,6 +27,8 @@ STEP_TYPES = ("model/step", "application/step", "application/p21")
 """The registered name of STEP's clear text, and two that were in use before it."""
 SHEET_TYPES = {"application/octet-stream", "application/zip", "application/xml", "text/xml"}
 """How a sheet of Mathcad may be sent: its own media types are not registered."""
+MODEL_TYPES = {"application/octet-stream", "application/zip", "model/step"}
+"""How a model may be sent: FreeCAD's own media type is not registered."""
 FORM_TYPES = {"application/x-www-form-urlencoded"}
 MOST_BRACKETS, MOST_QUOTES = 250_000, 400_000
 """In one body. A list of numbers has one bracket; millions of them keep the parser, and the server, busy."""
@@ -66,6 +68,10 @@ class NotStep(HttpError):
 
 class NotSheet(HttpError):
     """The content type is not one under which a sheet of Mathcad is sent."""
+
+
+class NotModel(HttpError):
+    """The content type is not one under which a model is sent."""
 
 
 class PreconditionRequired(HttpError):
@@ -216,6 +222,17 @@ def require_sheet(request: Request) -> None:
         If the content type is another, or missing.
     """
     _require_type(request, SHEET_TYPES, NotSheet, "the file itself as application/octet-stream")
+
+
+def require_model(request: Request) -> None:
+    """Refuse a body that is said to be something else than a file of a model.
+
+    Raises
+    ------
+    NotModel
+        If the content type is another, or missing.
+    """
+    _require_type(request, MODEL_TYPES, NotModel, "the file itself as application/octet-stream")
 
 
 async def _read(request: StrictRequest) -> object:

@@ -10,6 +10,7 @@ from app.api.readiness import Readiness
 from app.api.threads import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import Approving
+from app.brought.service import ModelImports
 from app.calculations.pool import CalculationPool
 from app.calculations.steps import Steps
 from app.catalogue.catalogues import Catalogues
@@ -63,6 +64,7 @@ class Services:
     variant_details: VariantDetails
     impacts: Impacts
     models: Models
+    model_imports: ModelImports
     analyses: Analyses
     healing: Healing
     approving: Approving

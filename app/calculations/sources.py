@@ -8,6 +8,8 @@ from functools import lru_cache
 from pathlib import Path
 
 import templates
+from cad.brought import BroughtModel
+from cad.brought import class_of as class_of_description
 from templates.core.catalogue.finding import declared_in, declared_in_file
 from templates.core.catalogue.loading import load, origin
 from templates.core.language.template import Template
@@ -39,11 +41,22 @@ class SheetSource:
     withdrawn: str | None
 
 
-Source = FileSource | SheetSource
+@dataclass(frozen=True)
+class BroughtSource:
+    """The description of a model that a team has brought, of which every process makes the class."""
+
+    id: str
+    version: int
+    text: str
+
+
+Source = FileSource | SheetSource | BroughtSource
 
 
 def source_of(cls: type[Template]) -> Source:
     """The source of a template, with the code that this process calculates by."""
+    if issubclass(cls, BroughtModel):
+        return BroughtSource(cls.id, cls.version, cls.brought.text)
     if cls.sheet is not None:
         return SheetSource(cls.id, cls.version, cls.sheet.text, cls.withdrawn)
     module, path = inspect.getmodule(cls), inspect.getfile(cls)
@@ -64,6 +77,8 @@ def loaded(source: Source) -> type[Template]:
     SheetRefused
         If a worksheet has faults.
     """
+    if isinstance(source, BroughtSource):
+        return class_of_description(source.text, source.id, source.version)
     if isinstance(source, SheetSource):
         return class_of(source)
     path = Path(_PROGRAM, source.path)

@@ -9,7 +9,7 @@ import asyncio
 import logging
 import threading
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
@@ -18,7 +18,7 @@ from pathlib import Path
 from app.catalogue.checking import Check
 from app.catalogue.finding import find_templates
 from app.catalogue.sheets import Key, ReleasedSheet, Sheets
-from app.catalogue.team import Snapshot, TeamFile, TeamFiles, joined, merged
+from app.catalogue.team import Snapshot, TeamFile, TeamFiles, joined, merged, with_models
 from app.workers.errors import WorkerError
 from cad.catalogue import models as find_models
 from cad.model import CadModel
@@ -42,6 +42,7 @@ class Catalogues:
     def __init__(self, templates: Catalogue[Template], models: Catalogue[CadModel]) -> None:
         self.files = self.snapshot = Snapshot(templates, models)
         self._sheets = Sheets()
+        self._brought: Mapping[Key, type[CadModel]] = {}
         self._drafts: Drafts = _no_drafts
         self._joining = threading.Lock()
 
@@ -63,7 +64,16 @@ class Catalogues:
         """Let these worksheets stand among the templates from now on."""
         with self._joining:
             self._sheets, self._drafts = sheets, drafts
-            self.snapshot = joined(self.files, sheets)
+            self._join()
+
+    def bring(self, models: Mapping[Key, type[CadModel]]) -> None:
+        """Let these models stand among those of files from now on."""
+        with self._joining:
+            self._brought = models
+            self._join()
+
+    def _join(self) -> None:
+        self.snapshot = with_models(joined(self.files, self._sheets), self._brought)
 
     def to_try(self, id: str, version: int) -> type[Template]:
         """A version, or the draft of a worksheet as it is now: for what is calculated and not kept.
@@ -95,7 +105,8 @@ class Catalogues:
     def _take(self, files: Snapshot) -> None:
         """Take notice of other files."""
         with self._joining:
-            self.files, self.snapshot = files, joined(files, self._sheets)
+            self.files = files
+            self._join()
 
     async def refresh(self) -> None:
         """Take notice of files that have changed; nothing changes here."""

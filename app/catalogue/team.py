@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -210,6 +210,14 @@ def joined(files: Snapshot, sheets: Sheets) -> Snapshot:
     )
     settled = (file.refused(_worksheets(file)) if _collides(file, sheets) else file for file in files.files)
     return Snapshot(templates, files.models, tuple(settled), sheets)
+
+
+def with_models(files: Snapshot, brought: Mapping[Key, type[CadModel]]) -> Snapshot:
+    """The models of files, and those that a team has brought; a file does not stand in for one of these."""
+    if not brought:
+        return files
+    versions = dict(sorted({**files.models.versions, **brought}.items()))
+    return replace(files, models=replace(files.models, versions=versions))
 
 
 def _collides(file: TeamFile, sheets: Sheets) -> bool:

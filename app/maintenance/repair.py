@@ -89,6 +89,8 @@ class Repair:
             return "the service calculates the rows again when they are read; a table that was sent is lost"
         if row.kind == "import":
             return "the worksheet is kept as text; the file that it was imported from is lost"
+        if row.kind == "model":
+            return "it is the file of a brought model: restore it from a backup, or import it again"
         try:
             if row.kind == "answer":
                 self._answer(row)

@@ -16,7 +16,7 @@ class Named:
     sha: str
     size: int | None  # None where the row does not say it
     owner: str  # the key of the build or the analysis, or the id of the job, the study or the worksheet
-    kind: str  # step, png, …; or surface, body, answer, rows, import
+    kind: str  # step, png, …; or surface, body, answer, rows, import, model
 
 
 class Rows(Protocol):
@@ -41,9 +41,13 @@ def named_files(connection: Rows) -> Iterator[Named]:
     if _has_table(connection, "study"):
         for id, sha in connection.execute(STUDIES):
             yield Named(sha, None, id, "rows")
-    if _has_table(connection, "worksheet_version"):
-        for id, sha in connection.execute(IMPORTS):
-            yield Named(sha, None, id, "import")
+    yield from _files_that_were_sent(connection)
+
+
+def _files_that_were_sent(connection: Rows) -> Iterator[Named]:
+    for table, query, kind in SENT:
+        if _has_table(connection, table):
+            yield from (Named(sha, None, id, kind) for id, sha in connection.execute(query))
 
 
 CALCULATIONS = "SELECT id, payload, result FROM job WHERE kind IN ('calculation', 'preview')"
@@ -53,7 +57,13 @@ STUDIES = """
     UNION ALL SELECT study_id, sha256 FROM study_chunk"""
 
 
+BROUGHT = """
+    SELECT id, file_sha256 FROM brought_model UNION SELECT id, sent_sha256 FROM brought_model"""
+
 IMPORTS = "SELECT id, import_sha256 FROM worksheet_version WHERE import_sha256 IS NOT NULL"
+
+SENT = (("worksheet_version", IMPORTS, "import"), ("brought_model", BROUGHT, "model"))
+"""Files that users sent: the table that names them, by which query, and their kind."""
 
 
 def _files_of_calculation(id: str, payload: dict[str, str], result: str | None) -> Iterator[Named]:

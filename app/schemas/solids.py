@@ -42,6 +42,9 @@ class Measurements(Answer):
     materials: dict[str, str] | None = Field(
         None, description="of every part, with its density; builds of an older recipe do not have it"
     )
+    trust: str | None = Field(
+        None, description="of a brought model: which checks the solid passed, and which it does not have"
+    )
 
 
 class Build(Answer):

@@ -12,7 +12,9 @@ from collections.abc import Callable, Iterable, Mapping
 
 from sqlalchemy.orm import Session
 
+from app.brought.programs import Programs
 from app.calculations.sources import Source, loaded, source_of
+from app.plain import JsonObject
 from app.solids import measures, rows
 from app.solids.ages import is_fresh, renew
 from app.solids.shapes import built_by_another, shape_of
@@ -21,6 +23,8 @@ from app.storage.database import Database
 from app.storage.errors import CannotRebuild
 from app.storage.tables import ArtifactRow
 from app.workers.base import Runner
+from cad.brought import BroughtModel, Drawn, brought
+from cad.errors import ProgramMissing
 from cad.export import DRAWINGS, derive
 from cad.model import CadModel
 from cad.regenerate import (
@@ -30,6 +34,7 @@ from cad.regenerate import (
     made_by,
     regenerate,
     regenerate_class,
+    regenerate_shape,
 )
 from cad.stamp import takes_stamp
 from templates.core.catalogue.finding import Catalogue
@@ -43,8 +48,8 @@ STEP = "step"
 class Builds:
     """Makes builds in a worker process and records them with their STEP files."""
 
-    def __init__(self, database: Database, store: Artifacts) -> None:
-        self.database, self.store = database, store
+    def __init__(self, database: Database, store: Artifacts, programs: Programs | None = None) -> None:
+        self.database, self.store, self.programs = database, store, programs
 
     def make(self, shape: CadModel, context: Runner) -> None:
         """Build a model unless it is built already and its STEP file is good.
@@ -61,12 +66,23 @@ class Builds:
         row = self._row(build_key(shape), STEP)
         if row and self.store.exists(row.sha256) and self.keep([shape]):
             return
-        build = context.run(build_in_worker, source_of(type(shape)), as_text(shape))
+        build = self._built(shape, context)
         if row and hashlib.sha256(build.step).hexdigest() != row.sha256:
             raise _changed(shape, row)
         sha = self.store.put(build.step)
         if row is None:
             self.database.write(lambda session: self._record(session, shape, build, sha))
+
+    def _built(self, shape: CadModel, context: Runner) -> Build:
+        """The build of a model; a brought one is drawn by its program first."""
+        source, texts = source_of(type(shape)), as_text(shape)
+        if not isinstance(shape, BroughtModel):
+            return context.run(build_in_worker, source, texts)
+        if self.programs is None:
+            raise ProgramMissing(
+                "program_missing", f"{shape.id} is drawn by the service, not by this command"
+            )
+        return context.run(build_drawn_in_worker, source, texts, self.programs.draw(shape, context))
 
     def keep(self, shapes: Iterable[CadModel]) -> bool:
         """Keep builds for as long as the job that counts on them runs; return whether all are there."""
@@ -130,7 +146,13 @@ class Builds:
         parameters = measures.parameters(shape)
         units = {name: declared.meaning.unit for name, declared in shape.inputs.items()}
         dimensions = {n: {"value": value, "unit": units[n]} for n, value in build.dimensions.items()}
-        measured = {"measures": build.measures, "dimensions": dimensions, "materials": build.materials}
+        measured: JsonObject = {
+            "measures": build.measures,
+            "dimensions": dimensions,
+            "materials": build.materials,
+        }
+        if described := brought(type(shape)):
+            measured["trust"] = described.trust
         rows.add_build(
             session, build.key, build.model, build.version, parameters, measured, made_by(type(shape))
         )
@@ -159,6 +181,14 @@ def build_in_worker(source: Source, texts: Mapping[str, str]) -> Build:
     cls = loaded(source)
     assert issubclass(cls, CadModel), "the source is that of a model"
     return regenerate_class(cls, texts, report=report)
+
+
+def build_drawn_in_worker(source: Source, texts: Mapping[str, str], drawn: Drawn) -> Build:
+    """The build of what a program drew, checked like any other; runs in the worker's process."""
+    shape = loaded(source).from_quantities(texts)
+    assert isinstance(shape, BroughtModel), "the source is that of a brought model"
+    shape.take(drawn)
+    return regenerate_shape(shape, texts, report=report)
 
 
 def rehearse(called: Callable[[], bool]) -> None:

@@ -19,7 +19,10 @@ def parameters(shape: CadModel) -> JsonObject:
 
 
 def measurements(
-    measures: Mapping[str, float], dimensions: Mapping[str, Json], materials: Mapping[str, str] | None = None
+    measures: Mapping[str, float],
+    dimensions: Mapping[str, Json],
+    materials: Mapping[str, str] | None = None,
+    trust: str | None = None,
 ) -> Measurements:
     """The measurements of a solid; builds of an older recipe have fewer."""
 
@@ -32,6 +35,7 @@ def measurements(
 
     later: dict[str, Any] = {"materials": materials} if materials is not None else {}
     later |= {"polar_inertia": one("polar_inertia")} if "polar_inertia" in measures else {}
+    later |= {"trust": trust} if trust is not None else {}
     return Measurements(
         bounding_box=BoundingBox(low=along_axes("low"), high=along_axes("high")),
         volume=one("volume"),

@@ -2,6 +2,7 @@
 
 from app.storage.tables.approvals import ApprovalRow, CommentRow
 from app.storage.tables.base import NAMING, Base, JsonText, NotWritten, canonical_json
+from app.storage.tables.brought import BroughtModelRow
 from app.storage.tables.designs import (
     DesignRow,
     DesignTagRow,
@@ -24,6 +25,7 @@ __all__ = [
     "ArtifactRow",
     "AuditRow",
     "Base",
+    "BroughtModelRow",
     "BuildRow",
     "CommentRow",
     "CounterRow",

@@ -21,6 +21,9 @@ OUTSIDE = "_outside"
 WORKSHEETS = "worksheets"
 """The package that classes made from worksheets name; there is no such package."""
 
+BROUGHT = "brought"
+"""The package that classes of models name which a team has brought; there is no such package either."""
+
 _CONTENT, _DIGEST = "__content__", "__digest__"  # attributes of such a module
 
 
@@ -80,8 +83,8 @@ def text_of(module: ModuleType) -> str | None:
 
 
 def is_outside(cls: type) -> bool:
-    """Whether a class comes from outside the packages of this program: from a team's file, or a worksheet."""
-    return cls.__module__.partition(".")[0] in (OUTSIDE, WORKSHEETS)
+    """Whether a class comes from outside the packages of this program: a team's file, worksheet or model."""
+    return cls.__module__.partition(".")[0] in (OUTSIDE, WORKSHEETS, BROUGHT)
 
 
 def failing_line(error: BaseException, path: Path) -> int | None:

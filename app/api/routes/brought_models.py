@@ -1,0 +1,129 @@
+"""`/models/import`: models from FreeCAD, and STEP files as fixed parts."""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Query, Request, Response
+
+from app.api.dependencies import TheDatabase, TheModelImports, TheOnce, TheStore, TheThreads
+from app.api.reading import MODEL_TYPES, StrictRoute, require_model
+from app.api.routes.models import Id
+from app.api.routes.templates import Number
+from app.api.stored import UNCHANGED, StoredFile
+from app.api.waiting import LATER, accepted
+from app.brought import repository
+from app.schemas.brought import BroughtParameter, DrawingProgram, DrawingPrograms, ModelOrigin
+from app.schemas.problems import refusals
+from app.storage.database import Database
+from cad.brought import description_of
+
+router = APIRouter(prefix="/api/v1/models", tags=["models"], route_class=StrictRoute)
+
+BINARY = {"schema": {"type": "string", "format": "binary"}}
+BODY = {"requestBody": {"required": True, "content": dict.fromkeys(sorted(MODEL_TYPES), BINARY)}}
+NewId = Annotated[
+    str,
+    Query(
+        max_length=64,
+        pattern=r"^[a-z][a-z0-9]*(_[a-z0-9]+)*$",
+        description="of the model: small letters, digits and single _",
+        examples=["main_cap"],
+    ),
+]
+FileName = Annotated[
+    str, Query(max_length=200, pattern=r"^[^\x00-\x1f\x7f]+$", description="how the file is called")
+]
+
+
+@router.get("/import")
+def list_programs(imports: TheModelImports) -> DrawingPrograms:
+    """The programs that draw brought models; of one that is missing how to install it."""
+    reason, place = imports.available()
+    freecad = DrawingProgram(
+        name="FreeCAD",
+        files=".FCStd",
+        available=reason is None,
+        detail=reason or f"its modules are in {place}",
+    )
+    fixed = DrawingProgram(
+        name="STEP", files=".step, .stp", available=True, detail="a fixed part without parameters"
+    )
+    return DrawingPrograms(items=[freecad, fixed])
+
+
+@router.post(
+    "/import",
+    status_code=202,
+    responses={**LATER, **refusals(409, 429, 503)},
+    openapi_extra=BODY,
+    dependencies=[Depends(require_model)],
+)
+async def import_model(
+    request: Request,
+    imports: TheModelImports,
+    threads: TheThreads,
+    once: TheOnce,
+    id: NewId,
+    file: FileName = "model",
+) -> Response:
+    """A file of FreeCAD (.FCStd) as a model, or a STEP file as a fixed part; the body is the file itself.
+
+    Aliases of spreadsheet cells and named constraints of sketches become parameters. Macros and Python
+    features never run: a file that has them is refused. The job answers with the version of the model once it
+    has ended. A file under an id that is there becomes its next version.
+    """
+    body = await request.body()
+    name = PurePath(file.replace("\\", "/")).name or "model"
+    return accepted(await threads.run(imports.begin, body, id, name, once))
+
+
+@router.get("/{id}/versions/{number}/origin", responses=refusals(404))
+def read_origin(id: Id, number: Number, database: TheDatabase) -> ModelOrigin:
+    """The file from which a model was imported, its parameters there, and how far to trust its solids."""
+    return origin(database, id, number)
+
+
+@router.get(
+    "/{id}/versions/{number}/original",
+    response_class=Response,
+    responses={200: {"content": {"application/octet-stream": {}}}, **UNCHANGED, **refusals(404, 503)},
+)
+def read_original_model(id: Id, number: Number, database: TheDatabase, store: TheStore) -> Response:
+    """The file that a model was imported from, as it was sent."""
+    shown = origin(database, id, number)
+    headers = {"ETag": f'"{shown.sha256}"'}
+    return StoredFile(store, shown.sha256, "application/octet-stream", headers, shown.file)
+
+
+def origin(database: Database, id: str, number: int) -> ModelOrigin:
+    """The origin of a brought model.
+
+    Raises
+    ------
+    NotFound
+        If it was not brought, or is not there.
+    """
+    with database.read() as session:
+        row = repository.version(session, id, number)
+        described = description_of(row.description)
+        return ModelOrigin(
+            program=described.program,
+            file=described.file_name,
+            sha256=row.sent_sha256,
+            made_with=described.made_with,
+            trust=described.trust,
+            author=row.author,
+            created=row.created,
+            parameters=[
+                BroughtParameter(
+                    name=one.name,
+                    unit=one.unit,
+                    value=one.value,
+                    source=one.source,
+                    read_back=one.role or None,
+                )
+                for one in described.parameters
+            ],
+        )

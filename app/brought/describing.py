@@ -1,0 +1,112 @@
+"""From a file to the description of a model: its parameters, and how each of them shows on the solid."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from app.brought.naming import parameter_name
+from app.brought.programs import Programs, given_to_freecad
+from app.brought.warm import WarmProcesses
+from app.jobs.context import JobContext
+from app.plain import JsonObject
+from app.storage.artifacts import Artifacts
+from app.workers.base import Limits
+from cad.brought import Description, Drawn, Parameter, Role, role_of, trial_sizes
+from cad.errors import GeometryError
+from cad.freecad.admission import admitted
+
+READING = Limits(deadline=20.0, memory_mb=512)
+TRIAL = 1.01
+"""By how much a trial changes a length; other than 1 % only where FreeCAD refuses."""
+MOST_TRIALS = 30
+_BOUNDS: Mapping[str, float] = {"mm": 1e5, "deg": 360.0, "1": 1e6}
+"""The largest parameter by unit: 100 m, a full turn, a million."""
+
+
+def described_freecad(
+    content: bytes, file_name: str, store: Artifacts, programs: Programs, context: JobContext
+) -> Description:
+    """The description of a `.FCStd` file; stores the file as FreeCAD shall open it.
+
+    Raises
+    ------
+    UnreadableModel, GeometryError, DeadlineExceeded, MemoryExceeded
+        If the file is refused, or FreeCAD cannot draw it.
+    """
+    programs.freecad.warm.find()
+    context.progress(0.05, "reading the file")
+    file = store.put(context.run(admitted, content, limits=READING))
+    warm, cancelled = programs.freecad.warm, context.cancelled
+    context.progress(0.1, "FreeCAD opens the file")
+    answered = warm.ask(file, lambda: store.read(file), "describe", [], cancelled)
+    parameters = _parameters(answered.about["parameters"])
+    roles = _trials(parameters, answered.drawn, warm, file, store, context)
+    return Description(
+        program="freecad",
+        file=file,
+        file_name=file_name,
+        title=_title(answered.about, file_name),
+        made_with=answered.about["program"],
+        parameters=tuple(replace(one, role=roles.get(one.name, "")) for one in parameters),
+    )
+
+
+def described_step(content: bytes, file_name: str, store: Artifacts, context: JobContext) -> Description:
+    """The description of a STEP file as a fixed part.
+
+    Raises
+    ------
+    UnreadableStep, GeometryError, DeadlineExceeded, MemoryExceeded
+        If it holds no solid.
+    """
+    context.progress(0.1, "reading the STEP file")
+    context.run(trial_sizes, Drawn(step=content))
+    stem = file_name.rpartition(".")[0] or file_name
+    return Description("step", store.put(content), file_name, f"Fixed part {stem}", "STEP")
+
+
+def _parameters(listed: list[list[str | float]]) -> list[Parameter]:
+    parameters: dict[str, Parameter] = {}
+    for thing, kind, key, value, unit, label in listed:
+        name = parameter_name(str(key), str(label), parameters)
+        number, most = float(value), _BOUNDS[str(unit)]
+        parameters[name] = Parameter(
+            name=name,
+            words=name.replace("_", " "),
+            unit=str(unit),
+            value=float(f"{number:.12g}"),
+            source=f"{thing}.{kind}.{key}",
+            low=0.0 if number > 0 and unit != "deg" else -max(most, abs(number)),
+            high=max(most, abs(number)),
+        )
+    return list(parameters.values())
+
+
+def _trials(
+    parameters: list[Parameter],
+    base: Drawn,
+    warm: WarmProcesses,
+    file: str,
+    store: Artifacts,
+    context: JobContext,
+) -> dict[str, Role]:
+    """How lengths show on the solid: each is changed alone, and the sizes before and after are compared."""
+    before, roles = context.run(trial_sizes, base), dict[str, Role]()
+    lengths = [one for one in parameters if one.unit == "mm" and one.value > 0][:MOST_TRIALS]
+    for number, one in enumerate(lengths):
+        context.progress(0.2 + 0.7 * number / len(lengths), f"how {one.words} shows on the solid")
+        value = float(f"{one.value * TRIAL:.12g}")
+        try:
+            given = [given_to_freecad(one, value)]
+            drawn = warm.ask(file, lambda: store.read(file), "draw", given, context.cancelled).drawn
+            roles[one.name] = role_of(one.value, value, before, context.run(trial_sizes, drawn))
+        except GeometryError:
+            continue  # it shows nowhere, as far as anybody can say
+    return roles
+
+
+def _title(about: JsonObject, file_name: str) -> str:
+    stem = file_name.rpartition(".")[0] or file_name
+    label = "".join(sign for sign in str(about["title"]) if sign.isprintable()).strip()
+    return (label if label and label != "model" else stem)[:100].rstrip(".")

@@ -1,0 +1,108 @@
+"""The programs that draw brought models, each behind the same interface: values in, solids out."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from app.brought.finding import FreeCad, find
+from app.brought.warm import WarmProcesses
+from app.jobs.context import JobContext
+from app.settings import Settings
+from app.storage.artifacts import Artifacts
+from app.workers.base import Limits, Runner
+from cad.brought import BroughtModel, Description, Drawn, Parameter, Program
+from cad.errors import ProgramMissing
+
+Values = dict[str, float]
+"""By API name, in the unit of each parameter; those that are as in the file may be left out."""
+
+
+class Drawing(Protocol):
+    """A program that draws."""
+
+    def draw(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
+        """The solids of a model for some values.
+
+        Raises
+        ------
+        GeometryError
+            If it cannot draw them; `ProgramMissing` if it is not there.
+        DeadlineExceeded, MemoryExceeded, JobCancelled
+            If it was stopped.
+        """
+        ...
+
+
+class StepFiles:
+    """Draws a fixed part: its STEP file, as it was sent."""
+
+    def __init__(self, store: Artifacts) -> None:
+        self._store = store
+
+    def draw(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
+        """The STEP file; there are no values."""
+        return Drawn(step=self._store.read(described.file))
+
+
+class FreeCadDrawing:
+    """Draws by FreeCAD, in a warm process of each file."""
+
+    def __init__(self, store: Artifacts, find: Callable[[], FreeCad], limits: Limits) -> None:
+        self._store, self.warm = store, WarmProcesses(find, limits)
+
+    def draw(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
+        """The solids that FreeCAD draws; see `Drawing.draw`."""
+        given = [given_to_freecad(one, values[one.name]) for one in _changed(described, values)]
+        return self.warm.ask(
+            described.file, lambda: self._store.read(described.file), "draw", given, cancelled
+        ).drawn
+
+
+def _changed(described: Description, values: Values) -> list[Parameter]:
+    """The parameters that are not as in the file; to set others again would change last digits."""
+    return [one for one in described.parameters if values.get(one.name, one.value) != one.value]
+
+
+def given_to_freecad(one: Parameter, value: float) -> list[str | float]:
+    """A value as the process of FreeCAD takes it: object, kind, key, value, unit."""
+    thing, kind, key = one.source.split(".", 2)
+    return [thing, kind, key, value, one.unit]
+
+
+@dataclass(frozen=True)
+class Programs:
+    """The programs of this service, by name."""
+
+    freecad: FreeCadDrawing
+    by_name: dict[Program, Drawing]
+
+    def draw(self, shape: BroughtModel, context: Runner) -> Drawn:
+        """What the program of a model draws for its parameters; raises as `Drawing.draw` does."""
+        described = shape.brought
+        program = self.by_name.get(described.program)
+        if program is None:
+            raise ProgramMissing("program_missing", f"this service has no {described.program}")
+        cancelled = context.cancelled if isinstance(context, JobContext) else threading.Event()
+        return program.draw(described, values_of(shape), cancelled)
+
+    def close(self) -> None:
+        """End all processes."""
+        self.freecad.warm.close()
+
+
+def values_of(shape: BroughtModel) -> Values:
+    """The parameters of a model in their declared units, to the twelve digits that its key is made of."""
+    return {
+        name: float(f"{shape.inputs[name].meaning.scale.from_si(float(si)):.12g}")
+        for name, si in shape.inputs_si().items()
+    }
+
+
+def assembled(settings: Settings, store: Artifacts) -> Programs:
+    """The programs that the settings name."""
+    limits = Limits(settings.job_deadline, settings.job_memory_mb)
+    freecad = FreeCadDrawing(store, lambda: find(settings.freecad, settings.freecad_python), limits)
+    return Programs(freecad, {"freecad": freecad, "step": StepFiles(store)})

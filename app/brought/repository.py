@@ -1,0 +1,60 @@
+"""All SQL of brought models; every function runs in its caller's transaction."""
+
+from __future__ import annotations
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from app.identity.acting import BUILT_IN, acting
+from app.storage.errors import NotFound
+from app.storage.identity import now
+from app.storage.tables import BroughtModelRow as Row
+from cad.brought import Description
+
+
+def all_rows(session: Session) -> list[Row]:
+    """Every version of every brought model."""
+    return list(session.scalars(select(Row).order_by(Row.id, Row.number)))
+
+
+def count(session: Session) -> int:
+    """How many versions there are: rows never change and never go."""
+    return session.scalar(select(func.count()).select_from(Row)) or 0
+
+
+def version(session: Session, id: str, number: int) -> Row:
+    """One version of a brought model.
+
+    Raises
+    ------
+    NotFound
+        If there is none.
+    """
+    if (row := session.get(Row, (id, number))) is None:
+        raise NotFound(f"model {id[:64]!r} version {number} was not brought as a file")
+    return row
+
+
+def add(session: Session, id: str, described: Description, sent: str) -> int:
+    """Add a version, the next of its id; the number of one that is the same already."""
+    rows = list(session.scalars(select(Row).where(Row.id == id).order_by(Row.number)))
+    for row in rows:
+        if row.description == described.text:
+            return row.number
+    number, who = (rows[-1].number if rows else 0) + 1, acting()
+    author, principal = (None, None) if who.id in BUILT_IN else (who.name, who.id)
+    session.add(
+        Row(
+            id=id,
+            number=number,
+            program=described.program,
+            description=described.text,
+            file_sha256=described.file,
+            sent_sha256=sent,
+            author=author,
+            author_principal=principal,
+            created=now(),
+        )
+    )
+    session.flush()
+    return number

@@ -1,0 +1,136 @@
+"""Imports of models as jobs: the file is kept by its hash, examined, and becomes a version of a model."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from sqlalchemy.orm import Session
+
+from app.brought import repository
+from app.brought.describing import described_freecad, described_step
+from app.brought.errors import ModelIdTaken
+from app.brought.naming import require_free
+from app.brought.programs import Programs
+from app.brought.shelf import Shelf
+from app.catalogue.catalogues import Catalogues
+from app.identity.usage import note_bytes
+from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.plain import JsonObject
+from app.storage.artifacts import Artifacts
+from app.storage.database import Database, after_commit
+from app.storage.errors import ArtifactDamaged, ArtifactMissing
+from app.storage.idempotency import Once
+from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
+from cad.brought import Description
+from cad.errors import GeometryError, ProgramMissing, UnreadableModel, UnreadableStep
+from templates.core.errors import TemplateError
+
+IMPORT = "model_import"
+Kind = Literal["freecad", "step"]
+FAILURES = (
+    UnreadableModel, UnreadableStep, GeometryError, ModelIdTaken, TemplateError, DeadlineExceeded,
+    MemoryExceeded, JobCrashed, ArtifactMissing, ArtifactDamaged,
+)  # fmt: skip
+"""What a file brings about."""
+
+
+class ModelImports:
+    """Queues imports of models, and is the handler of such jobs."""
+
+    def __init__(
+        self,
+        database: Database,
+        store: Artifacts,
+        jobs: Jobs,
+        catalogues: Catalogues,
+        programs: Programs,
+        shelf: Shelf,
+    ) -> None:
+        self.database, self.store, self.jobs, self.catalogues = database, store, jobs, catalogues
+        self.programs, self.shelf = programs, shelf
+
+    def begin(self, content: bytes, id: str, file: str, once: Once) -> str:
+        """Queue the import of a file as a model; the id of the job.
+
+        Raises
+        ------
+        UnreadableModel
+            If the file is empty, or of no kind that is taken.
+        ProgramMissing
+            If the program that draws it is not here.
+        ModelIdTaken, InvalidInputs
+            If no brought model may have the id.
+        QueueFull
+            Too many jobs are waiting.
+        """
+        require_free(id, self.catalogues)
+        kind = kind_of(content)
+        if kind == "freecad":
+            self.programs.freecad.warm.find()
+        sha = self.store.put(content)
+        payload = {"file": sha, "id": id, "name": file, "kind": kind, "client": once.client}
+
+        def unit(session: Session) -> str:
+            if before := once.begin(session):
+                return str(before["job"])
+            job = self.jobs.enqueue(session, IMPORT, payload, client=once.client)
+            note_bytes(session, len(content))
+            once.keep(session, 202, {"job": job})
+            return job
+
+        job = self.database.write(unit)
+        self.jobs.wake()
+        return job
+
+    def __call__(self, job: Job, context: JobContext) -> Completion:
+        """Import the file of a job; its result is the version of the model.
+
+        Raises
+        ------
+        JobFailed
+            The file is not taken, or the id is taken meanwhile.
+        """
+        id, sha, name, kind = (job.payload[key] for key in ("id", "file", "name", "kind"))
+        try:
+            described = self._described(kind, self.store.read(sha), name, context)
+            require_free(id, self.catalogues)
+        except FAILURES as error:
+            raise JobFailed(error) from error
+
+        def completion(session: Session) -> str:
+            number = repository.add(session, id, described, sha)
+            after_commit(session, self.shelf.look)
+            return f"/api/v1/models/{id}/versions/{number}"
+
+        return completion
+
+    def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
+        """Do nothing: a failed import leaves nothing behind, and retention takes its file."""
+
+    def available(self) -> tuple[str | None, str | None]:
+        """The reason why FreeCAD cannot draw here, or None; and the folder in which it is."""
+        try:
+            return None, self.programs.freecad.warm.find().modules
+        except ProgramMissing as error:
+            return str(error), None
+
+    def _described(self, kind: Kind, content: bytes, name: str, context: JobContext) -> Description:
+        if kind == "step":
+            return described_step(content, name, self.store, context)
+        return described_freecad(content, name, self.store, self.programs, context)
+
+
+def kind_of(content: bytes) -> Kind:
+    """The kind of a file, by its first bytes.
+
+    Raises
+    ------
+    UnreadableModel
+        If it is none that is taken.
+    """
+    if content.startswith(b"PK\x03\x04"):
+        return "freecad"
+    if content[:200].lstrip().startswith(b"ISO-10303-21"):
+        return "step"
+    what = "the body is empty" if not content else "it begins neither as a ZIP package nor as a STEP file"
+    raise UnreadableModel("not_a_model", f"{what}: send a .FCStd of FreeCAD, or a STEP file (ISO 10303-21)")

@@ -1,0 +1,56 @@
+"""Keeps the brought models among the models of the catalogue, as the database has them."""
+
+from __future__ import annotations
+
+import logging
+import threading
+
+from app.brought import repository
+from app.catalogue.catalogues import Catalogues
+from app.storage.database import Database
+from cad.brought import class_of
+
+logger = logging.getLogger(__name__)
+
+EVERY = 1.0
+"""How often a server looks what another one on its database has imported [s]."""
+
+
+class Shelf:
+    """Publishes brought models; a version is read once."""
+
+    def __init__(self, database: Database, catalogues: Catalogues, *, is_shared: bool) -> None:
+        self.database, self.catalogues = database, catalogues
+        self._is_shared, self._ending = is_shared, threading.Event()
+        self._looking, self._count = threading.Lock(), 0
+        self._thread = threading.Thread(target=self._watch, name="brought models", daemon=True)
+        self.look()
+
+    def start(self) -> None:
+        """Look what other servers import, if there may be others on this database."""
+        if self._is_shared:
+            self._thread.start()
+
+    def stop(self) -> None:
+        """Look no more."""
+        self._ending.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def look(self) -> None:
+        """Take notice of new versions."""
+        with self._looking, self.database.read() as session:
+            if (count := repository.count(session)) == self._count:
+                return
+            rows = repository.all_rows(session)
+            self.catalogues.bring(
+                {(row.id, row.number): class_of(row.description, row.id, row.number) for row in rows}
+            )
+            self._count = count
+
+    def _watch(self) -> None:
+        while not self._ending.wait(EVERY):
+            try:
+                self.look()
+            except Exception:
+                logger.exception("The brought models could not be looked at")

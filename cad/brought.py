@@ -1,0 +1,328 @@
+"""Models that a team brings: drawn by another program, or the fixed shape of a STEP file.
+
+Such a model is a description: which program draws it from which file, and its parameters. The description
+makes a class that stands beside the built-in models. What the program draws is handed to a model by `take`;
+from there on the path is that of every model: a STEP file is written, read again, checked and measured.
+
+There is no closed form of its volume. The volume of the drawn shape stands in for it: this holds the file to
+the drawing, and says nothing about whether the program drew the right thing. A parameter is read back if a
+trial at the import showed that it is a diameter, a radius or a distance between parallel planes of the solid.
+
+This module imports the kernel only where it draws: a calculation reads descriptions, and draws nothing.
+"""
+
+from __future__ import annotations
+
+import copyreg
+import hashlib
+import io
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass, field
+from functools import lru_cache
+from itertools import combinations
+from math import isclose
+from typing import Any, ClassVar, Literal
+
+from cad.errors import GeometryError
+from cad.model import STEEL, Box, CadModel, Colour, Dimension, Part
+from templates.core.catalogue.loading import BROUGHT
+from templates.core.language.declare import given
+
+Program = Literal["freecad", "creo", "step"]
+Role = Literal["", "diameter", "radius", "distance"]
+"""How a parameter shows on the solid; empty where no trial showed it."""
+
+NAMES: Mapping[Program, str] = {"freecad": "FreeCAD", "creo": "Creo", "step": "a STEP file"}
+VOLUME_TOLERANCE = 1e-3
+"""Of a program's own figure, relative: FreeCAD integrates to no stated accuracy, 5e-5 off on a half shell."""
+Sizes = Mapping[str, list[float]]
+"""Diameters and distances [mm] of a solid."""
+MOST_PLANES = 300
+"""Of a part whose distances between planes are compared, pair by pair."""
+
+_DRAWN, _PARTS = "as drawn", "parts as drawn"  # no names that a declaration can have
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a brought model; numbers are in its unit."""
+
+    name: str
+    words: str
+    unit: str
+    value: float  # in the file as it was sent
+    source: str  # where it stands there: "Spreadsheet.bore", "Sketch.Constraints.width", "d12"
+    low: float | None = None
+    high: float | None = None
+    role: Role = ""
+
+
+@dataclass(frozen=True)
+class Description:
+    """The whole of a brought model, from which its class is made."""
+
+    program: Program
+    file: str  # SHA-256 of the file that the program opens, or of the manifest
+    file_name: str
+    title: str
+    made_with: str  # the program's version at the import
+    parameters: tuple[Parameter, ...] = ()
+
+    @property
+    def text(self) -> str:
+        """The description as canonical JSON."""
+        return json.dumps(asdict(self), sort_keys=True, ensure_ascii=False)
+
+    def digest(self) -> str:
+        """SHA-256 of the description, which names the file by its own hash."""
+        return hashlib.sha256(self.text.encode()).hexdigest()
+
+    @property
+    def trust(self) -> str:
+        """The limits of the checks on its solids, in plain words."""
+        if self.program == "step":
+            return (
+                "lower: the shape is that of the STEP file as it was sent. It is checked to be valid solids, "
+                "and measured; no formula states its volume, and there is no parameter to read back. Masses "
+                "assume steel"
+            )
+        shown = [one.name for one in self.parameters if one.role]
+        hidden = [one.name for one in self.parameters if not one.role]
+        read = f"read back from the solid: {', '.join(shown) or 'none'}"
+        unread = f"; not read back: {', '.join(hidden)}" if hidden else ""
+        return (
+            f"lower: {NAMES[self.program]} drew the shape. No formula states its volume: the STEP file is "
+            f"compared with the drawing, not with theory. Parameters {read}{unread}. Masses assume steel"
+        )
+
+
+def description_of(text: str) -> Description:
+    """The description that `Description.text` wrote."""
+    read = json.loads(text)
+    parameters = tuple(Parameter(**one) for one in read.pop("parameters"))
+    return Description(**read, parameters=parameters)
+
+
+@dataclass(frozen=True)
+class DrawnPart:
+    """One solid as a program drew it: in the kernel's own format, with the volume that the program states."""
+
+    name: str
+    brep: bytes
+    volume: float | None = None  # [mm³]; None where the program states none
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """The answer of a program: its solids, or a STEP file."""
+
+    parts: tuple[DrawnPart, ...] = ()
+    step: bytes = field(default=b"", repr=False)
+    mass_volume: float | None = None  # [mm³] of all solids, where a program states it with a STEP file
+
+
+class BroughtModel(CadModel):
+    """Base of the models that a team brings."""
+
+    brought: ClassVar[Description]
+
+    def take(self, drawn: Drawn) -> None:
+        """Be what a program drew for these parameters."""
+        vars(self)[_DRAWN] = drawn
+
+    def build(self) -> tuple[Part, ...]:
+        """The solids that the program drew."""
+        if _PARTS not in vars(self):
+            drawn: Drawn | None = vars(self).get(_DRAWN)
+            if drawn is None:
+                raise GeometryError("kernel", f"{self.id} has not been drawn by its program", self.inputs)
+            parts = tuple(parts_of_step(drawn.step) if drawn.step else map(_part, drawn.parts))
+            if not parts:
+                raise GeometryError("not_one_solid", f"{self.id} has no solid", self.inputs)
+            _require_stated_volume(self, parts, drawn.mass_volume)
+            vars(self)[_PARTS] = parts
+        parts_as_drawn: tuple[Part, ...] = vars(self)[_PARTS]
+        return parts_as_drawn
+
+    def bounding_box(self) -> Box:
+        """The box of the solids as drawn."""
+        from cad.inspect import bounding_box
+        from cad.step import Body
+
+        return bounding_box(Body(one.name, one.solid, one.colour, one.places) for one in self.build())
+
+    def dimensions(self, seen: Mapping[str, Any]) -> dict[str, Dimension]:
+        """The parameters that show, each as the measure of its kind that comes closest to it."""
+        sizes = sizes_of(seen.values())
+        read: dict[str, Dimension] = {}
+        for one in self.brought.parameters:
+            if not one.role:
+                continue
+            wanted = float(self.inputs[one.name].meaning.scale.from_si(getattr(self, _attribute(one.name))))
+            offered = [value / (2 if one.role == "radius" else 1) for value in sizes[_SIZE[one.role]]]
+            if not offered:
+                raise LookupError(f"no {one.role} for {one.name}")
+            read[one.name] = min((abs(size - wanted), size) for size in offered)[1]
+        return read
+
+
+class BroughtClass(type):
+    """The type of classes made from descriptions, by which pickle recognises them."""
+
+
+@lru_cache(maxsize=256)
+def class_of(text: str, id: str, version: int) -> type[BroughtModel]:
+    """The class of a description in this process, one for each text, id and version."""
+    description = description_of(text)
+    declared = {
+        _attribute(one.name): given(
+            one.unit, one.words, name=one.name, default=one.value, ge=one.low, le=one.high
+        )
+        for one in description.parameters
+    }
+    first = description.parameters[:1]
+    space = {
+        **declared,
+        "__module__": f"{BROUGHT}.{id}_v{version}",
+        "__doc__": f"{description.title}.",
+        "brought": description,
+        "sheet": description,
+        "example": {one.name: {"value": one.value, "unit": one.unit} for one in first},
+    }
+    cls = BroughtClass("".join(word.capitalize() for word in id.split("_")), (BroughtModel,), space)
+    assert issubclass(cls, BroughtModel)
+    return cls
+
+
+def _reduced(cls: Any) -> tuple[Callable[..., Any], tuple[str, str, int]]:
+    return class_of, (cls.brought.text, cls.id, cls.version)
+
+
+copyreg.pickle(BroughtClass, _reduced)
+
+
+def brought(cls: type[CadModel]) -> Description | None:
+    """The description of a model that a team brought; None of others."""
+    return cls.brought if issubclass(cls, BroughtModel) else None
+
+
+def sizes_of(seen: Iterable[Any]) -> dict[str, list[float]]:
+    """Diameters of cylinders, and distances of parallel planes [mm], of some parts."""
+    diameters, distances = set[float](), set[float]()
+    for part in seen:
+        diameters.update(round(cylinder.diameter, 9) for cylinder in part.cylinders)
+        distances.update(_distances(part.planes))
+    return {"diameter": sorted(diameters), "distance": sorted(distances)}
+
+
+_SIZE: Mapping[Role, str] = {"diameter": "diameter", "radius": "diameter", "distance": "distance"}
+
+
+def _distances(planes: Any) -> Iterator[float]:
+    if len(planes) > MOST_PLANES:
+        return
+    for one, other in combinations(planes, 2):
+        if one.along(other.direction):
+            yield round(abs((one.point - other.point).dot(one.direction)), 9)
+
+
+def role_of(
+    old: float, new: float, before: Mapping[str, list[float]], after: Mapping[str, list[float]]
+) -> Role:
+    """How a length shows on a solid, from the sizes before and after a trial that changed it alone.
+
+    It is a size of a kind if that size was there before with the old value, is there after with the new one,
+    and was not there before with the new one.
+    """
+    roles: tuple[tuple[Role, float], ...] = (("diameter", 1), ("radius", 2), ("distance", 1))
+    for role, factor in roles:
+        kind = _SIZE[role]
+        if (
+            _has(before[kind], factor * old)
+            and _has(after[kind], factor * new)
+            and not _has(before[kind], factor * new)
+        ):
+            return role
+    return ""
+
+
+def _has(sizes: Iterable[float], wanted: float) -> bool:
+    return any(isclose(size, wanted, rel_tol=1e-12, abs_tol=1e-6) for size in sizes)
+
+
+def trial_sizes(drawn: Drawn) -> dict[str, list[float]]:
+    """The sizes of what a program drew; runs in a process with the kernel."""
+    from cad.surfaces import look
+
+    parts = parts_of_step(drawn.step) if drawn.step else map(_part, drawn.parts)
+    return sizes_of(look(part.solid) for part in parts)
+
+
+def parts_of_step(step: bytes) -> Iterator[Part]:
+    """The solids of a STEP file as parts: several solids of one product get numbers.
+
+    Raises
+    ------
+    UnreadableStep
+        If it is not a STEP file, or holds no shape.
+    GeometryError
+        If it holds no solid.
+    """
+    from cad.step import read_step
+
+    names = dict[str, int]()
+    for body in read_step(step):
+        for solid in body.shape.Solids():
+            yield _measured(_unique(body.name, names), solid, body.colour, places=body.places)
+
+
+def _part(drawn: DrawnPart) -> Part:
+    from cadquery import Shape
+
+    shape = Shape.importBrep(io.BytesIO(drawn.brep))
+    solids = shape.Solids()
+    if len(solids) != 1:
+        raise GeometryError("not_one_solid", f"{drawn.name} should be one solid; it is {len(solids)}")
+    part = _measured(drawn.name, solids[0], STEEL)
+    if drawn.volume is not None and not isclose(part.volume, drawn.volume, rel_tol=VOLUME_TOLERANCE):
+        detail = (
+            f"{drawn.name} has {part.volume:.9g} mm³; the program that drew it says {drawn.volume:.9g} mm³"
+        )
+        raise GeometryError("volume", detail)
+    return part
+
+
+def _measured(name: str, solid: Any, colour: Colour, **more: Any) -> Part:
+    """A part whose volume is measured, because no formula states it."""
+    from cad.inspect import measure
+    from cad.step import Body
+
+    volume = measure(Body(name, solid, colour, ())).volume
+    if not volume > 0:
+        raise GeometryError("not_finite", f"{name} has a volume of {volume:.6g} mm³")
+    return Part(name, solid, volume, colour, **more)
+
+
+def _require_stated_volume(model: CadModel, parts: Iterable[Part], stated: float | None) -> None:
+    """Compare the volume of all parts with the one that the program states, if it does.
+
+    Raises
+    ------
+    GeometryError
+        `volume`.
+    """
+    measured = sum(part.volume * len(part.places) for part in parts)
+    if stated is not None and not isclose(measured, stated, rel_tol=VOLUME_TOLERANCE):
+        detail = f"the STEP file holds {measured:.9g} mm³; the program that drew it says {stated:.9g} mm³"
+        raise GeometryError("volume", detail, model.inputs)
+
+
+def _unique(name: str, names: dict[str, int]) -> str:
+    names[name] = names.get(name, 0) + 1
+    return name if names[name] == 1 else f"{name}_{names[name]}"
+
+
+def _attribute(name: str) -> str:
+    """The attribute of a parameter: the language reserves many a plain word, such as `build`."""
+    return f"of_{name}"

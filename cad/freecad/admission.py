@@ -1,0 +1,157 @@
+"""Which files of FreeCAD are opened: packages of a bounded size, of features that run no Python.
+
+A `.FCStd` is a ZIP of `Document.xml` and the shapes that it names. A Python feature is an object whose type
+ends in `Python`, with a proxy that FreeCAD imports by the name of its module: such a file is refused, as is
+one that reads other files. What passes is packed anew: only parts that the document names are left, so that a
+macro beside them goes, and FreeCAD reads a package that this program wrote.
+
+Runs in a process of its own, whose memory and time are limited.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import struct
+import zipfile
+import zlib
+from collections.abc import Iterator
+from xml.parsers import expat
+
+from cad.errors import UnreadableModel
+
+MOST_PARTS = 2000
+MOST_BYTES = 64 * 2**20
+"""Of all parts, unpacked; counted while they are read, whatever the package says."""
+LONGEST_DOCUMENT = 16 * 2**20
+DEEPEST = 100
+DOCUMENT = "Document.xml"
+AGAIN = "save the file in FreeCAD again, and send that file"
+
+_DRAWING = re.compile(r"(?:Part|PartDesign|Sketcher|Spreadsheet)::[A-Za-z0-9]+")
+_GROUPING = {
+    f"App::{name}"
+    for name in (
+        "DocumentObjectGroup", "Part", "Origin", "Line", "Plane", "Point", "Link", "LinkGroup", "LinkElement",
+        "Annotation", "AnnotationLabel", "TextDocument", "MaterialObject", "VarSet",
+    )
+}  # fmt: skip
+_READING_FILES = {"Part::ImportStep", "Part::ImportIges", "Part::ImportBrep", "Part::CurveNet"}
+_REFUSED_PROPERTIES = re.compile(r"App::Property(?:File|Path)\w*")
+_LINKS = {"XLink", "XLinkSub", "XLinkSubList"}
+_DAMAGES = (
+    zipfile.BadZipFile, zlib.error, EOFError, OSError, RuntimeError, struct.error, ValueError, OverflowError,
+    NotImplementedError,
+)  # fmt: skip
+"""What `zipfile` raises for bytes that are not ZIP, or no longer one."""
+
+
+def admitted(content: bytes) -> bytes:
+    """The file as FreeCAD shall open it.
+
+    Raises
+    ------
+    UnreadableModel
+        If it is no file of FreeCAD, is too large, or runs Python or reads other files.
+    """
+    parts = dict(_unpacked(content))
+    if DOCUMENT not in parts:
+        raise UnreadableModel("not_freecad", f"it has no {DOCUMENT}: it is not a file of FreeCAD (.FCStd)")
+    named = _Document().read(parts[DOCUMENT])
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as package:
+        for name, part in parts.items():
+            if name == DOCUMENT or name in named:
+                package.writestr(zipfile.ZipInfo(name), part)
+    return out.getvalue()
+
+
+def _unpacked(content: bytes) -> Iterator[tuple[str, bytes]]:
+    left = MOST_BYTES
+    _check_directory(content)
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as package:
+            for part in package.infolist():
+                if part.is_dir() or part.filename.endswith((".py", ".FCMacro")):
+                    continue
+                with package.open(part) as opened:
+                    read = opened.read(left + 1)
+                left -= len(read)
+                if left < 0:
+                    what = f"its parts have more than {MOST_BYTES // 2**20} MiB unpacked"
+                    raise UnreadableModel("too_large", f"{what}: remove shapes that the model does not need")
+                yield part.filename, read
+    except _DAMAGES as error:
+        raise UnreadableModel("package", f"it is not a whole ZIP package ({error}): {AGAIN}") from None
+
+
+def _check_directory(content: bytes) -> None:
+    """Refuse a crowded directory before `zipfile` makes an object of every entry."""
+    place = content.rfind(b"PK\x05\x06", max(0, len(content) - 2**16 - 22))
+    if place < 0 or len(content) < place + 22:
+        raise UnreadableModel("package", f"it is not a whole ZIP package (its directory is missing): {AGAIN}")
+    entries, size = struct.unpack("<HI", content[place + 10 : place + 16])
+    if entries > MOST_PARTS or size > MOST_PARTS * 400:
+        raise UnreadableModel("too_large", f"it has {entries} parts; a model has at most {MOST_PARTS}")
+
+
+class _Document:
+    """Reads a document element by element: judges each, and notes which parts of the package it names.
+
+    No entity is ever expanded: a document that declares any is refused.
+    """
+
+    def __init__(self) -> None:
+        self.named = set[str]()
+        self._depth = 0
+
+    def read(self, text: bytes) -> set[str]:
+        """The parts that a document names.
+
+        Raises
+        ------
+        UnreadableModel
+            If it is damaged, or an element of it is refused.
+        """
+        if len(text) > LONGEST_DOCUMENT:
+            what = f"its {DOCUMENT} has more than {LONGEST_DOCUMENT // 2**20} MiB"
+            raise UnreadableModel("too_large", f"{what}: split the model")
+        parser = expat.ParserCreate()
+        parser.StartDoctypeDeclHandler = self._refuse_declarations
+        parser.StartElementHandler = self._begin
+        parser.EndElementHandler = self._end
+        try:
+            parser.Parse(text, True)
+        except expat.ExpatError as error:
+            raise UnreadableModel("package", f"its {DOCUMENT} is damaged ({error}): {AGAIN}") from None
+        return self.named
+
+    def _refuse_declarations(self, *_: object) -> None:
+        raise UnreadableModel("package", f"its {DOCUMENT} declares entities: {AGAIN}")
+
+    def _begin(self, tag: str, attributes: dict[str, str]) -> None:
+        if self._depth == 0 and tag != "Document":
+            raise UnreadableModel("not_freecad", f"its {DOCUMENT} is not that of FreeCAD")
+        self._depth += 1
+        if self._depth > DEEPEST:
+            raise UnreadableModel("package", f"its {DOCUMENT} nests more than {DEEPEST} deep: {AGAIN}")
+        _check_element(tag, attributes)
+        self.named.update(attributes.get(key, "") for key in ("file", "File"))
+
+    def _end(self, tag: str) -> None:
+        self._depth -= 1
+
+
+def _check_element(tag: str, attributes: dict[str, str]) -> None:
+    kind = attributes.get("type", "")
+    name = (attributes.get("name") or attributes.get("Name") or tag)[:60]
+    if tag == "Python" or "Python" in kind:
+        what = f"{name!r} ({kind or tag}) is a Python feature or a macro, which is never run here"
+        raise UnreadableModel("python_feature", f"{what}: replace it by features of Part or PartDesign")
+    if _REFUSED_PROPERTIES.fullmatch(kind) or kind in _READING_FILES:
+        raise UnreadableModel("reads_files", f"{name!r} ({kind}) reads another file: embed its shape")
+    if tag in _LINKS and attributes.get("file"):
+        raise UnreadableModel("reads_files", "it links to another document: copy what it needs into this one")
+    if tag == "Object" and kind and not (_DRAWING.fullmatch(kind) or kind in _GROUPING):
+        what = f"{name!r} ({kind}) is of a workbench that is not opened here"
+        raise UnreadableModel("not_offered", f"{what}: use Part, PartDesign, Sketcher and Spreadsheet")

@@ -1,0 +1,363 @@
+"""The process in which FreeCAD opens one file: run by the Python for which FreeCAD is installed.
+
+Nothing of this program is imported here: that Python is another one. The arguments are the descriptor of a
+lifeline, the folder that the process may write to, the folders of FreeCAD's modules, and its memory [MiB].
+
+It takes requests from its standard input and answers on its standard output; each message is a JSON object
+behind its length, and an answer is followed by the shapes whose sizes it lists.
+
+    {"do": "describe"}                    every parameter of the file, and its solids
+    {"do": "draw", "set": [...]}          the solids for some values
+    both with "file", "seconds"           the path of the file, and the processor time it may take
+
+Each request opens the file again: the same values give the same solids, whatever was drawn before. Before the
+first one the process gives up the network, other programs, signals to others, and files outside its folder.
+"""
+
+import ctypes
+import fcntl
+import importlib
+import json
+import math
+import os
+import platform
+import re
+import resource
+import select
+import signal
+import struct
+import sys
+import time
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+UNITS = {"Length": "mm", "Angle": "deg", "": "1"}
+LENGTHS = ("Distance", "DistanceX", "DistanceY", "Radius", "Diameter")
+CELL = re.compile(r"[A-Z]{1,2}[1-9][0-9]*")
+MOST_PARAMETERS = 100
+MOST_SOLIDS = 100
+LARGEST_FILE = 256 * 2**20
+
+DENIED = {
+    # socket connect bind listen execve execveat ptrace process_vm_readv process_vm_writev kill tkill
+    # io_uring_setup mount unshare setns bpf perf_event_open pidfd_open, then fork and vfork if there are any
+    "x86_64": (
+        0xC000003E, 317,
+        (41, 42, 49, 50, 59, 322, 101, 310, 311, 62, 200, 425, 165, 272, 308, 321, 298, 434, 57, 58),
+    ),
+    "aarch64": (
+        0xC00000B7, 277,
+        (198, 203, 200, 201, 221, 281, 117, 270, 271, 129, 130, 425, 40, 97, 268, 280, 241, 434),
+    ),
+}  # fmt: skip
+"""By machine: its number in audit records, that of the call `seccomp`, and the calls that are refused."""
+
+
+def hang_on(reader: int) -> None:
+    """Let the kernel kill this process once the server's end of a pipe closes."""
+    own = os.open(f"/proc/self/fd/{reader}", os.O_RDONLY | os.O_NONBLOCK)
+    fcntl.fcntl(own, fcntl.F_SETOWN, os.getpid())
+    fcntl.fcntl(own, fcntl.F_SETSIG, signal.SIGKILL)
+    fcntl.fcntl(own, fcntl.F_SETFL, os.O_NONBLOCK | os.O_ASYNC)
+    poll = select.poll()
+    poll.register(reader, 0)
+    if any(event & select.POLLHUP for _, event in poll.poll(0)):
+        os._exit(1)
+
+
+class Filter(ctypes.Structure):
+    """A statement of the kernel's packet filter, by which it judges calls."""
+
+    _fields_ = [
+        ("code", ctypes.c_uint16),
+        ("yes", ctypes.c_uint8),
+        ("no", ctypes.c_uint8),
+        ("k", ctypes.c_uint32),
+    ]
+
+
+class Filters(ctypes.Structure):
+    """A program of such statements."""
+
+    _fields_ = [("length", ctypes.c_uint16), ("filters", ctypes.POINTER(Filter))]
+
+
+def deny_calls(libc: ctypes.CDLL) -> None:
+    """Have the kernel refuse the calls of `DENIED` in all threads, for ever.
+
+    Raises OSError where it cannot: then nothing is opened.
+    """
+    audited, seccomp, denied = DENIED[platform.machine()]
+    load, equal, at_least, answer = 0x20, 0x15, 0x35, 0x06
+    refused, killed, allowed = 0x00050000 | 1, 0x80000000, 0x7FFF0000
+    lines = [(load, 0, 0, 4), (equal, 1, 0, audited), (answer, 0, 0, killed), (load, 0, 0, 0)]
+    lines += [(at_least, 0, 1, 0x40000000), (answer, 0, 0, refused)]  # the numbers of x32
+    for number in denied:
+        lines += [(equal, 0, 1, number), (answer, 0, 0, refused)]
+    lines.append((answer, 0, 0, allowed))
+    program = (Filter * len(lines))(*(Filter(*line) for line in lines))
+    all_threads = 1
+    if libc.syscall(seccomp, 1, all_threads, ctypes.byref(Filters(len(lines), program))) != 0:
+        raise OSError(ctypes.get_errno(), "the kernel does not filter calls")
+
+
+class Handled(ctypes.Structure):
+    """The kinds of access to files that are ruled."""
+
+    _fields_ = [("access", ctypes.c_uint64)]
+
+
+class Beneath(ctypes.Structure):
+    """A rule: what is allowed beneath a folder."""
+
+    _pack_ = 1
+    _fields_ = [("access", ctypes.c_uint64), ("folder", ctypes.c_int32)]
+
+
+def keep_to_files(libc: ctypes.CDLL, writable: str) -> None:
+    """Let this process read the system's files and write to one folder, where the kernel can rule it."""
+    create, add, restrict, everything, reading = 444, 445, 446, (1 << 13) - 1, 0b1101
+    ruled = libc.syscall(create, ctypes.byref(Handled(everything)), ctypes.sizeof(Handled), 0)
+    if ruled < 0:
+        return  # a kernel without Landlock; the other walls stand
+    places = dict.fromkeys(("/usr", "/lib", "/lib64", "/etc", "/proc", "/sys", "/opt", "/dev"), reading)
+    places.update({writable: everything})
+    for place, access in places.items():
+        try:
+            folder = os.open(place, os.O_PATH)
+        except OSError:
+            continue
+        libc.syscall(add, ruled, 1, ctypes.byref(Beneath(access, folder)), 0)
+        os.close(folder)
+    libc.syscall(restrict, ruled, 0)
+    os.close(ruled)
+
+
+def mapped() -> int:
+    """The address space of this process [bytes]."""
+    with open("/proc/self/statm") as statm:
+        return int(statm.read().split()[0]) * resource.getpagesize()
+
+
+def limit(kind: int, value: int) -> None:
+    """Set a soft and hard limit."""
+    hard = resource.getrlimit(kind)[1]
+    value = value if hard == resource.RLIM_INFINITY else min(value, hard)
+    resource.setrlimit(kind, (value, value))
+
+
+def limit_time(seconds: float) -> None:
+    """Let the kernel end this process after so much more processor time [s], in all threads together."""
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    soft = math.ceil(used.ru_utime + used.ru_stime + seconds * (os.cpu_count() or 1)) + 1
+    resource.setrlimit(resource.RLIMIT_CPU, (soft, resource.getrlimit(resource.RLIMIT_CPU)[1]))
+
+
+class Refused(Exception):
+    """A file or values that are not drawn; `code` and the names of parameters' sources say more."""
+
+    def __init__(self, code: str, detail: str, names: Iterable[str] = ()) -> None:
+        super().__init__(detail)
+        self.code, self.names = code, list(names)
+
+
+def quantity_of(app: Any, text: str) -> Any:
+    """A cell's content as a constant, or None if it is a formula or words."""
+    try:
+        return app.Units.Quantity(text.lstrip("=").strip())
+    except Exception:
+        return None
+
+
+def unit_of(quantity: Any) -> str | None:
+    """The unit in which a quantity is offered, or None for kinds that are not."""
+    kind = quantity.Unit.Type if str(quantity.Unit) not in ("", "Unit: ") and quantity.Unit.Type else ""
+    return UNITS.get(kind)
+
+
+def cells(app: Any, sheet: Any) -> Iterator[tuple[str, float, str]]:
+    """Every alias of a spreadsheet whose cell holds a constant."""
+    for cell in sheet.PropertiesList:
+        alias = sheet.getAlias(cell) if CELL.fullmatch(cell) else None
+        if not alias:
+            continue
+        quantity = quantity_of(app, sheet.getContents(cell))
+        unit = None if quantity is None else unit_of(quantity)
+        if unit is not None:
+            yield alias, quantity.Value, unit
+
+
+def constraints(sketch: Any) -> Iterator[tuple[str, float, str]]:
+    """Every named driving constraint of a sketch that no expression binds."""
+    bound = {entry[0].lstrip(".") for entry in sketch.ExpressionEngine}
+    for number, constraint in enumerate(sketch.Constraints):
+        name = constraint.Name
+        if not name or not constraint.Driving or {"Constraints." + name, f"Constraints[{number}]"} & bound:
+            continue
+        if constraint.Type in LENGTHS or constraint.Type == "Angle":
+            unit = "deg" if constraint.Type == "Angle" else "mm"
+            yield name, sketch.getDatum(number).Value, unit
+
+
+def parameters(app: Any, document: Any) -> list[list[Any]]:
+    """Every parameter that a document offers: [object, kind, key, value, unit, label]."""
+    listed: list[list[Any]] = []
+    for thing in document.Objects:
+        if thing.TypeId == "Spreadsheet::Sheet":
+            listed += [[thing.Name, "cell", *one, thing.Label] for one in cells(app, thing)]
+        elif thing.TypeId == "Sketcher::SketchObject":
+            listed += [[thing.Name, "constraint", *one, thing.Label] for one in constraints(thing)]
+    if len(listed) > MOST_PARAMETERS:
+        raise Refused("too_large", f"it has {len(listed)} parameters; a model has at most {MOST_PARAMETERS}")
+    return listed
+
+
+def give(app: Any, document: Any, given: Iterable[list[Any]]) -> None:
+    """Set parameters: [object, kind, key, value, unit] each.
+
+    Constraints of a sketch are set one by one, and some orders have no solution in between. Those that fail
+    are tried again once the others are set.
+    """
+    waiting, failed = list(given), ""
+    while waiting:
+        left = []
+        for one in waiting:
+            try:
+                give_one(app, document, *one)
+            except Exception as error:
+                failed = str(error)
+                left.append(one)
+        if len(left) == len(waiting):
+            names = [f"{one[0]}.{one[2]}" for one in left]
+            raise Refused("not_solved", f"FreeCAD does not take {', '.join(names)}: {failed}", names)
+        waiting = left
+
+
+def give_one(app: Any, document: Any, name: str, kind: str, key: str, value: float, unit: str) -> None:
+    """Set one parameter."""
+    thing = document.getObject(name)
+    text = repr(value) if unit == "1" else f"{value!r} {unit}"
+    if kind == "cell":
+        thing.set(thing.getCellFromAlias(key), text)
+    else:
+        thing.setDatum(key, app.Units.Quantity(text))
+
+
+def recompute(document: Any) -> None:
+    """Draw everything again; what cannot be drawn is an error."""
+    document.recompute(None, True, True)
+    faulty = [thing for thing in document.Objects if "Invalid" in thing.State or not thing.isValid()]
+    if faulty:
+        said = "; ".join(f"{one.Label}: {one.getStatusString()}" for one in faulty[:3])
+        raise Refused("recompute", f"FreeCAD cannot draw {said}")
+
+
+def is_drawn(thing: Any) -> bool:
+    """Whether an object has solids of its own, and is neither a reference nor a group."""
+    try:
+        return not thing.TypeId.startswith("App::") and bool(thing.Shape.Solids)
+    except Exception:
+        return False
+
+
+def finished(document: Any) -> list[Any]:
+    """The objects that nothing else is made of; hidden ones only if all are."""
+    drawn = [thing for thing in document.Objects if is_drawn(thing)]
+    names = {thing.Name for thing in drawn}
+    ends = [t for t in drawn if not any(user.Name in names and user is not t for user in t.InListRecursive)]
+    visible = [thing for thing in ends if getattr(thing, "Visibility", True)]
+    return visible or ends
+
+
+def solids(document: Any) -> list[tuple[str, float, bytes]]:
+    """Every solid of the finished objects where it stands: name, volume [mm³], shape as text."""
+    listed = []
+    for thing in finished(document):
+        shape = thing.Shape.copy()
+        shape.Placement = thing.getGlobalPlacement()
+        for number, solid in enumerate(shape.Solids):
+            name = thing.Label if len(shape.Solids) == 1 else f"{thing.Label} {number + 1}"
+            listed.append((name, solid.Volume, solid.exportBrepToString().encode()))
+    if not listed:
+        remedy = "make a Body or a Part with a solid visible, and save it"
+        raise Refused("no_solid", f"the file shows no solid: {remedy}")
+    if len(listed) > MOST_SOLIDS:
+        raise Refused("too_large", f"it has {len(listed)} solids; a model has at most {MOST_SOLIDS}")
+    return listed
+
+
+def answer(app: Any, request: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
+    """The answer to one request, with the shapes that follow it."""
+    for name in list(app.listDocuments()):
+        app.closeDocument(name)
+    begun = time.monotonic()
+    document = app.openDocument(request["file"], True)
+    listed = parameters(app, document) if request["do"] == "describe" else []
+    give(app, document, request.get("set", ()))
+    recompute(document)
+    shapes = solids(document)
+    about = {
+        "parameters": listed,
+        "parts": [[name, volume] for name, volume, _ in shapes],
+        "title": document.Label,
+        "program": "FreeCAD " + ".".join(app.Version()[:2]),
+        "seconds": time.monotonic() - begun,
+    }
+    return about, [shape for _, _, shape in shapes]
+
+
+def refusal(error: BaseException) -> dict[str, Any]:
+    """An error as an answer."""
+    if isinstance(error, Refused):
+        return {"refused": error.code, "detail": str(error), "names": error.names}
+    if isinstance(error, MemoryError) or "bad_alloc" in repr(error):
+        return {"refused": "memory", "detail": "", "names": []}
+    return {"refused": "program", "detail": f"{type(error).__name__}: {str(error)[:500]}", "names": []}
+
+
+def send(out: int, about: dict[str, Any], shapes: Iterable[bytes]) -> None:
+    """Write an answer and its shapes."""
+    text = json.dumps({**about, "sizes": [len(shape) for shape in shapes]}).encode()
+    for piece in (struct.pack("!I", len(text)) + text, *shapes):
+        left = memoryview(piece)
+        while left:
+            left = left[os.write(out, left) :]
+
+
+def main(lifeline: int, folder: str, modules: str, memory: int) -> None:
+    """Serve requests until the standard input ends."""
+    requests, out = os.fdopen(os.dup(0), "rb"), os.dup(1)
+    null = os.open(os.devnull, os.O_RDWR)
+    for standard in (0, 1, 2):
+        os.dup2(null, standard)  # FreeCAD prints
+    hang_on(lifeline)
+    libc = ctypes.CDLL(None, use_errno=True)
+    if libc.prctl(38, 1, 0, 0, 0) != 0:  # no new privileges
+        raise OSError("the kernel grants no promise of privileges")
+    keep_to_files(libc, folder)
+    sys.path[:0] = [place for place in modules.split(os.pathsep) if place]
+    import FreeCAD  # the first: the others crash without it
+
+    for name in ("Part", "Sketcher", "Spreadsheet", "_PartDesign"):
+        importlib.import_module(name)  # what a file needs, before much is denied
+    sys.modules["PartDesign"] = sys.modules["_PartDesign"]  # its package stands in a folder of workbenches
+    deny_calls(libc)
+    limit(resource.RLIMIT_CORE, 0)
+    limit(resource.RLIMIT_FSIZE, LARGEST_FILE)
+    limit(resource.RLIMIT_AS, mapped() + memory * 2**20)
+    send(out, {"program": "FreeCAD " + ".".join(FreeCAD.Version()[:2])}, [])
+    while True:
+        head = requests.read(4)
+        if len(head) < 4:
+            os._exit(0)
+        request = json.loads(requests.read(struct.unpack("!I", head)[0]))
+        limit_time(request["seconds"])
+        try:
+            about, shapes = answer(FreeCAD, request)
+        except BaseException as error:
+            about, shapes = refusal(error), []
+        send(out, about, shapes)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]), sys.argv[2], sys.argv[3], int(sys.argv[4]))

@@ -1,0 +1,57 @@
+"""Files of FreeCAD for tests, drawn by FreeCAD itself; without FreeCAD such tests are skipped."""
+
+import subprocess
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+
+from app.brought.finding import find
+from cad.errors import ProgramMissing
+
+BINARY = {"Content-Type": "application/octet-stream"}
+
+
+def reason():
+    try:
+        find()
+    except ProgramMissing as error:
+        return str(error)
+    return ""
+
+
+needs_freecad = pytest.mark.skipif(bool(reason()), reason=reason() or "FreeCAD is here")
+
+
+@cache
+def bush(what="plain"):
+    """A bush of 50 mm × 25 mm in 60 mm, as FreeCAD saves it, with something added to it."""
+    program = find()
+    with TemporaryDirectory(prefix="crankwright-drawn-") as folder:
+        place = Path(folder, "bush.FCStd")
+        script = Path(__file__).with_name("draw_bush.py")
+        command = [program.python, "-I", str(script), program.modules, str(place), what]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+        assert place.exists(), done.stderr
+        return place.read_bytes()
+
+
+def post(http, id, content, **query):
+    return http.post("/api/v1/models/import", params={"id": id, **query}, content=content, headers=BINARY)
+
+
+def ended(http, response):
+    assert response.status_code == 202, response.text
+    job = response.headers["Location"]
+    with http.stream("GET", f"{job}/events") as events:
+        for _ in events.iter_lines():
+            pass
+    return http.get(job).json()
+
+
+def imported(http, id, content, **query):
+    """The path of the version that a file became."""
+    job = ended(http, post(http, id, content, **query))
+    assert job["state"] == "done", job
+    return job["result"]
