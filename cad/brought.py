@@ -177,7 +177,12 @@ def class_of(text: str, id: str, version: int) -> type[BroughtModel]:
     description = description_of(text)
     declared = {
         _attribute(one.name): given(
-            one.unit, one.words, name=one.name, default=one.value, ge=one.low, le=one.high
+            one.unit,
+            one.words,
+            name=one.name,
+            default={"value": one.value, "unit": one.unit},
+            ge=one.low,
+            le=one.high,
         )
         for one in description.parameters
     }

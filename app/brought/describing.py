@@ -9,7 +9,6 @@ from app.brought.naming import parameter_name
 from app.brought.programs import Programs, given_to_freecad
 from app.brought.warm import WarmProcesses
 from app.jobs.context import JobContext
-from app.plain import JsonObject
 from app.storage.artifacts import Artifacts
 from app.workers.base import Limits
 from cad.brought import Description, Drawn, Parameter, Role, role_of, trial_sizes
@@ -46,7 +45,7 @@ def described_freecad(
         program="freecad",
         file=file,
         file_name=file_name,
-        title=_title(answered.about, file_name),
+        title=_stem(file_name),
         made_with=answered.about["program"],
         parameters=tuple(replace(one, role=roles.get(one.name, "")) for one in parameters),
     )
@@ -62,8 +61,7 @@ def described_step(content: bytes, file_name: str, store: Artifacts, context: Jo
     """
     context.progress(0.1, "reading the STEP file")
     context.run(trial_sizes, Drawn(step=content))
-    stem = file_name.rpartition(".")[0] or file_name
-    return Description("step", store.put(content), file_name, f"Fixed part {stem}", "STEP")
+    return Description("step", store.put(content), file_name, f"Fixed part {_stem(file_name)}", "STEP")
 
 
 def _parameters(listed: list[list[str | float]]) -> list[Parameter]:
@@ -106,7 +104,6 @@ def _trials(
     return roles
 
 
-def _title(about: JsonObject, file_name: str) -> str:
-    stem = file_name.rpartition(".")[0] or file_name
-    label = "".join(sign for sign in str(about["title"]) if sign.isprintable()).strip()
-    return (label if label and label != "model" else stem)[:100].rstrip(".")
+def _stem(file_name: str) -> str:
+    """The name of a file without its ending, as the title of a model."""
+    return (file_name.rpartition(".")[0] or file_name)[:100].rstrip(". ") or "model"

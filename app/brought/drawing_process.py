@@ -131,7 +131,9 @@ class FreeCadProcess:
             self._process.kill()
             code = self._process.wait()
             said = (self._folder / "errors").read_text(errors="replace").strip().splitlines()
-            raise missing(f"FreeCAD does not start ({said[-1][:200] if said else f'exit code {code}'})") from None
+            raise missing(
+                f"FreeCAD does not start ({said[-1][:200] if said else f'exit code {code}'})"
+            ) from None
         self._is_ready = True
 
     def _answer(self, end: float, cancelled: threading.Event) -> tuple[JsonObject, list[bytes]]:

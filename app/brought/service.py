@@ -21,7 +21,7 @@ from app.storage.database import Database, after_commit
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.storage.idempotency import Once
 from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
-from cad.brought import Description
+from cad.brought import Description, class_of
 from cad.errors import GeometryError, ProgramMissing, UnreadableModel, UnreadableStep
 from templates.core.errors import TemplateError
 
@@ -93,6 +93,7 @@ class ModelImports:
         id, sha, name, kind = (job.payload[key] for key in ("id", "file", "name", "kind"))
         try:
             described = self._described(kind, self.store.read(sha), name, context)
+            class_of(described.text, id, 1)  # it can be published
             require_free(id, self.catalogues)
         except FAILURES as error:
             raise JobFailed(error) from error

@@ -4,16 +4,28 @@ from __future__ import annotations
 
 import logging
 import threading
+from collections.abc import Iterable, Iterator
 
 from app.brought import repository
 from app.catalogue.catalogues import Catalogues
+from app.catalogue.sheets import Key
 from app.storage.database import Database
-from cad.brought import class_of
+from app.storage.tables import BroughtModelRow
+from cad.brought import BroughtModel, class_of
 
 logger = logging.getLogger(__name__)
 
 EVERY = 1.0
 """How often a server looks what another one on its database has imported [s]."""
+
+
+def _classes(rows: Iterable[BroughtModelRow]) -> Iterator[tuple[Key, type[BroughtModel]]]:
+    """The classes of rows; one that this program cannot read harms no other."""
+    for row in rows:
+        try:
+            yield (row.id, row.number), class_of(row.description, row.id, row.number)
+        except Exception:
+            logger.exception("Model %s version %d cannot be read", row.id, row.number)
 
 
 class Shelf:
@@ -43,9 +55,7 @@ class Shelf:
             if (count := repository.count(session)) == self._count:
                 return
             rows = repository.all_rows(session)
-            self.catalogues.bring(
-                {(row.id, row.number): class_of(row.description, row.id, row.number) for row in rows}
-            )
+            self.catalogues.bring(dict(_classes(rows)))
             self._count = count
 
     def _watch(self) -> None:

@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import ConfigDict, Field, JsonValue
 
 from app.schemas.answers import Answer, Page
+from app.schemas.brought import ModelOrigin
 from app.schemas.solids import Analysable
 
 Schema = dict[str, JsonValue]
@@ -125,6 +126,7 @@ class CadModel(Described):
     analyses: dict[str, Analysable] = Field(description="finite-element analyses by kind")
     film_bore: str | None = Field(description="the parameter that is the bore with the oil film")
     picture: str = Field(description="path of a picture of the example")
+    origin: ModelOrigin | None = Field(None, description="of a model that a team brought; absent for others")
 
 
 class Axis(Answer):

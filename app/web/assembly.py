@@ -18,6 +18,7 @@ from app.web import (
     audit_page,
     impact_page,
     import_page,
+    model_import_page,
     organising,
     problems,
     provider_page,
@@ -77,6 +78,8 @@ def _is_plain(path: str) -> bool:
 
 def install(app: FastAPI) -> None:
     """Add the pages; call it after the interface is complete."""
+    app.include_router(model_import_page.router)  # before the models: `import` is not one
+    app.include_router(model_import_page.forms)
     app.include_router(routes.router)
     app.include_router(organising.router)
     app.include_router(actions.router)

@@ -36,6 +36,7 @@ async def model_page(request: Request, api: Api, id: str, version: int) -> Respo
             model.parameters, "", cells, (built.parameters if built else None) or {}, typed, faults
         ),
         built=built,
+        origin=model.origin,
         analyses=await finished_analyses(request, api, built.build if built else None, model),
         faults=faults,
         kinds=list(MEDIA_TYPES),

@@ -299,7 +299,6 @@ def answer(app: Any, request: dict[str, Any]) -> tuple[dict[str, Any], list[byte
     about = {
         "parameters": listed,
         "parts": [[name, volume] for name, volume, _ in shapes],
-        "title": document.Label,
         "program": "FreeCAD " + ".".join(app.Version()[:2]),
         "seconds": time.monotonic() - begun,
     }

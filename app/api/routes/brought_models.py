@@ -13,11 +13,9 @@ from app.api.routes.models import Id
 from app.api.routes.templates import Number
 from app.api.stored import UNCHANGED, StoredFile
 from app.api.waiting import LATER, accepted
-from app.brought import repository
-from app.schemas.brought import BroughtParameter, DrawingProgram, DrawingPrograms, ModelOrigin
+from app.brought.views import origin
+from app.schemas.brought import DrawingProgram, DrawingPrograms, ModelOrigin
 from app.schemas.problems import refusals
-from app.storage.database import Database
-from cad.brought import description_of
 
 router = APIRouter(prefix="/api/v1/models", tags=["models"], route_class=StrictRoute)
 
@@ -95,35 +93,3 @@ def read_original_model(id: Id, number: Number, database: TheDatabase, store: Th
     shown = origin(database, id, number)
     headers = {"ETag": f'"{shown.sha256}"'}
     return StoredFile(store, shown.sha256, "application/octet-stream", headers, shown.file)
-
-
-def origin(database: Database, id: str, number: int) -> ModelOrigin:
-    """The origin of a brought model.
-
-    Raises
-    ------
-    NotFound
-        If it was not brought, or is not there.
-    """
-    with database.read() as session:
-        row = repository.version(session, id, number)
-        described = description_of(row.description)
-        return ModelOrigin(
-            program=described.program,
-            file=described.file_name,
-            sha256=row.sent_sha256,
-            made_with=described.made_with,
-            trust=described.trust,
-            author=row.author,
-            created=row.created,
-            parameters=[
-                BroughtParameter(
-                    name=one.name,
-                    unit=one.unit,
-                    value=one.value,
-                    source=one.source,
-                    read_back=one.role or None,
-                )
-                for one in described.parameters
-            ],
-        )

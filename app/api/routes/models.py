@@ -11,7 +11,7 @@ from pydantic.config import JsonDict
 from starlette.concurrency import run_in_threadpool
 
 from app.api import problems
-from app.api.dependencies import TheCatalogues, TheHealing, TheJobs, TheModels, TheStore
+from app.api.dependencies import TheCatalogues, TheDatabase, TheHealing, TheJobs, TheModels, TheStore
 from app.api.gate.clients import TheClient
 from app.api.gate.roles import needs
 from app.api.paging import Cursor, Limit
@@ -19,6 +19,7 @@ from app.api.reading import StrictRoute, require_step
 from app.api.routes.templates import Number, listed, versions_of
 from app.api.stored import UNAVAILABLE, UNCHANGED, StoredFile, lost
 from app.api.waiting import LATER, accepted, finished, later, written
+from app.brought.views import origin
 from app.schemas.bounded import Bounded
 from app.schemas.problems import refusals
 from app.schemas.solids import Build, Verification
@@ -29,6 +30,7 @@ from app.solids.models import File
 from app.solids.questions import what_can_be_asked
 from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, NotFound
+from cad.brought import brought
 from cad.export import DRAWINGS, MEDIA_TYPES
 from cad.inspect import MEASURES
 from cad.regenerate import build_key
@@ -76,7 +78,7 @@ def list_model_versions(id: Id, catalogues: TheCatalogues) -> TemplateVersions:
 
 
 @router.get("/models/{id}/versions/{number}", responses=refusals(404))
-def show_model(id: Id, number: Number, catalogues: TheCatalogues) -> ModelAnswer:
+def show_model(id: Id, number: Number, catalogues: TheCatalogues, database: TheDatabase) -> ModelAnswer:
     """One model: its parameters as JSON Schema, what is measured on its solid, how that can be analysed."""
     cls = catalogues.models.get(id, number)
     described = describe(cls)
@@ -89,6 +91,7 @@ def show_model(id: Id, number: Number, catalogues: TheCatalogues) -> ModelAnswer
             "analyses": what_can_be_asked(cls),
             "film_bore": cls.film_bore,
             "picture": f"/api/v1/models/{id}/versions/{number}/picture",
+            **({"origin": origin(database, id, number)} if brought(cls) else {}),
         }
     )
 

@@ -5,6 +5,7 @@ Arguments: the folder of FreeCAD's modules, the file, and what to add to it.
 
 import math
 import sys
+from pathlib import Path
 
 sys.path.insert(0, sys.argv[1])
 import FreeCAD  # before all that belong to it
@@ -74,3 +75,4 @@ if WHAT == "memory":
 if WHAT not in ("endless",):
     document.recompute()
 document.saveAs(PLACE)
+Path("/tmp/freecad-was-run").unlink(missing_ok=True)  # by the drawing of this script

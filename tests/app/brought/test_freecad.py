@@ -27,7 +27,7 @@ def built(http, model, **parameters):
 
 def test_constants_of_cells_and_named_constraints_are_parameters(http, model):
     answer = http.get(model).json()
-    assert answer["title"] == "Main bush"
+    assert answer["title"] == "bush"
     properties = answer["parameters"]["properties"]
     assert {name: one["unit"] for name, one in properties.items()} == {
         "bore": "mm", "width": "mm", "outer_diameter": "mm",
@@ -48,7 +48,9 @@ def test_constants_of_cells_and_named_constraints_are_parameters(http, model):
 def test_a_build_is_measured_read_back_and_says_how_far_to_trust_it(http, model):
     answer = built(http, model, bore="48 mm", outer_diameter="58 mm", width="20 mm").json()
     measured = answer["measurements"]
-    assert measured["volume"]["value"] == pytest.approx(3.141592653589793 / 4 * (58**2 - 48**2) * 20, rel=1e-9)
+    assert measured["volume"]["value"] == pytest.approx(
+        3.141592653589793 / 4 * (58**2 - 48**2) * 20, rel=1e-9
+    )
     assert {name: one["value"] for name, one in measured["dimensions"].items()} == {
         "bore": 48, "width": 20, "outer_diameter": 58,
     }  # fmt: skip
