@@ -28,7 +28,7 @@ class UnreadableStep(ValueError):
     """Bytes that are not a STEP file, or one without a shape."""
 
 
-class UnreadableModel(ValueError):
+class UnreadableModel(Exception):
     """A file of a model that is not opened; `code` says why. It survives pickling."""
 
     def __init__(self, code: str, detail: str) -> None:

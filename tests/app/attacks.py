@@ -7,6 +7,7 @@ gives names in the path, and what else the request has.
 from dataclasses import dataclass, field
 
 from attacked import BAR, BINARY, BUILD, GRID, document
+from patience import until
 from serving import API, created
 from sheets import BUSH, WIDER, drafted, fresh, step
 from study_helpers import begun, done
@@ -98,6 +99,21 @@ def sheet_file(scene, who):
     return {}, {"params": {"id": fresh("attacked")}, "content": scene.sheet, "headers": BINARY}
 
 
+def model_file(scene, who):
+    step = step_file(scene, who)[1]["content"]
+    return {}, {"params": {"id": fresh("attacked")}, "content": step, "headers": BINARY}
+
+
+def brought(scene, who):
+    """A STEP file that the author brought as a model, once."""
+    if "brought" not in scene.ids:
+        scene.ids["brought"] = name = fresh("brought")
+        more = model_file(scene, who)[1]
+        job = scene.author.post(f"{API}/models/import", **{**more, "params": {"id": name}})
+        until(lambda: scene.author.get(job.headers["location"]).json()["state"] == "done")
+    return {"id": scene.ids["brought"]}, {}
+
+
 def tested(scene, who):
     names, _ = draft(scene, who)
     digest = step(scene.author, names["id"], "test")["digest"]
@@ -164,6 +180,9 @@ CALLS = {
     f"POST {API}/film-pressure": Call(FILM),
     f"POST {API}/curves": Call(more={"content": b"a [mm]\n1\n2\n", "headers": {"Content-Type": "text/csv"}}),
     f"POST {API}/worksheets/import": Call(copy=sheet_file),
+    f"POST {API}/models/import": Call(copy=model_file),
+    f"GET {MODEL}/origin": Call(copy=brought),
+    f"GET {MODEL}/original": Call(copy=brought),
     f"POST {API}/worksheets/check": Call({"text": BUSH}),
     f"POST {API}/worksheets": Call(copy=new_sheet),
     f"PATCH {SHEET}": Call({"text": WIDER}, copy=draft),

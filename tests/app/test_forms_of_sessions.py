@@ -21,7 +21,7 @@ PLAIN = ["/tables"]
 """Asked by scripts of a page with JSON; nothing changes."""
 URLENCODED = {"Content-Type": "application/x-www-form-urlencoded"}
 MULTIPART = {"Content-Type": "multipart/form-data; boundary=cut"}
-WITH_FILES = ["/worksheets/import", "/designs/{id}/variants/file", "/designs/{id}/variants"]
+WITH_FILES = ["/worksheets/import", "/models/import", "/designs/{id}/variants/file", "/designs/{id}/variants"]
 
 
 def filled(path):

@@ -1,0 +1,97 @@
+"""Files of FreeCAD before they are opened: what is taken, what is left out, what is refused."""
+
+import io
+import time
+import zipfile
+
+import pytest
+
+from cad.errors import UnreadableModel
+from cad.freecad.admission import DOCUMENT, MOST_BYTES, admitted
+
+PLAIN = '<Object type="PartDesign::Body" name="Body" id="1"/>'
+
+
+def document(inside=PLAIN):
+    return f'<?xml version="1.0"?><Document SchemaVersion="4"><Objects>{inside}</Objects></Document>'.encode()
+
+
+def packed(parts=None, method=zipfile.ZIP_DEFLATED):
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", method) as package:
+        for name, content in {DOCUMENT: document(), **(parts or {})}.items():
+            package.writestr(name, content)
+    return out.getvalue()
+
+
+def refusal(content):
+    begun = time.monotonic()
+    with pytest.raises(UnreadableModel) as caught:
+        admitted(content)
+    assert time.monotonic() - begun < 5
+    return caught.value.code
+
+
+def test_only_parts_that_the_document_names_are_left():
+    inside = PLAIN + '<Part file="Shape.brp"/>'
+    content = packed({DOCUMENT: document(inside), "Shape.brp": b"shape", "run.FCMacro": b"1", "a/b.py": b"1",
+                      "GuiDocument.xml": b"<x/>"})  # fmt: skip
+    with zipfile.ZipFile(io.BytesIO(admitted(content))) as package:
+        assert package.namelist() == [DOCUMENT, "Shape.brp"]
+
+
+@pytest.mark.parametrize(
+    ("inside", "code"),
+    [
+        ('<Object type="Part::FeaturePython" name="S"/>', "python_feature"),
+        ('<Object type="App::FeaturePython" name="S"/>', "python_feature"),
+        ('<Object type="Sketcher::SketchObjectPython" name="S"/>', "python_feature"),
+        ('<Property name="Proxy" type="App::PropertyPythonObject"/>', "python_feature"),
+        ('<Property name="P"><Python value="x" module="os" class="system"/></Property>', "python_feature"),
+        ('<Extension type="App::GroupExtensionPython" name="E"/>', "python_feature"),
+        ('<Object type="Part::ImportStep" name="S"/>', "reads_files"),
+        ('<Property name="F" type="App::PropertyFile"/>', "reads_files"),
+        ('<Property name="F" type="App::PropertyFileIncluded"/>', "reads_files"),
+        ('<XLink file="/etc/other.FCStd" name="Body"/>', "reads_files"),
+        ('<Object type="Fem::FemSolverObject" name="S"/>', "not_offered"),
+        ('<Object type="Path::Feature" name="S"/>', "not_offered"),
+        (200 * "<a>" + 200 * "</a>", "package"),
+    ],
+)
+def test_what_runs_python_or_reads_files_is_refused(inside, code):
+    assert refusal(packed({DOCUMENT: document(inside)})) == code
+
+
+def test_declared_entities_are_refused():
+    bomb = b'<!DOCTYPE d [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;">]><Document>&b;</Document>'
+    assert refusal(packed({DOCUMENT: bomb})) == "package"
+
+
+def test_a_bomb_is_refused_by_what_it_unpacks_to():
+    content = packed({"Shape.brp": bytes(MOST_BYTES + 1)})
+    assert len(content) < 2**18
+    assert refusal(content) == "too_large"
+
+
+def test_a_crowd_of_parts_is_refused():
+    assert refusal(packed({f"{n}.brp": b"" for n in range(3000)})) == "too_large"
+
+
+@pytest.mark.parametrize(
+    "content",
+    [b"", b"PK\x03\x04", packed()[:-30], packed({DOCUMENT: b"<Document>"}), packed()[:40] + packed()[60:]],
+)
+def test_a_damaged_package_is_refused(content):
+    assert refusal(content) == "package"
+
+
+@pytest.mark.parametrize("parts", [{DOCUMENT: b"<html/>"}])
+def test_another_document_is_refused(parts):
+    assert refusal(packed(parts)) == "not_freecad"
+
+
+def test_a_package_without_a_document_is_refused():
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as package:
+        package.writestr("word/document.xml", "<x/>")
+    assert refusal(out.getvalue()) == "not_freecad"
