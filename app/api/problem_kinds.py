@@ -124,7 +124,7 @@ TABLE: dict[type[Exception], Kind] = {
         "not-sheet", 415, "The body is not said to be a file", "send the file as application/octet-stream"
     ),
     NotModel: Kind(
-        "not-model", 415, "The body is not said to be a file", "send the file as application/octet-stream"
+        "not-model", 415, "The body is not said to be a model", "send the file as application/octet-stream"
     ),
     NotStep: Kind("not-step", 415, "The body is not said to be STEP", "send the file as model/step"),
     NotForm: Kind("not-a-form", 415, "The body is not a form", "send application/x-www-form-urlencoded"),
@@ -196,7 +196,9 @@ TABLE: dict[type[Exception], Kind] = {
         "program-missing", 503, "The program that draws the model is not here", "install it; see `detail`"
     ),
     UnreadableModel: Kind("unreadable-model", 422, "The file is not taken as a model", "see `detail`"),
-    ModelIdTaken: Kind("model-id-taken", 409, "The id is taken", "choose another id; see `detail`"),
+    ModelIdTaken: Kind(
+        "model-id-taken", 409, "The id of a model is taken", "choose another id; see `detail`"
+    ),
     GeometryError: Kind("geometry", 422, "No sound solid came out", "change the parameters in `errors`"),
     AnalysisError: Kind(
         "analysis", 422, "The solid could not be analysed", "see `errors`; fillets and less accuracy help"
