@@ -21,8 +21,11 @@ ROOT = Path(__file__).parents[1]
 HTTP = ("app/*routes*.py", "app/*schemas*.py", "app/*api/*.py", "app/api/problems.py", "app/*guard.py")
 WEB = ("app/*web/*.py", "app/*presentation/*.py", "app/web/*.js", "app/web/*.css", "app/web/*.html")
 ABOUT = {
+    "tests/app/test_analysis_tables.py": ("app/solids/*.py", "app/designs/*.py", "cad/analysis/*.py"),
     "tests/app/test_analyses.py": ("app/solids/*.py", "app/api/routes/analyses.py", "cad/analysis/*.py"),
     "tests/app/test_analyses_designs.py": ("app/solids/*.py", "app/designs/*.py", "cad/analysis/*.py"),
+    "tests/app/test_client.py": ("app/*client/*.py", "app/reports/*.py", "app/schemas/*.py"),
+    "tests/app/test_conditional_designs_http.py": ("app/designs/*.py", "app/reports/*.py"),
     "tests/app/test_crash.py": (
         *("app/*jobs/*.py", "app/*storage/*.py", "app/*designs/*.py", "app/*workers/*.py"),
         "app/*idempotency*.py",
@@ -39,13 +42,23 @@ ABOUT = {
     "tests/app/test_designs_http.py": ("app/*jobs/*.py", "app/*workers/*.py"),
     "tests/app/test_embedded_start.py": ("app/*.py", "pyproject.toml"),
     "tests/app/test_events_resumed.py": ("app/*event*.py", "app/api/resuming.py"),
+    "tests/app/test_list_parameters.py": ("app/designs/*.py", "app/web/*.py", "cad/lists.py"),
+    "tests/app/test_other_makers.py": ("app/solids/*.py", "app/*storage/*.py"),
+    "tests/app/test_problems_hostile.py": HTTP,
+    "tests/app/test_readiness.py": ("app/api/readiness.py", "app/*workers/*.py"),
+    "tests/app/test_report_verdict.py": ("app/reports/*.py", "app/presentation/*.py"),
     "tests/app/test_report.py": ("app/reports/*.py", "app/presentation/*.py"),
     "tests/app/test_signed_reports.py": (
         "app/reports/*.py",
         "app/approvals/*.py",
         "app/approval_commands.py",
     ),
+    "tests/app/test_slow_clients.py": ("app/server.py", "app/api/gate/*.py"),
+    "tests/app/test_solve_design.py": ("app/designs/*.py", "templates/core/language/*.py"),
     "tests/app/test_study_heals.py": ("app/studies/*.py", "app/*maintenance/*.py"),
+    "tests/app/test_study_solids.py": ("app/studies/*.py", "app/solids/*.py"),
+    "tests/app/test_tolerance_analysis.py": ("app/tolerances/*.py",),
+    "tests/app/test_turns.py": ("app/*jobs/*.py",),
     "tests/app/calculations/test_calculations_as_jobs.py": (
         "app/*jobs/*.py",
         "app/*workers/*.py",

@@ -1,5 +1,6 @@
 """The lanes of the tests: one thread for numerical libraries, deadlines, and who shares a worker."""
 
+import gc
 import os
 import sys
 import time
@@ -10,6 +11,8 @@ use_one_thread()  # before NumPy is imported, here and in the servers that tests
 if sys.dont_write_bytecode:  # what is compiled is kept, here and in all processes that tests start:
     sys.dont_write_bytecode = False  # to compile takes seconds
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+gc.disable()  # until all tests are collected: what is made meanwhile lives as long as this process
 
 import forked  # noqa: E402
 import pytest  # noqa: E402
@@ -66,6 +69,12 @@ def pytest_collection_modifyitems(config, items):
     if getattr(config.option, "loadgroup", False):
         require_distinct(items)
     items.sort(key=lambda item: rank(group_of(item)))
+
+
+def pytest_collection_finish(session):
+    """Keep modules and tests out of collections: there are a million objects, and each walks through all."""
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture(scope="session", autouse=True)

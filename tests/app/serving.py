@@ -6,18 +6,20 @@ import signal
 import socket
 import threading
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import dedent
 
 import httpx
+import pytest
 import uvicorn
 from components import ON_POSTGRESQL, shared
 from forked import Forked
 from patience import GLANCE, patient, until
 
+from app import main
 from app.client import Client
 from app.designs.schemas import PAPER
 from app.main import create_app
@@ -187,13 +189,8 @@ def serving(settings: Settings):
     app = create_app(settings)
     server = uvicorn.Server(configuration(app, settings, port=0))
     thread = threading.Thread(target=server.run, name="uvicorn")
-    thread.start()
     try:
-        end = time.monotonic() + PATIENCE
-        while not server.started:
-            assert thread.is_alive(), "the server did not start"
-            assert time.monotonic() < end, "the server takes too long to start"
-            time.sleep(0.02)
+        started(server, thread)
         port = server.servers[0].sockets[0].getsockname()[1]
         prepared(f"http://127.0.0.1:{port}")
         yield Served(f"http://127.0.0.1:{port}", app, settings)
@@ -201,6 +198,18 @@ def serving(settings: Settings):
         server.should_exit = True
         thread.join(PATIENCE)
         assert not thread.is_alive(), "the server did not stop"
+
+
+def started(server: uvicorn.Server, thread: threading.Thread) -> None:
+    """Wait until the server has started; tests/conftest.py has spared the program from collections."""
+    end = time.monotonic() + PATIENCE
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(main, "spared_by_collections", nullcontext)
+        thread.start()
+        while not server.started:
+            assert thread.is_alive(), "the server did not start"
+            assert time.monotonic() < end, "the server takes too long to start"
+            time.sleep(0.02)
 
 
 def prepared(url: str) -> None:

@@ -101,6 +101,7 @@ class TestAnswer:
         assert fitting["outputs"]["stiffness"]["error"] <= 0.05
         assert fitting["level"] == "coarse"
 
+    @pytest.mark.slow
     def test_stress(self, http):
         """Under 1 N·m: τ = 16 / (π d³), von Mises √3 τ; it converges where nothing is sharp."""
         output = asked(http, bar(20, 12), outputs=["maximum_stress"])["outputs"]["maximum_stress"]
@@ -202,6 +203,7 @@ class TestSurface:
 
 
 class TestOfABuild:
+    @pytest.mark.slow
     def test_all_questions_with_their_answers(self, http):
         torsion = asked(http, bar(25), outputs=["stiffness"])
         bending = asked(http, bar(25), kind="bending", outputs=["stiffness"])
@@ -223,6 +225,7 @@ class TestFoundAgain:
         assert asked(http, bar("2e1", "40.0")) == torsion
         assert jobs(http) == before
 
+    @pytest.mark.slow
     def test_what_is_missing_is_added(self, http):
         new = bar(21)
         first = asked(http, new, outputs=["stiffness"])
@@ -316,6 +319,7 @@ class TestRefusals:
         refusal = problem(ask(http, bar(ends="none")), 422, "analysis")
         assert refusal["errors"][0]["code"] == "no_shaft"
 
+    @pytest.mark.slow
     def test_no_end(self, http):
         """A failure of the analysis itself; the next request asks again."""
         for _ in range(2):

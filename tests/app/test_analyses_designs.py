@@ -104,6 +104,7 @@ class TestRelation:
         items = http.get(f"{API}/jobs?limit=200").json()["items"]
         assert {job["kind"] for job in items if job["design"] == design["id"]} == {"regenerate_and_analyse"}
 
+    @pytest.mark.slow
     def test_a_tolerance_that_is_not_met_is_a_warning_in_the_report(self, http):
         wanted = {"torsion": {"tolerance": 1e-7}}
         document = train("15 mm")

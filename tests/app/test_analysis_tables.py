@@ -140,6 +140,7 @@ class TestRelation:
         once, twice = (np.array(one["greatest_von_mises"]["value"]) for one in answers)
         assert twice == pytest.approx(2 * once, rel=1e-9)
 
+    @pytest.mark.slow
     def test_page_and_files_show_it(self, http, design):
         page = http.get(f"/designs/{design['id']}").text
         assert 'data-table="stress_of_force_1"' in page

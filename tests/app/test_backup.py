@@ -329,7 +329,7 @@ class Writers:
                     self.acknowledged.append((design["id"], design["revision"], design["state"]))
 
 
-@pytest.mark.parametrize("each", [6, pytest.param(25, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("each", [3, pytest.param(25, marks=pytest.mark.slow)])
 def test_a_backup_among_writes_is_complete(folders, tmp_path, each):
     busy, changes = tmp_path / "busy", DESIGNS * each
     with serving(Settings(data=busy, queue_limit=1000, client_queue_limit=1000)) as server:

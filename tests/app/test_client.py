@@ -7,6 +7,7 @@ import json
 import httpx
 import pytest
 from fastapi import Request
+from patience import patient
 from serving import free_port, moody, paper
 
 from app.api.gate.clients import HEADER, get_client
@@ -84,6 +85,7 @@ def test_explain_copy_restore_and_delete(client):
     assert missing.value.status == 404
 
 
+@pytest.mark.slow
 def test_a_report_and_the_worksheet_of_a_design(client):
     design = client.create(paper(name="to be signed"))
     assert client.report(design.id).startswith(b"%PDF-")
@@ -252,7 +254,7 @@ def test_the_name_is_sent_as_the_service_reads_it(served, monkeypatch):
     with Client(served.url) as client:
         client.create({"name": "named too"})
     assert heard[-1] == f"name:{user_at_host()}"
-    with httpx.Client(base_url=served.url, trust_env=False) as plain:
+    with httpx.Client(base_url=served.url, timeout=patient(60), trust_env=False) as plain:
         answer = plain.post("/api/v1/designs", json={"name": "x"}, headers={HEADER: "a" * 101})
     assert answer.status_code == 422
 

@@ -74,6 +74,7 @@ def test_the_network_has_the_choice_that_is_tested(http, design):
     assert {("film.viscosity_law", "shell.wall"), ("diameter", "shell.wall")} <= ends
 
 
+@pytest.mark.slow
 def test_the_report_writes_relations_as_formulas(http, design):
     page = read(http, design).text
     assert WIDTH.replace("<", "&lt;") in page

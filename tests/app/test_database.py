@@ -11,7 +11,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-from patience import until
+from patience import patient, until
 from sqlalchemy import delete, event, func, select
 from sqlalchemy.exc import IntegrityError, OperationalError
 
@@ -49,8 +49,8 @@ def together(database):
     def run(*units):
         busy, gate = threading.Event(), threading.Event()
         with ThreadPoolExecutor(len(units) + 1) as pool:
-            pool.submit(database.write, lambda session: (busy.set(), gate.wait(10)))
-            assert busy.wait(10)
+            pool.submit(database.write, lambda session: (busy.set(), gate.wait(patient(60))))
+            assert busy.wait(patient(60))
             futures = [pool.submit(database.write, unit) for unit in units]
             until(lambda: database._writer._waiting.qsize() >= len(units))
             gate.set()

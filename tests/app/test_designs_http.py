@@ -39,7 +39,7 @@ def looping(http):
     return answer.json(), answer.headers["location"]
 
 
-def until(http, job, state, seconds=20.0):
+def until(http, job, state, seconds=60.0):
     return wait_until(lambda: http.get(job).json(), lambda job: job["state"] == state, seconds)
 
 
@@ -271,6 +271,7 @@ class TestJobs:
 
 
 class TestWhileAJobLoops:
+    @pytest.mark.slow
     def test_the_service_answers_and_the_deadline_ends_it(self, http, served, monkeypatch):
         dispatcher = served.jobs._dispatcher
         monkeypatch.setattr(dispatcher, "_limits", replace(dispatcher._limits, deadline=3.0))

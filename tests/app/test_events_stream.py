@@ -5,6 +5,7 @@ from contextlib import contextmanager
 
 import httpx
 import pytest
+from patience import patient
 from serving import API, created, heard, moody, patched
 
 DESIGNS = f"{API}/designs"
@@ -19,7 +20,7 @@ class Listener:
         self.thread = threading.Thread(target=self.listen, args=(url, path))
 
     def listen(self, url, path):
-        with httpx.stream("GET", f"{url}{path}", timeout=30, trust_env=False) as stream:
+        with httpx.stream("GET", f"{url}{path}", timeout=patient(60), trust_env=False) as stream:
             self.type = stream.headers["content-type"]
             for name, data in heard(stream):
                 self.events.append((name, data))
@@ -36,9 +37,9 @@ class Listener:
 def listening(served, path, until=lambda name, data: False):
     listener = Listener(served.url, path, until)
     listener.thread.start()
-    assert listener.started.wait(10)
+    assert listener.started.wait(patient(60))
     yield listener
-    listener.thread.join(30)
+    listener.thread.join(patient(60))
     assert not listener.thread.is_alive(), listener.events
 
 

@@ -18,8 +18,10 @@ from hostile import (
     every_route,
 )
 from serving import API, created, moody
+from sqlalchemy import select
 
 from app.api.reading import SHEET_TYPES
+from app.storage.tables import DesignRow, DesignTagRow, JobRow, RevisionRow
 
 ROUTES = sorted(set(every_route(APP)))
 SAFE = {"GET", "HEAD", "OPTIONS"}
@@ -40,6 +42,9 @@ PROTECTION = {
 }
 
 
+STORED = DesignRow, DesignTagRow, RevisionRow, JobRow
+
+
 @pytest.fixture(scope="module")
 def victim(served):
     """A design with a part, and the hash of its STEP file."""
@@ -50,15 +55,18 @@ def victim(served):
 
 
 @pytest.fixture
-def unchanged(served, http, victim):
+def unchanged(served, victim):
     """Whatever the test does changes nothing: no design, revision or job comes or goes."""
 
+    database = served.app.state.services.database
+
     def state():
-        designs, jobs = (http.get(f"{API}/{kind}?limit=20").json()["items"] for kind in ("designs", "jobs"))
-        revisions = http.get(f"{API}/designs/{victim['design']}/revisions").json()
-        return [one["id"] for one in designs], [one["id"] for one in jobs], revisions
+        with database.read() as session:
+            tables = (session.execute(select(*table.__table__.columns)) for table in STORED)
+            return [sorted(map(repr, rows)) for rows in tables]
 
     before = state()
+    assert any(victim["design"] in row for row in before[0])
     yield
     assert state() == before
 

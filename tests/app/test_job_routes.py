@@ -87,7 +87,7 @@ class Overheard:
 
     async def sent(self, text):
         """Wait until the app has sent this text."""
-        async with asyncio.timeout(patient(10)):
+        async with asyncio.timeout(patient(60)):
             while text not in self.body:
                 await asyncio.sleep(GLANCE)
 
@@ -152,7 +152,7 @@ def test_a_job_is_watched_to_its_end(client, jobs, database):
     gate = threading.Event()
 
     def gated(job, context):
-        assert gate.wait(patient(10))
+        assert gate.wait(patient(60))
         return handler(job, context)
 
     jobs.register("regenerate", gated)

@@ -141,7 +141,11 @@ def test_variants_may_have_pins_of_their_own(http):
 
 
 @pytest.mark.parametrize(
-    ("example", "pins", "journal"), [("engine", [0, 180, 180, 0], 26), ("v8", [45, 135, 315, 225], 28)]
+    ("example", "pins", "journal"),
+    [
+        ("engine", [0, 180, 180, 0], 26),
+        pytest.param("v8", [45, 135, 315, 225], 28, marks=pytest.mark.slow),
+    ],
 )
 def test_engines_of_the_gallery_have_their_crankshaft(http, example, pins, journal):
     document = bearings_of(GALLERY[example].document)

@@ -38,7 +38,7 @@ def varied(net, count):
 
 
 @pytest.mark.parametrize("template", TEMPLATES, ids=lambda key: f"{key[0]} {key[1]}")
-@pytest.mark.parametrize("count", [2, 5])
+@pytest.mark.parametrize("count", [2, pytest.param(5, marks=pytest.mark.slow)])
 def test_property_rows_of_a_template_equal_designs(template, count):
     cls = CATALOGUES.templates.get(*template)
     # without a level a design starts higher where an input, such as a groove, asks for it

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from serving import API, HANG, created
 
 QUICK = settings(
-    max_examples=150,
+    max_examples=60,
     database=None,
     phases=[Phase.explicit, Phase.generate],
     suppress_health_check=list(HealthCheck),

@@ -122,6 +122,7 @@ class TestAnotherMaker:
         assert refusal["analysis"] == f"{API}/analyses/{analysis['id']}"
 
 
+@pytest.mark.slow
 def test_damage_while_serving_is_503_and_not_ready(shared):
     """The last test of that server."""
     served, http, _ = shared

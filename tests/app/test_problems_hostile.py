@@ -243,7 +243,7 @@ class TestArrays:
         answer = post(http, f"{FILM}/evaluate", json.dumps({"inputs": {**OIL_FILM, **arrays}}))
         assert {"radial_load", "speed"} & faults(answer).keys()
 
-    @pytest.mark.parametrize("axes", [2, 4])
+    @pytest.mark.parametrize("axes", [2, pytest.param(4, marks=pytest.mark.slow)])
     def test_a_relation(self, http, axes):
         parameters = {f"a{i}": {"value": axis(i, 20_000), "unit": "mm"} for i in range(axes)}
         parameters["b"] = "= " + " + ".join(parameters)

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import httpx
 import pytest
-from patience import until
+from patience import patient, until
 from serving import problem, serving
 from sqlalchemy import event
 
@@ -75,6 +75,7 @@ class TestProcesses:
         finally:
             worker.close()
 
+    @pytest.mark.slow
     def test_a_stopped_forkserver(self):
         worker = LocalProcesses(preload=())
         try:
@@ -106,7 +107,7 @@ def test_answers_are_kept_for_a_second(monkeypatch):
 
 def test_the_answer_names_what_fails(tmp_path):
     with serving(Settings(data=tmp_path, minimum_free_mb=10**12)) as server:
-        with httpx.Client(base_url=server.url, trust_env=False) as http:
+        with httpx.Client(base_url=server.url, timeout=patient(60), trust_env=False) as http:
             answer = http.get("/readyz")
             assert "space" in [fault["name"] for fault in problem(answer, 503, "not-ready")["errors"]]
             assert int(answer.headers["retry-after"]) > 0

@@ -105,6 +105,7 @@ class TestContents:
         assert "→" not in first
         assert "= film.bearing_diameter 48 mm 48 mm" in first
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("units", ["si", "us"])
     def test_only_parameters_that_changed_are_marked(self, http, units):
         design = created(http, paper(name="marks"))

@@ -67,6 +67,7 @@ def test_a_violated_limit_never_prints_its_opposite(http, cycle):
         assert re.search(r"minimum film thickness [\d.]+ [µμ]m is below permissible film 50 [µμ]m", text)
 
 
+@pytest.mark.slow
 def test_plots_stand_beside_the_results(http):
     vibration = {
         "template": "torsional_vibration",

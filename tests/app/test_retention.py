@@ -2,6 +2,7 @@
 
 import pytest
 from components import ON_POSTGRESQL
+from patience import patient
 from serving import API, created, moody, revision, settled
 from sqlalchemy import delete, func, select, update
 
@@ -152,7 +153,7 @@ class TestRows:
 
         monkeypatch.setattr(retention, "run", run)
         retention.start()
-        retention._thread.join(10)
+        retention._thread.join(patient(60))
         assert len(rounds) == 3
         assert "could not be deleted" in caplog.text
 

@@ -221,6 +221,7 @@ def test_who_leaves_a_save_stops_it_and_nothing_is_written(http, log):
     assert answer.status_code == 201, "the key of the save that was stopped is free"
 
 
+@pytest.mark.slow
 def test_a_save_that_another_overtakes_leaves_nothing_running(http, log):
     design = saved(http)
     place, match = f"{DESIGNS}/{design['id']}", {"If-Match": '"1"'}
@@ -233,6 +234,7 @@ def test_a_save_that_another_overtakes_leaves_nothing_running(http, log):
     assert http.get(place).json()["revision"] == 2
 
 
+@pytest.mark.slow
 def test_a_save_that_is_repeated_is_the_same_job(http, log):
     document, headers = sleeping(3), {"Idempotency-Key": "twice"}
     first = http.post(DESIGNS, json=document, headers=headers)
@@ -264,6 +266,7 @@ def test_a_preview_that_takes_long_goes_on_as_a_job(http, log):
     assert http.get(place).json() == before, "nothing is saved"
 
 
+@pytest.mark.slow
 def test_a_preview_for_which_nobody_waits(http, served):
     design = saved(http)
     answer = http.post(f"{DESIGNS}/{design['id']}/preview", json=patch_of(0.1), headers=AT_ONCE)

@@ -6,6 +6,7 @@ import threading
 from contextlib import closing
 
 import pytest
+from patience import patient
 
 from app.jobs.shutdown import on_stop_signal
 
@@ -32,7 +33,7 @@ def test_a_signal_acts_and_reaches_the_server(handled, number):
             signal.raise_signal(number)
             assert handled == [number]
             assert not acted.is_set()  # not in the handler, which may interrupt whoever holds a lock
-            await asyncio.wait_for(acted.wait(), 10)
+            await asyncio.wait_for(acted.wait(), patient(60))
         acted.clear()
         signal.raise_signal(number)
         await asyncio.sleep(0)

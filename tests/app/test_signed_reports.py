@@ -135,6 +135,7 @@ def test_other_bytes_of_the_same_text_are_named(room, design, printed):
     assert "the text is the same, but pictures, fonts or hidden parts differ" in failed
 
 
+@pytest.mark.slow
 def test_an_unknown_digest_and_another_name_are_named(room, design, printed):
     approvals = approvals_of(room.author, design)
 
@@ -149,6 +150,7 @@ def test_an_unknown_digest_and_another_name_are_named(room, design, printed):
     assert "calculated: the file says Eve at" in forged(name="Eve")[0]
 
 
+@pytest.mark.slow
 def test_the_report_of_another_revision_is_named(room, design, printed, unsigned):
     other = with_block(printed, lambda block: block.model_copy(update={"revision": 2}))
     failed = failures(other, approvals_of(room.author, design, 2), unsigned)
@@ -226,6 +228,7 @@ def test_reports_of_another_service_and_files_that_are_none_end_in_a_sentence(ve
         assert "Error: " in verified(wrong)
 
 
+@pytest.mark.slow
 def test_a_block_with_another_place_for_a_design_is_refused_before_anything_is_asked(verified, printed):
     """It comes from whoever made the file, and becomes part of an address."""
     for design in ("../principals", "a/b?c=d", "\x1b[31m", "", "x" * 5000):
@@ -234,6 +237,7 @@ def test_a_block_with_another_place_for_a_design_is_refused_before_anything_is_a
         assert "\x1b" not in said
 
 
+@pytest.mark.slow
 def test_a_service_that_is_away_or_does_not_know_the_key_is_named(verified, printed):
     assert "no service answers at http://127.0.0.1:1" in verified(printed, url="http://127.0.0.1:1")
     assert "Error: " in verified(printed, key="cw_aaaaaaaaaa_" + "b" * 43)

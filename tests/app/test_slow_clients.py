@@ -134,6 +134,7 @@ def test_a_body_in_pieces_that_comes_fast_enough(slow):
     assert problem(answer, 422, "invalid-inputs")["errors"]
 
 
+@pytest.mark.slow
 def test_an_answer_that_nobody_reads(slow):
     """The server gives up the connection instead of keeping its answers for ever."""
     with connected(slow) as connection:
@@ -141,7 +142,7 @@ def test_an_answer_that_nobody_reads(slow):
         connection.settimeout(0.1)
         with pytest.raises(OSError, match=r"reset|[Bb]roken pipe"):
             asked_for_ever(connection)
-    assert 'cut_total{why="unread"}' in httpx.get(f"{slow.url}/metrics", trust_env=False).text
+    assert cut_readers(slow) > 0
 
 
 def asked_for_ever(connection: socket.socket) -> None:
@@ -161,7 +162,7 @@ def read_to_the_end(connection: socket.socket) -> None:
 
 def cut_readers(slow) -> float:
     """How many connections the server has cut because nobody read from them."""
-    text = httpx.get(f"{slow.url}/metrics", trust_env=False).text
+    text = httpx.get(f"{slow.url}/metrics", timeout=PATIENCE, trust_env=False).text
     counts = [line.split()[-1] for line in text.splitlines() if 'cut_total{why="unread"}' in line]
     return float(counts[0]) if counts else 0.0
 
@@ -208,7 +209,7 @@ def test_too_many_connections(slow):
         for connection in held:
             connection.close()
         end = time.monotonic() + PATIENCE
-        while httpx.get(f"{slow.url}/healthz", trust_env=False).status_code != 200:
+        while httpx.get(f"{slow.url}/healthz", timeout=PATIENCE, trust_env=False).status_code != 200:
             assert time.monotonic() < end
 
 
@@ -254,4 +255,4 @@ def test_places_for_streams_are_counted_exactly():
 
 @pytest.mark.parametrize("slug", ["too-slow", "head-too-large", "not-http", "too-many-connections"])
 def test_each_problem_is_explained(slow, slug):
-    assert httpx.get(f"{slow.url}/problems/{slug}", trust_env=False).json()["remedy"]
+    assert httpx.get(f"{slow.url}/problems/{slug}", timeout=PATIENCE, trust_env=False).json()["remedy"]

@@ -69,6 +69,7 @@ def test_analytic_power_grows_with_the_square_of_the_speed_and_the_cube_of_the_r
         assert solution.revision == 7
 
 
+@pytest.mark.slow
 def test_both_clearances_of_one_film_are_found_through_a_chain_of_relations():
     """The same roots as the template's own solve, less the 1 µm that the chain adds."""
     solution = asked(FILMS, "clearance", "2 um", "0.5 mm", THIN, "2 um")
@@ -102,6 +103,7 @@ def test_the_curve_passes_the_target_at_every_solution():
     assert at_roots == pytest.approx([2.0, 2.0], rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_tolerance_confirms_at_another_level_than_that_of_the_curve():
     coarse = {**FILMS, "steps": {"film": {**FILMS["steps"]["film"], "tolerance": 0.05}}}
     solution = asked(coarse, "clearance", "20 um", "60 um", THIN, "2 um", tolerance=1e-3)

@@ -92,6 +92,13 @@ def server(tmp_path):
         yield server
 
 
+@pytest.fixture
+def soon(tmp_path):
+    """A server that gives what hangs half a second."""
+    with Stopping(tmp_path, drain=0.5) as server:
+        yield server
+
+
 def test_a_hung_job_goes_back_into_the_queue(server):
     server.running_job()
     for pid in descendants(server.process.pid):  # now they ignore every signal but one
@@ -212,8 +219,9 @@ def test_a_request_that_waits_for_a_job_is_answered(server):
     assert answers[0].json()["state"] == "regenerating"
 
 
-def test_what_hangs_beyond_the_time_is_ended_hard(server):
+def test_what_hangs_beyond_the_time_is_ended_hard(soon):
     """A transaction that waits for another program's lock cannot be hurried."""
+    server = soon
     with sqlite3.connect(server.data / "crankwright.sqlite", isolation_level=None) as other:
         other.execute("BEGIN IMMEDIATE")
         with ThreadPoolExecutor(1) as pool:

@@ -123,6 +123,7 @@ def test_a_study_in_chunks_and_again_has_the_same_bytes(http):
     assert content(http, first, "npz") == content(http, again, "npz")
 
 
+@pytest.mark.slow
 def test_what_fails_refuses_its_own_rows_and_the_rest_goes_on(http):
     """Of five sizes, one raises, one crashes, one never ends."""
     models = {"cube": {"id": "fussy", "version": 1, "parameters": {"size": "= size"}}}

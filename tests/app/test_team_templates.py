@@ -167,6 +167,7 @@ class TestDesigns:
         assert patched(http, design, change)["state"] == "current"
         assert "cannot be calculated" not in http.get(f"/designs/{design['id']}").text
 
+    @pytest.mark.slow
     def test_a_design_of_a_quarantined_model_is_read_and_its_jobs_say_why(self, http, own):
         file = own / "moody_v1.py"
         text = file.read_text()
@@ -215,6 +216,7 @@ class TestReload:
         until(lambda: value(http, 9) is None)
         problem(doubled(http, 9), 404, "unknown-template")
 
+    @pytest.mark.slow
     def test_a_worksheet_does_not_show_another_code_than_that_of_its_results(self, http, own):
         file = own / "double_v10.py"
         file.write_text(TWICE)
@@ -313,6 +315,7 @@ class TestCommands:
         report = json.loads(result.output)
         assert (report["sound"], report["faults"][0]["line"]) == (False, 15)
 
+    @pytest.mark.slow
     def test_an_endless_file(self, tmp_path):
         (tmp_path / "double_v1.py").write_text(ENDLESS)
         result = self.run("check-template", tmp_path / "double_v1.py", "--seconds", "1")

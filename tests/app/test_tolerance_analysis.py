@@ -161,6 +161,7 @@ def test_one_parameter_used_twice_is_one_random_number(http):
     assert answer["analysis"]["toleranced"]["bore"]["zone"] == "H7"
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_answer(http):
     design = created(http, document(**CLEARANCE))
     bodies = ({"seed": seed, "points": 1024} for seed in (7, 7, 8))

@@ -74,6 +74,7 @@ def order(claim):
 
 
 class TestTurns:
+    @pytest.mark.slow
     def test_a_newcomer_behind_200_jobs_is_second(self, put, claim):
         for number in range(200):
             put(ANNA, f"anna {number}")

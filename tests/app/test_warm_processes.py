@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 import victims
+from patience import patient
 from test_workers import alive, eventually
 
 from app.workers.base import Limits
@@ -76,7 +77,7 @@ def test_cancelling_ends_the_process(single, tmp_path):
         assert eventually(lambda: file.exists() and file.read_text())
         cancelled.set()
         with pytest.raises(JobCancelled):
-            future.result(5)
+            future.result(patient(60))
     assert eventually(lambda: not alive(int(file.read_text())))
 
 
@@ -85,6 +86,7 @@ def test_a_process_that_keeps_memory_takes_no_other_request(single):
     assert single.run(victims.process_id) != pid
 
 
+@pytest.mark.slow
 def test_processor_time_counts_for_each_request_anew(single):
     pid, before = single.run(victims.processor_limit, limits=Limits(1, 512))
     assert single.run(victims.spend, 1.5, limits=USUAL) == pid
@@ -93,6 +95,7 @@ def test_processor_time_counts_for_each_request_anew(single):
     assert after >= before + 1
 
 
+@pytest.mark.slow
 def test_neighbours_survive_crashes(worker):
     with ThreadPoolExecutor(4) as pool:
         crashes = [pool.submit(worker.run, victims.segfault) for _ in range(4)]

@@ -8,12 +8,17 @@ from cad.regenerate import Build, regenerate
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """A test that asks for `model` runs for every model found: a new file is covered when it is there."""
+    """A test that asks for `model` runs for every model found: a new file is covered when it is there.
+
+    A file of tests may name in `SLOW_MODELS` those that belong to the slow lane.
+    """
     if "model" in metafunc.fixturenames:
-        result = list(models())
-        metafunc.parametrize(
-            "model", result, ids=[f"{cls.id}_v{cls.version}" for cls in result], scope="session"
-        )
+        slow = getattr(metafunc.module, "SLOW_MODELS", {})
+        result = [
+            pytest.param(cls, id=f"{cls.id}_v{cls.version}", marks=slow.get((cls.id, cls.version), ()))
+            for cls in models()
+        ]
+        metafunc.parametrize("model", result, scope="session")
 
 
 @pytest.fixture(scope="session")

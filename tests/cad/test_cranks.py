@@ -158,6 +158,7 @@ class TestSolids:
         result = build(Crankshaft, {"journal_diameter": "40 mm", "rear_diameter": "40 mm"}).dimensions
         assert (result["rear_diameter"], result["rear_length"], result["journal_length"]) == (40, 32, 28)
 
+    @pytest.mark.slow
     def test_drilling_whose_mouth_touches_the_bore_at_the_web_is_whole(self) -> None:
         # With bores drawn part by part, OpenCASCADE lost nearly all of this shaft.
         given = {

@@ -211,6 +211,7 @@ class TestLists:
         text = "[" + "1, " * LONGEST_TEXT + "1] deg"
         assert listed(text) == text
 
+    @pytest.mark.slow
     def test_long_list_stands_in_several_strings_of_the_header(self) -> None:
         radii = [70 + n / 7 for n in range(32)]
         given = {**PLAIN, "pin_angles": degrees(*(22.5 * n for n in range(16)))}

@@ -21,6 +21,8 @@ from cad.step import read_step
 from templates.core.units.units import unit
 
 SHOWN = 0.9  # of the lengths and angles of an example
+SLOW_MODELS = {("crankshaft", 2): pytest.mark.slow}
+"""Its files take seconds each; crankshaft 1 and crank_throw 1, in the quick lane, have the same shapes."""
 
 
 @pytest.fixture(scope="session")
@@ -115,6 +117,7 @@ def test_everything_lies_within_the_sheet(drawing: Drawing) -> None:
         assert (points <= high + 1e-9).all()
 
 
+@pytest.mark.slow  # the order of sets, below, asks the same and more
 def test_equal_files_from_equal_steps(example: Build, dxf: bytes) -> None:
     assert derive(example.step, "dxf") == dxf
 

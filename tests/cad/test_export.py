@@ -14,6 +14,8 @@ from cad.regenerate import Build
 from cad.step import read_step
 
 STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+SLOW_MODELS = {("crankshaft", 2): pytest.mark.slow}
+"""Its files take seconds each; crankshaft 1 and crank_throw 1, in the quick lane, have the same shapes."""
 
 
 @pytest.fixture(scope="session")

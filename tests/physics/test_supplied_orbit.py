@@ -99,6 +99,7 @@ def test_turned_as_a_whole_the_orbit_turns() -> None:
         assert np.abs(seen - z).max() < limit
 
 
+@pytest.mark.slow
 def test_the_frame_may_turn() -> None:
     orbit, z = swinging()
     for frame in (1.0, -1.0):

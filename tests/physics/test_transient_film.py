@@ -78,6 +78,7 @@ def test_linear_solution_is_that_of_the_flows() -> None:
             assert np.abs(k[7]).max() < 1e-12
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("w", [-0.5, pytest.param(0.5, marks=pytest.mark.slow)])
 def test_orbit_repeats_near_that_by_mobility(w: float) -> None:
     """A load that swings about a mean: the same film, but for the history of its oil and a coarse mesh."""

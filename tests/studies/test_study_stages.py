@@ -97,6 +97,7 @@ def test_each_level_shows_its_front_its_promise_and_what_is_true_of_it(monkeypat
         assert min(off) > 0.2 if name == "short_bearing" else max(map(abs, off)) < 0.2
 
 
+@pytest.mark.slow
 def test_a_front_that_has_no_rows_left_for_other_levels_says_so(monkeypatch):
     monkeypatch.setattr(searching, "pareto_front", partial(pareto_front, effort=SMALL))
     goals = {"minimise": [LOSS], "maximise": [FILM]}

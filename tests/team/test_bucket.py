@@ -198,6 +198,7 @@ class TestOutage:
         cutter.most = None
         assert two.store.read(sha) == BYTES
 
+    @pytest.mark.slow
     def test_copies_are_served_and_nothing_is_said_to_be_missing(self, server, cutter):
         one = server(endpoint=cutter.endpoint)
         sha = one.store.put(BYTES)

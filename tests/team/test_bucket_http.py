@@ -134,6 +134,7 @@ class TestHealing:
         assert step_of(servers[1], back) == sha
         assert is_right(servers[0].get(f"{API}/artifacts/{sha}", headers=WAIT), sha)
 
+    @pytest.mark.slow
     def test_other_kinds_and_reports_come_from_the_bucket(self, servers, design):
         for http in servers:
             for kind in ("model.glb", "model.png", "report.pdf"):

@@ -84,8 +84,8 @@ def test_what_was_started_dies_with_its_starter(tmp_path, number):
         pid = int(starter.stdout.readline())
         family = until(lambda: group_of(pid), lambda members: len(members) == 2)
         starter.send_signal(number)
-        starter.wait(patient(10))
-    until(lambda: any(map(alive, family)), lambda living: not living, 10)
+        starter.wait(patient(60))
+    until(lambda: any(map(alive, family)), lambda living: not living)
 
 
 def group_of(group):

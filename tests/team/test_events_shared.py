@@ -89,6 +89,7 @@ def test_all_events_of_another_process_come_in_order_while_connections_are_ended
     assert sum(counts) >= 4 * BATCHES, "connections of both sides were ended"
 
 
+@pytest.mark.slow
 def test_eight_writers_of_two_servers_miss_nothing(own_postgres):
     each, topics = 15, [f"design:{n}" for n in range(3)]
 

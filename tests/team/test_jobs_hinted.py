@@ -92,6 +92,7 @@ def test_a_job_is_cancelled_from_another_server(own_postgres):
         assert asyncio.run(there.wait(id, PATIENT)) == "cancelled"
 
 
+@pytest.mark.slow
 def test_without_hints_the_wait_ends_with_the_poll(own_postgres):
     def silent(job, context):
         there.events.tell = list

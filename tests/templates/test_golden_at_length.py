@@ -1,4 +1,4 @@
-"""The golden cases of the versions whose cases take long, all of them; the quick lane calculates a sample.
+"""All golden cases, bad points and outputs of the versions that take long; the quick lane takes a sample.
 
 Each version is imported, so that its slow tests are related to all that it calculates with.
 """
@@ -6,19 +6,33 @@ Each version is imported, so that its slow tests are related to all that it calc
 import json
 
 import pytest
-from test_catalogue_properties import GOLDEN, SAMPLED, SLOW_LEVELS, check_case
+from test_catalogue_properties import (
+    GOLDEN,
+    SAMPLED,
+    SLOW_LEVELS,
+    assert_harmless,
+    assert_lazy,
+    bounded_givens,
+    check_case,
+)
 
 from templates.core.catalogue import golden
 from templates.oil_film import (
     cycle_heat_balance_v1,
+    mixed_friction_v1,
     oil_film_cycle_v1,
     oil_film_cycle_v2,
     oil_film_cycle_v3,
+    thermal_film_v1,
+    thrust_bearing_v1,
 )
 
 pytestmark = pytest.mark.slow
 VERSIONS = [
     cycle_heat_balance_v1.CycleHeatBalance,
+    mixed_friction_v1.MixedFriction,
+    thermal_film_v1.ThermalFilm,
+    thrust_bearing_v1.ThrustBearing,
     oil_film_cycle_v1.OilFilmCycle,
     oil_film_cycle_v2.OilFilmCycle,
     oil_film_cycle_v3.OilFilmCycle,
@@ -36,8 +50,21 @@ def test_golden_every_version_of_which_cases_are_left_out_is_here():
     }
 
 
-@pytest.mark.parametrize("cls", VERSIONS, ids=lambda cls: f"{cls.id}-{cls.version}")
+every_version = pytest.mark.parametrize("cls", VERSIONS, ids=lambda cls: f"{cls.id}-{cls.version}")
+
+
+@every_version
 def test_golden_all_results_are_unchanged(cls):
     cases = record(cls)
     for case in (*cases["cases"], *cases["levels"]):
         check_case(cls, case, case.get("precision", cases["precision"]))
+
+
+@every_version
+def test_property_bad_point_of_any_input_harms_no_neighbour(cls):
+    assert_harmless(cls, bounded_givens(cls))
+
+
+@every_version
+def test_property_every_output_computes_its_ancestors_only(cls):
+    assert_lazy(cls, cls.formulas.values())

@@ -6,6 +6,7 @@ from pathlib import Path
 import httpx
 import pytest
 from browsing import AWKWARD, CHROMIUM, FLAGS, THIRD, Watched, created
+from patience import patient
 from serving import folder_of_models, serving
 from sleeping import ALARM, folder_of_sleeper
 
@@ -49,7 +50,7 @@ def browser():
         pytest.skip("needs Debian's package chromium-headless-shell or chromium")
     from playwright.sync_api import expect, sync_playwright
 
-    expect.set_options(timeout=20_000)
+    expect.set_options(timeout=patient(30_000))
     playwright = BROWSER.enter_context(sync_playwright())
     launched = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
     BROWSER.callback(launched.close)
@@ -79,6 +80,7 @@ def watched(browser, served, request):
     """A page of a fresh visitor, on a wide screen."""
     context = browser.new_context(viewport={"width": 1440, "height": 900}, accept_downloads=True)
     is_slow = request.node.get_closest_marker("slow") is not None
+    context.set_default_timeout(patient(30_000))
     yield Watched(context.new_page(), served.url, is_slow or "plotted" in request.fixturenames)
     context.close()
 
@@ -87,6 +89,7 @@ def watched(browser, served, request):
 def plain(browser, served):
     """A page without scripts."""
     context = browser.new_context(java_script_enabled=False)
+    context.set_default_timeout(patient(30_000))
     yield Watched(context.new_page(), served.url)
     context.close()
 

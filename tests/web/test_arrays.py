@@ -23,7 +23,9 @@ def test_a_course_has_its_ends_their_places_and_gaps():
     assert "M0.0,12.0" in course([2.0] * 25).path
 
 
-@pytest.mark.parametrize("template", ["torsional_vibration/1", "bearing_load/1"])
+@pytest.mark.parametrize(
+    "template", ["torsional_vibration/1", pytest.param("bearing_load/1", marks=pytest.mark.slow)]
+)
 def test_the_browser_writes_arrays_as_the_server_does(watched, http, template):
     place = from_example(http, template)
     name = template.partition("/")[0]

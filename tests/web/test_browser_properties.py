@@ -61,6 +61,14 @@ def seen_whole(watched, path):
 
 
 @pytest.mark.usefixtures("plotted")
+def test_a_page_whose_plots_are_drawn_does_neither(watched, kinds):
+    """As the next test, for one page of plots; in the slow lane that draws those of all pages."""
+    seen_whole(watched, kinds[5])
+    assert watched.page.locator(".js-plotly-plot svg").count() > 0
+    assert watched.faults() == []
+    assert watched.page.get_by_text("could not be drawn").count() == 0
+
+
 @pytest.mark.parametrize("all_or_one", ["some", pytest.param("paths", marks=pytest.mark.slow)])
 def test_no_page_asks_an_outside_address_fails_or_breaks_the_policy(watched, request, all_or_one):
     for path in request.getfixturevalue(all_or_one):

@@ -51,6 +51,7 @@ def test_parameters_called_like_parts_of_a_form_are_previewed_and_saved(watched,
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_faults_stand_beside_inputs_with_awkward_names(watched, awkward):
     page = watched.page
     watched.open(awkward)
@@ -61,6 +62,7 @@ def test_faults_stand_beside_inputs_with_awkward_names(watched, awkward):
     expect(page.locator("[id='awkward-level-error']")).to_contain_text("a length is wanted")
 
 
+@pytest.mark.slow
 def test_faults_of_options_stand_beside_them(watched, http):
     place = from_example(http, "oil_film/2")
     for path in (place, "/templates/oil_film/2"):

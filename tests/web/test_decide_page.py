@@ -42,6 +42,7 @@ def test_decide_decides_what_it_can_and_says_what_it_took(watched, undecided, ht
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_decide_answers_in_the_units_of_the_page(watched, undecided):
     page = watched.page
     watched.open(f"{undecided}?units=us")
@@ -54,6 +55,7 @@ def test_decide_answers_in_the_units_of_the_page(watched, undecided):
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_a_limit_that_is_missing_is_given_in_its_field(watched, undecided, http):
     page = watched.page
     watched.open(undecided)

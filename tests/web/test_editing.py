@@ -36,7 +36,10 @@ def test_a_pasted_table_fills_the_curves_of_a_template(watched, tmp_path):
     assert watched.faults() == []
 
 
-@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "windows-1252"])
+@pytest.mark.parametrize(
+    "encoding",
+    ["windows-1252", *(pytest.param(one, marks=pytest.mark.slow) for one in ("utf-8-sig", "utf-16"))],
+)
 def test_a_file_is_read_as_a_spreadsheet_saved_it(watched, tmp_path, encoding):
     page = watched.page
     file = tmp_path / "loads.csv"

@@ -143,6 +143,7 @@ def test_another_load_changes_the_stress_and_starts_no_job(watched, http):
     expect(panel.locator("[data-refused]")).to_contain_text("N*m")
 
 
+@pytest.mark.slow
 def test_the_table_of_the_script_is_that_of_the_server(watched, http):
     asked(http, outputs=["stiffness", "torsional_frequency", "surface"])
     watched.open(PAGE)

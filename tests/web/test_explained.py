@@ -72,6 +72,7 @@ def test_the_table_of_sensitivities_in_american_units_on_a_narrow_page(watched, 
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_a_verdict_that_the_browser_writes_leads_there_too(watched, shell):
     watched.open(shell, wait_until="networkidle")
     payload = {"criteria": CRITERIA, "verdict": verdict(*CRITERIA)}
@@ -80,6 +81,7 @@ def test_a_verdict_that_the_browser_writes_leads_there_too(watched, shell):
     expect(watched.page.locator(".governing .why")).to_have_attribute("href", f"{shell}/explain/film.film")
 
 
+@pytest.mark.slow
 def test_a_fault_names_its_related_places(watched, shell):
     page = watched.page
     watched.open(shell)

@@ -21,6 +21,7 @@ def save(page):
     page.get_by_role("button", name=re.compile("Save as revision")).click()
 
 
+@pytest.mark.slow
 def test_a_narrow_screen_shows_why_nothing_was_saved_and_goes_to_the_fault(open_design):
     page = open_design
     page.set_viewport_size(NARROW)
@@ -91,6 +92,7 @@ def test_results_of_before_are_marked_until_the_input_is_possible_again(watched,
         expect(value).to_have_css("color", "rgb(27, 39, 51)")
 
 
+@pytest.mark.slow
 def test_what_is_wrong_with_a_cell_of_a_model_is_said_in_words(open_design):
     cell = open_design.locator('[data-parameter="model.inner_diameter"] .comes-to')
     field = open_design.locator('[name="model.inner_diameter"]')

@@ -118,6 +118,7 @@ def test_a_cancelled_calculation_is_shown(http):
     assert "cancelled" in page.text or "data-impact" in page.text
 
 
+@pytest.mark.slow
 def test_the_impact_in_a_browser(http, watched):
     design = bearing(http, "in the browser")
     watched.open("/templates/oil_film/2")

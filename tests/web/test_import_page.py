@@ -43,6 +43,7 @@ def test_a_sheet_is_imported_by_a_form_alone(plain):
     expect(page).to_have_url(f"{plain.url}/worksheets/import_by_form")
 
 
+@pytest.mark.slow
 def test_a_file_that_is_not_taken_is_explained_beside_the_form(plain):
     page = plain.page
     plain.open("/worksheets/import")

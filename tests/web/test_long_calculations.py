@@ -28,6 +28,7 @@ def test_a_long_calculation_says_how_far_it_is_and_shows_its_answer(watched, ala
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_it_can_be_stopped(watched, served):
     watched.open(PLACE)
     progress, _ = parts(watched)
@@ -39,6 +40,7 @@ def test_it_can_be_stopped(watched, served):
     assert eventually(lambda: served.app.state.services.calculations.running == 0)
 
 
+@pytest.mark.slow
 def test_who_types_something_else_stops_it(watched, served):
     watched.open(PLACE)
     progress, _ = parts(watched)
@@ -70,6 +72,7 @@ def test_a_page_whose_address_asks_for_a_long_calculation_follows_it(watched, al
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_without_scripts_a_page_links_the_job(plain):
     plain.open(f"{PLACE}?duration=5+s")
     expect(plain.page.get_by_role("link", name="a job")).to_be_visible()

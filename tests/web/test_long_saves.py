@@ -108,6 +108,7 @@ def test_who_types_something_else_stops_a_slow_preview(watched, served, place):
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_a_slow_preview_can_be_cancelled(watched, served, place):
     watched.open(place)
     progress, duration = parts(watched)
@@ -146,6 +147,7 @@ def test_a_page_calculates_nothing_again_that_its_revision_holds(watched, served
     idle(served)
 
 
+@pytest.mark.slow
 def test_without_scripts_a_slow_save_is_shown_and_can_be_cancelled(plain, served, place):
     plain.open(place)
     parts(plain)[1].fill("60.4 s")

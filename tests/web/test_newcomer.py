@@ -107,6 +107,7 @@ def step_diameters(step: bytes) -> set[float]:
     return {round(size, 6) for seen in look_at(read_step(step)).values() for size in seen.diameters(Z)}
 
 
+@pytest.mark.slow
 def test_what_is_not_saved_survives_a_reload_and_can_be_discarded(watched):
     page = created(watched)
     page.get_by_role("button", name=re.compile("Save as revision")).click()

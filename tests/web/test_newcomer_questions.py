@@ -101,6 +101,7 @@ def test_which_width_costs_least_power(bearing, watched, http):
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_the_relation_is_kept_by_varying_what_it_depends_on(bearing, watched):
     page = bearing
     page.get_by_role("link", name="New study").click()

@@ -93,6 +93,7 @@ def test_a_form_leads_to_no_other_site(http, design):
     assert answer.status_code == 422
 
 
+@pytest.mark.slow
 def test_the_history_leads_to_any_two_revisions(watched, http, paper):
     page, id = watched.page, paper.rpartition("/")[2]
     for number, speed in ((1, "6000 rpm"), (2, "7000 rpm")):
@@ -137,6 +138,7 @@ def test_odd_queries_show_the_page(http, design, query):
     assert http.get(f"/designs/{design['id']}/compare{query}").status_code == 200
 
 
+@pytest.mark.slow
 def test_narrow_pages_do_not_scroll_sideways(browser, served, http, paper):
     context = browser.new_context(viewport={"width": 390, "height": 844})
     page = context.new_page()

@@ -61,6 +61,7 @@ def test_a_relation_completes_its_names_by_keyboard(opened):
     expect(bore).to_have_value(re.compile(r"\+ 2 mm \+ model\.\w+$"))
 
 
+@pytest.mark.slow
 def test_names_of_the_same_kind_come_first_and_a_click_takes_one(opened):
     load = field(opened, "film.radial_load")
     load.fill("= ")
@@ -118,6 +119,7 @@ def test_the_picker_shows_values_by_block_and_inserts_at_the_caret(opened):
     expect(bore).to_have_value("= 2 * film.bearing_diameter + 1 mm")
 
 
+@pytest.mark.slow
 def test_values_of_the_picker_are_those_of_the_last_preview(opened):
     field(opened, "film.radial_load").fill("12.5 kN")
     expect(opened.locator("[data-state]")).to_contain_text("not saved")

@@ -17,6 +17,7 @@ def dark(browser, served):
     context.close()
 
 
+@pytest.mark.slow
 def test_the_system_decides_unless_somebody_chose(dark, served, http):
     place = served.url + from_example(http, "oil_film/1")
     dark.goto(place)

@@ -151,6 +151,7 @@ def test_many_outputs_are_grouped_by_step_and_narrowed_by_words(watched, bearing
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
 def test_a_grid_of_two_shows_a_contour_and_a_chosen_row_becomes_a_revision(plotted, watched, http, grid):
     study, design = grid

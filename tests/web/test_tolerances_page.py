@@ -89,6 +89,7 @@ def test_the_button_opens_its_page_where_its_script_never_comes(watched, toleran
     page.wait_for_url(f"**{toleranced}/tolerances*", timeout=patient(60_000))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
 def test_what_is_not_saved_is_not_analysed(watched, toleranced):
     page = watched.page

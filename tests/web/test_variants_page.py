@@ -101,6 +101,7 @@ def test_nine_bearings_of_an_engine_are_one_design_made_from_a_spreadsheet(watch
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_the_report_and_the_files_have_all_nine(http, shell):
     assert put(http, shell, engine(), XLSX).status_code == 200
     settled(http, shell)
@@ -120,6 +121,7 @@ def test_the_report_and_the_files_have_all_nine(http, shell):
         assert len(archive.namelist()) == 9
 
 
+@pytest.mark.slow
 def test_a_downloaded_table_is_taken_back_without_a_new_revision(watched, http, two):
     page = watched.page
     watched.open(two)
@@ -134,6 +136,7 @@ def test_a_downloaded_table_is_taken_back_without_a_new_revision(watched, http, 
     assert "results: verdict" in [cell.value for cell in sheet[1]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scheme", [pytest.param("light", marks=pytest.mark.slow), "dark"])
 def test_the_table_has_no_serious_fault_of_accessibility(watched, two, scheme):
     watched.page.emulate_media(color_scheme=scheme)
@@ -174,6 +177,7 @@ def test_faulty_cells_of_a_file_are_shown_in_place(watched, http, shell):
     }
 
 
+@pytest.mark.slow
 def test_a_calculation_that_refuses_a_value_is_shown_in_its_cell(watched, http, two):
     page = watched.page
     watched.open(two)
@@ -184,6 +188,7 @@ def test_a_calculation_that_refuses_a_value_is_shown_in_its_cell(watched, http, 
     assert http.get(f"{API}{two}").json()["revision"] == 2
 
 
+@pytest.mark.slow
 def test_variants_are_renamed_added_and_removed_in_place(watched, http, two):
     page = watched.page
     watched.open(two)

@@ -169,6 +169,7 @@ HIDDEN = """() => {
 }"""
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("plotted")
 @pytest.mark.parametrize("size", [pytest.param((1440, 900), marks=pytest.mark.slow), (1024, 768)])
 def test_the_part_stays_in_view_and_hides_nothing_that_has_the_focus(watched, two_steps, size):

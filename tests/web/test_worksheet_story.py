@@ -64,6 +64,7 @@ def test_a_newcomer_writes_a_worksheet_that_drives_a_part(watched, tmp_path):
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_a_released_worksheet_shows_its_text_and_its_review_on_its_template_page(watched, http):
     body = {"id": "shown_sheet", "text": '# Shown\nA [mm] = 2 mm * 3 "a length"\n', "author": "An author"}
     http.post("/api/v1/worksheets", json=body).raise_for_status()

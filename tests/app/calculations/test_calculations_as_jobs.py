@@ -129,6 +129,7 @@ def test_a_large_body_is_refused_before_it_becomes_a_job(http):
     assert faults(answer) == {"speed": "wrong_unit"}
 
 
+@pytest.mark.slow
 def test_a_large_body_becomes_a_job_without_a_check_if_no_process_is_free(http, log):
     body = {"inputs": {"duration": {"value": [4.0] * 80_000, "unit": "s"}}}
     with ThreadPoolExecutor(1) as threads:
@@ -187,6 +188,7 @@ class TestLostAnswers:
         refusal = problem(http.get(job["result"]), 410, "artifact-gone")
         assert refusal["errors"][0]["code"] == "answer_lost"
 
+    @pytest.mark.slow
     def test_a_request_that_is_lost_before_its_turn(self, server, http, log):
         ahead = [sleep(http, "1.5 s", Prefer="respond-async").headers["Location"] for _ in range(2)]
         begun(log)
@@ -213,6 +215,7 @@ class TestLostAnswers:
         assert why.startswith("There is no artifact")
 
 
+@pytest.mark.slow
 def test_progress_of_a_job_is_streamed(http):
     job = sleep(http, "2 s", Prefer="respond-async").headers["Location"]
     with http.stream("GET", f"{job}/events") as stream:
@@ -221,6 +224,7 @@ def test_progress_of_a_job_is_streamed(http):
     assert any(data.get("text") == "half asleep" for name, data in events if name == "progress")
 
 
+@pytest.mark.slow
 def test_a_second_long_job_waits_for_the_first(http, log):
     places = [sleep(http, "1 s", Prefer="respond-async").headers["Location"] for _ in range(2)]
     assert [ended(http, place)["state"] for place in places] == ["done", "done"]
@@ -239,6 +243,7 @@ def test_a_job_runs_again_after_a_restart(tmp_path, monkeypatch, log):
         assert len(begun(log)) == 2
 
 
+@pytest.mark.slow
 def test_the_files_of_a_job_are_checked_and_backed_up(tmp_path, settings):
     data = tmp_path / "data"
     with serving(settings.model_copy(update={"data": data})) as server:

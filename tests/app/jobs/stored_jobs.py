@@ -44,7 +44,7 @@ def put(jobs, database, key="a", kind=KIND):
     return id
 
 
-def ended(jobs, id, seconds=10):
+def ended(jobs, id, seconds=60):
     asyncio.run(jobs.wait(id, patient(seconds)))
     return jobs.get(id)
 
@@ -55,4 +55,4 @@ def builds(database):
 
 
 def until(condition):
-    wait_until(condition, seconds=10)
+    wait_until(condition)

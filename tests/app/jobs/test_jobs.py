@@ -162,7 +162,7 @@ def test_the_latest_progress_is_stored_while_the_job_goes_on_silently(make, data
 
 
 def test_two_jobs_run_at_the_same_time(make, database):
-    jobs, meeting = make(workers=2), threading.Barrier(2, timeout=10)
+    jobs, meeting = make(workers=2), threading.Barrier(2, timeout=patient(60))
 
     def handler(job, context):
         meeting.wait()
@@ -178,7 +178,7 @@ def test_a_slow_job_holds_up_its_like_only(make, database):
     jobs, gate = make(workers=1), threading.Event()
 
     def slow(job, context):
-        assert gate.wait(10)
+        assert gate.wait(patient(60))
         return lambda session: None
 
     jobs.register("slow", slow, is_slow=True)
@@ -197,8 +197,8 @@ def test_waiting_ends_with_the_time_or_the_job(jobs, database):
     assert asyncio.run(jobs.wait(id, 0.2)) == "queued"
     assert time.monotonic() - start >= 0.2
     jobs.start()
-    assert asyncio.run(jobs.wait(id, patient(10))) == "done"
-    assert asyncio.run(jobs.wait(id, patient(10))) == "done"
+    assert asyncio.run(jobs.wait(id, patient(60))) == "done"
+    assert asyncio.run(jobs.wait(id, patient(60))) == "done"
     with pytest.raises(JobNotFound):
         asyncio.run(jobs.wait("nobody", 1))
 

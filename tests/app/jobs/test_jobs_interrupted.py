@@ -5,6 +5,7 @@ import time
 
 import pytest
 import victims
+from patience import patient
 from sqlalchemy import update
 from stored_jobs import KIND, builds, describe, ended, put, storing, until
 
@@ -48,13 +49,13 @@ def test_a_result_that_comes_too_late_is_dropped(make, database, failures):
 
     def handler(job, context):
         entered.set()
-        assert gate.wait(10)
+        assert gate.wait(patient(60))
         return storing(job, context)
 
     jobs.register(KIND, handler, failures)
     jobs.start()
     id = put(jobs, database)
-    assert entered.wait(10)
+    assert entered.wait(patient(60))
     database.write(lambda session: session.execute(update(JobRow).values(attempt=7, owner="x")).rowcount)
     gate.set()
     jobs.stop()

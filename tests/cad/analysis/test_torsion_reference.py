@@ -46,6 +46,7 @@ def test_a_guided_end_is_stiffer(step: bytes) -> None:
     assert result["value"] == pytest.approx(511_600, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_one_output_that_is_refused_leaves_the_others(step: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(response: Response) -> None:
         raise AnalysisError("not_converged", "no mode stands out")

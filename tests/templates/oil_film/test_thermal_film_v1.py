@@ -131,6 +131,7 @@ class TestRefusals:
             outputs(change)
         assert {name} == {fault.name for fault in refusal.value.faults}
 
+    @pytest.mark.slow
     def test_among_many_points_the_others_stand(self, example):
         loads = {"value": [6, 1e6], "unit": "kN"}
         found = outputs({"radial_load": loads})
@@ -139,6 +140,7 @@ class TestRefusals:
         assert np.isnan(found["bush_temperature"][1]).all()
         assert np.isfinite(found["bush_temperature"][0]).all()
 
+    @pytest.mark.slow  # test_catalogue_properties.py asks the same of points that cost less
     def test_random_bearings_are_finite_or_refused(self):
         """Decades away from the example; more of them in benchmarks/thermal_film.py."""
         rng = np.random.default_rng(17)

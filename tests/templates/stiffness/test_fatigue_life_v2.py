@@ -360,6 +360,10 @@ class TestRefusals:
         rows = [TENSION] * 200
         assert "force_1" in refused(loaded(np.zeros((30, 72)), rows))
         assert refused(loaded(np.zeros((30, 72)), rows, multiaxial_criterion="signed_von_mises"))
+
+    @pytest.mark.slow
+    def test_property_as_much_as_may_be_is_calculated(self):
+        rows = [TENSION] * 200
         assert answers(loaded(np.zeros((13, 72)), rows))["life"].tolist() == ["endless"] * 13
 
     def test_property_no_load_at_all(self):
