@@ -12,6 +12,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
+from math import isfinite
 
 from cad.part21 import plain
 from cad.properties import ATTRIBUTE, MATERIAL, VALIDATION
@@ -24,9 +25,14 @@ UNITS = {
 }  # fmt: skip
 """The units of what a statement of each kind states; texts have none."""
 
+MOST_MORE = 10
+"""Statements of a kind beyond those expected that a comparison lists."""
+
 _PIECE = re.compile(rb"'[^']*'|;|[^';]+|'")
 _START = re.compile(r"\s*#(\d{1,18})\s*=\s*(\(?)\s*([A-Z_0-9]+)")
-_TOKEN = re.compile(r"#(\d{1,18})|('(?:[^']|'')*')|([A-Z][A-Z_0-9]*)|([-+]?\d+\.\d*(?:E[-+]?\d{1,4})?)")
+_TOKEN = re.compile(
+    r"#(\d{1,18})|('(?:[^']|'')*')|([A-Z][A-Z_0-9]*)|([-+]?\d{1,40}\.\d{0,40}(?:E[-+]?\d{1,4})?)"
+)
 _TOLERANCES = {
     "CYLINDRICITY_TOLERANCE": "cylindricity",
     "PERPENDICULARITY_TOLERANCE": "perpendicularity",
@@ -92,7 +98,11 @@ def read_statements(step: bytes) -> list[Statement]:
 def compared(expected: Sequence[Statement], stated: Sequence[Statement]) -> list[Compared]:
     """Statement by statement, each kind in its order; parts may have other names: a download renames them."""
     one, other = _by_kind(expected), _by_kind(stated)
-    return [_pair(kind, *pair) for kind in {**one, **other} for pair in zip_longest(one[kind], other[kind])]
+    return [
+        _pair(kind, *pair)
+        for kind in {**one, **other}
+        for pair in zip_longest(one[kind], other[kind][: len(one[kind]) + MOST_MORE])
+    ]
 
 
 def _pair(kind: str, expected: Statement | None, stated: Statement | None) -> Compared:
@@ -147,7 +157,8 @@ def _taken_apart(statement: str) -> _Entity:
             sorts.append(sort)
         else:
             numbers.append(float(number))
-    return _Entity(tuple(sorts), tuple(refs), tuple(texts), tuple(numbers))
+    finite = tuple(numbers) if all(map(isfinite, numbers)) else ()
+    return _Entity(tuple(sorts), tuple(refs), tuple(texts), finite)
 
 
 class _Reader:

@@ -66,6 +66,21 @@ class BuildUse(Answer):
     variant: str | None = Field(None, description="of the design; absent where the design itself uses it")
 
 
+class Stated(Answer):
+    """What a STEP file states beside its shape, and what its build states there."""
+
+    kind: str = Field(
+        description="`dimension` (nominal size, lower and upper deviation), `datum`, `cylindricity`, "
+        "`perpendicularity` or `parallelism` (width and datum), `attribute`, `volume`, `surface area`, "
+        "`centroid`, `density`, `material`"
+    )
+    name: str = Field(description="of the parameter, the datum, the attribute or the part")
+    unit: str | None = Field(description="of its numbers; null for texts")
+    expected: list[float | str] | None = Field(description="null if the build states nothing there")
+    stated: list[float | str] | None = Field(description="null if the file states nothing there")
+    agrees: bool
+
+
 class Verification(Answer):
     """From which build a STEP file is."""
 
@@ -74,6 +89,11 @@ class Verification(Answer):
     revisions: list[BuildUse]
     intact: bool = Field(
         description="whether the bytes are still those that were written, but for the stamp of a download"
+    )
+    statements: list[Stated] = Field(
+        [],
+        description="what was read in the text of the file: limits, datums, geometric tolerances, "
+        "attributes, materials and validation properties; absent where neither file nor build states any",
     )
 
 

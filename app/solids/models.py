@@ -15,6 +15,7 @@ from app.schemas.solids import Build, BuildUse, Verification
 from app.solids import measures, rows
 from app.solids.ages import is_fresh, renew
 from app.solids.builds import Builds
+from app.solids.stated import statements
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild, NotFound
@@ -127,7 +128,7 @@ class Models:
     def verify(self, step: bytes) -> Verification:
         """From which build a STEP file is, which revisions use it, and whether its bytes are still those.
 
-        What a stamp says is not looked at.
+        What the file states beside its shape is read and compared. What a stamp says is not looked at.
 
         Raises
         ------
@@ -143,8 +144,12 @@ class Models:
         assert build.model is not None, "a recorded build has its model"
         with self.database.read() as session:
             uses = [BuildUse.model_validate(use) for use in rows.users_of(session, header.build)]
-        intact = self._is_intact(step, build.artifacts["step"])
-        return Verification(build=header.build, model=build.model, revisions=uses, intact=intact)
+        sha = build.artifacts["step"]
+        intact = self._is_intact(step, sha)
+        original = step if intact else self.store.read(sha)
+        about = {"build": header.build, "model": build.model, "revisions": uses, "intact": intact}
+        read = statements(original, step)
+        return Verification.model_validate({**about, "statements": read} if read else about)
 
     def _is_intact(self, step: bytes, sha: str) -> bool:
         """Whether a file is the artifact of this hash, with or without a stamp."""

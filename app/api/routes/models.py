@@ -212,7 +212,8 @@ async def verify_step(
 
     The body is the file itself, sent as `model/step`; `application/step` and `application/p21` mean the same.
     Which build it is stands in its header, within the first 64 KiB. The stamp of a download, which names
-    design and revision, is not compared.
+    design and revision, is not compared. Limits, geometric tolerances, materials and other properties are
+    read back and compared with those of the build, one by one.
     """
     require_step(request)
     body = await request.body()
