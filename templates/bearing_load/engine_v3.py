@@ -1,0 +1,331 @@
+"""A whole engine of any layout: pins and firing, balance by orders, torque, loads of every bearing.
+
+In line, V, boxer, radial; shared or split pins; articulated rods; odd firing; two and four strokes; cylinders
+that need not be equal; mains with play.
+"""
+
+from __future__ import annotations
+
+from templates.core.language.template import (
+    Array,
+    Truth,
+    curve,
+    formula,
+    given,
+    profile,
+    require,
+    shared,
+)
+from templates.groups.articulated_engine import ArticulatedEngine
+from templates.groups.engine_cylinders import EACH
+from templates.groups.engine_motion import CYCLE
+from templates.physics.crankshaft.crank_frame import CrankSections
+from templates.physics.crankshaft.main_bearings import (
+    ShaftLoads,
+    Vectors,
+    along_x,
+    along_y,
+    governing,
+    greatest,
+    greatest_at,
+    mains_ascend,
+)
+from templates.physics.crankshaft.main_clearance import (
+    Supported,
+    Supports,
+    flexibilities,
+    law_residual,
+    play_of_each_main,
+    supports_of,
+    with_play,
+)
+from templates.physics.crankshaft.shaft_loads import (
+    change_on_supports,
+    crank_fits,
+    determinate,
+    elastic,
+    has_one_for_each_main,
+    imbalance,
+    on_the_shaft,
+    reactions_of,
+    sections_of,
+    spun,
+)
+
+MAINS = "mains"
+UNLOADED = "no load, or no mains, or no crank"
+
+
+class Engine(ArticulatedEngine):
+    """A whole engine of any layout: pins and firing, balance by orders, torque, loads of every bearing.
+
+    In line, V, boxer, radial; shared or split pins; articulated rods; odd firing; two and four strokes;
+    cylinders that need not be equal; mains with play.
+
+    Limits
+    ------
+    Constant speed, rigid bodies in the mechanism, no friction, no gravity.
+    Seen from the flywheel, which is at the end of the largest positions, x is up, y left, and the shaft turns
+    from x to y; angles count in that sense. A reference line on the shaft stands at the crank angle.
+    Pin j stands at pin_angles from that line, its cylinder at bank_angles from x; it fires where its piston
+    is highest: pin angle = bank angle - firing angle + the pin's angle from the axis at that dead centre.
+    Give firing_order (equal intervals), pin_angles with firing_order, or firing_angles. With pins and order
+    each cylinder may fire in either turn of four strokes: the order is kept, and the smallest interval is
+    largest.
+    Bank angles with their signs turned describe another crank: where throws name a shared pin this is
+    refused.
+    Positions are along the shaft, from any plane; couples are about reference_position. A couple is the sum
+    of place times force, as a vector; its moment is that vector turned by 90 deg.
+    Fork and blade rods have one position, side-by-side rods two.
+    masters names for each cylinder the one whose rod carries its rod, 0 for a rod on the crankpin. The pin of
+    an articulated rod is articulation_radius from the crankpin, at articulation_angle from the axis of the
+    master rod. Both stand on one throw, at one pin and position: give pin_angles with firing_order, then each
+    fires where its own piston is highest. The stroke of an articulated cylinder is what follows; crankpin
+    load is then the load of its own pin, and the master's that of the crankpin with all rods. For balance the
+    mass at its pin counts as turning with the crankpin; shaking force and couple have its true way, and
+    orders of its piston are exact.
+    cylinder_offset is where the cylinder's axis passes beside the shaft, positive on the side to which the
+    pin moves first; an offset of the piston pin adds to it.
+    rod_centre counts from the big end. Without rod_inertia the rod is two masses at its pins.
+    crank_unbalance is that of the throw of each cylinder, at its pin and position, without the rod; two rods
+    on one pin share what is given. Webs and their counterweights add to it at web_positions; their angles
+    count from the pin of the throw, the nearest one unless web_throws says otherwise.
+    A pressure table counts from suction as in bearing_load: combustion is at 360 deg in four strokes, at 0 in
+    two. pressure_factor multiplies the pressure of a cylinder. Valve angles count from top dead centre.
+    Orders 1 and 2 by harmonics leading are r and r²/l, as in textbooks; exact, from order 3 on and with an
+    offset they are Fourier coefficients of the exact motion. Forward parts turn with the crank. Force and
+    couple of an order are largest, forward plus backward, at its crank angle, where they point in its
+    direction; one that only turns points to x at that angle.
+    Orders are of the pistons alone; shaking force and couple are exact and of all that moves, with balance
+    shafts. Roll moment is what walls and heads put on the frame about the shaft.
+    Mean torque is that of the curve, by the trapezoidal rule. An energy area is that between torque and mean
+    torque from crossing to crossing; energy_area shows at each angle the area in which it lies.
+    Main loads act from the frame on the shaft, crankpin loads from the rod on the pin, in the engine's axes;
+    rows are bearings. oil_film_cycle asks for the sense: say load_sense sleeve_on_journal.
+    main_load: determinate, every load on the two mains of its span by the lever.
+    elastic_main_load: a crank of beams on supports of support_stiffness (rigid if not given), alike in x
+    and y; torque leaves at the flywheel. With main_clearance (radial) a support pushes back by what its main
+    is displaced beyond it, from the middle of its bore, which bore_offset moves off the line. Webs twist
+    web_torsion_factor times as stiffly as St Venant's bar: against finite elements of a shaft of four throws
+    the reactions to a load on a pin then err by 0.014 of it radially and 0.045 across; with a factor of 1 by
+    0.37 across. Quasi-static: no resonance, no oil film in the clearance.
+
+    References
+    ----------
+    S. S. Rao, Singh: DYREMI, Int. J. of Engineering Education 1993/94.
+    """
+
+    precision = 1e-9
+    example = {
+        "speed": "4500 rpm",
+        "strokes": 4,
+        "crank_angle_step": "60 deg",
+        "firing_order": [1, 3, 4, 2],
+        "cylinder_positions": {"value": [47, 141, 235, 329], "unit": "mm"},
+        "stroke": "86 mm",
+        "rod_length": "145 mm",
+        "cylinder_offset": "1 mm",
+        "bore": "86 mm",
+        "rod_mass": "0.6 kg",
+        "rod_centre": "42 mm",
+        "rod_inertia": "2200 kg*mm**2",
+        "piston_mass": "0.48 kg",
+        "gas_cycle": "four_stroke",
+        "suction_pressure": "0.9 bar",
+        "exhaust_pressure": "1.1 bar",
+        "compression_ratio": 10,
+        "compression_exponent": 1.32,
+        "expansion_exponent": 1.28,
+        "combustion_pressure": "60 bar",
+        "cutoff": 1.15,
+        "inlet_opens": "705 deg",
+        "inlet_closes": "222 deg",
+        "exhaust_opens": "492 deg",
+        "exhaust_closes": "14 deg",
+        "crankcase_pressure": "1 bar",
+        "orders": [1, 2, 4],
+        "main_positions": {"value": [0, 94, 188, 282, 376], "unit": "mm"},
+        "web_positions": {"value": [22, 72, 116, 166, 210, 260, 304, 354], "unit": "mm"},
+        "web_unbalance": "12 kg*mm",
+        "counterweights": "16 kg*mm",
+        "support_stiffness": "500 kN/mm",
+        "journal_diameter": "55 mm",
+        "crankpin_diameter": "48 mm",
+        "crankpin_length": "32 mm",
+        "web_thickness": "18 mm",
+        "web_width": "80 mm",
+    }
+    criteria = {
+        "main_load": {
+            "require": "main_load_max <= permissible_main_load",
+            "words": "every main bearing is loaded within what it bears",
+            "limits": {
+                "permissible_main_load": {"unit": "N", "words": "largest load that a main bearing bears"}
+            },
+        },
+        "crankpin_load": {
+            "require": "crankpin_load_max <= permissible_crankpin_load",
+            "words": "every crankpin bearing is loaded within what it bears",
+            "limits": {
+                "permissible_crankpin_load": {
+                    "unit": "N",
+                    "words": "largest load that a crankpin bearing bears",
+                }
+            },
+        },
+        "shaking_force": {
+            "require": "shaking_force_max <= permissible_shaking_force",
+            "words": "the shaking force is within the permissible one all the way round",
+            "limits": {"permissible_shaking_force": {"unit": "N", "words": "largest shaking force"}},
+        },
+    }
+
+    z_m: Array = curve("mm", "main positions", along=MAINS, optional=True, ge=-1e6, le=1e6)
+    k_s: Array = curve(
+        "kN/mm", "support stiffness", along=MAINS, constant=True, alternative=True, gt=0, le=1e9
+    )
+    d_j: Array = given("mm", "journal diameter", optional=True, single=True, gt=0, le=1e4)
+    d_p: Array = given("mm", "crankpin diameter", optional=True, single=True, gt=0, le=1e4)
+    l_p: Array = given("mm", "crankpin length", optional=True, single=True, gt=0, le=1e4)
+    t_s: Array = given("mm", "web thickness", optional=True, single=True, gt=0, le=1e4)
+    b_s: Array = given("mm", "web width", optional=True, single=True, gt=0, le=1e4)
+    c_m: Array = curve("mm", "main clearance", along=MAINS, constant=True, default="0 mm", ge=0, le=10)
+    o_x: Array = curve("mm", "bore offset x", along=MAINS, constant=True, default="0 mm", ge=-10, le=10)
+    o_y: Array = curve("mm", "bore offset y", along=MAINS, constant=True, default="0 mm", ge=-10, le=10)
+    E: Array = given("GPa", "youngs modulus", default="210 GPa", single=True, gt=0, le=1000)
+    nu: Array = given("1", "poisson ratio", default="0.3", single=True, ge=0, lt=0.5)
+    f_w: Array = given("1", "web torsion factor", default="8", single=True, gt=0, le=100)
+
+    @require("main_positions", remedy="give two or more, ascending")
+    def mains_ascend(self) -> Truth:
+        """The mains stand one after the other along the shaft."""
+        return mains_ascend(self.z_m)
+
+    @require("support_stiffness", "main_positions", missing=True,
+             remedy="give one number, or one for each main")  # fmt: skip
+    def stiffness_of_each_main(self) -> Truth:
+        """Each main has its stiffness."""
+        return has_one_for_each_main(self.k_s, self.z_m)
+
+    @require("main_clearance", "bore_offset_x", "bore_offset_y", "main_positions", missing=True,
+             remedy="give one number, or one for each main")  # fmt: skip
+    def play_of_each_main(self) -> Truth:
+        """Each main has its clearance and its offset."""
+        return play_of_each_main(self.c_m, self.o_x, self.o_y, self.z_m)
+
+    @require("crankpin_length", "web_thickness", "main_positions", "cylinder_positions",
+             remedy="rods stand on their pin, mains outside its webs; check the unit")  # fmt: skip
+    def crank_fits(self) -> Truth:
+        """Pins and webs fit between the mains."""
+        return crank_fits(self.z_m, self.z_i, self.layout.throw, self.sections)
+
+    @shared
+    def sections(self) -> CrankSections:
+        """Sections of the crank."""
+        return sections_of(self.d_j, self.d_p, self.l_p, self.t_s, self.b_s, self.E, self.nu, self.f_w)
+
+    @shared
+    def loads(self) -> ShaftLoads:
+        """All loads on the shaft."""
+        return on_the_shaft(
+            self.places, self.pins + spun(self.throw_unbalance, self.omega, self.theta),
+            self.web_places, spun(self.webs, self.omega, self.theta),
+        )  # fmt: skip
+
+    @shared
+    def mains(self) -> Vectors:
+        """Loads of the mains, determinate."""
+        return determinate(self.z_m, self.loads)
+
+    @shared
+    def reactions(self) -> Array:
+        """Reactions of the mains to unit loads on the elastic crank."""
+        return reactions_of(
+            self.z_m, self.places, self.web_places, self.layout.throw, self.layout.pin, self.crank.r,
+            self.sections, self.k_s,
+        )  # fmt: skip
+
+    @shared
+    def supports(self) -> Supports:
+        """The supports of the mains."""
+        return supports_of(self.z_m, self.k_s, self.c_m, self.o_x, self.o_y)
+
+    @shared
+    def played(self) -> Supported | None:
+        """Loads of mains with play; none where they have none, or the crank is not given."""
+        shafts = flexibilities(
+            self.z_m, self.places, self.web_places, self.layout.throw, self.layout.pin, self.crank.r,
+            self.sections,
+        ) if self.supports.have_play else []  # fmt: skip
+        return with_play(self.z_m, self.loads, shafts, self.supports, self.theta) if shafts else None
+
+    @shared
+    def elastic_mains(self) -> Vectors:
+        """Loads of the mains on elastic supports."""
+        if self.played:
+            return self.played.forces
+        return elastic(self.z_m, self.loads, self.reactions, self.theta)
+
+    @profile("N", "crankpin load x", along=CYCLE, axes=2, symbol="F_{px}")
+    def F_px(self) -> Array:
+        return along_x(self.big_ends)
+
+    @profile("N", "crankpin load y", along=CYCLE, axes=2, symbol="F_{py}")
+    def F_py(self) -> Array:
+        return along_y(self.big_ends)
+
+    @profile("N", "crankpin load max", along=EACH, symbol=r"F_\mathrm{p,max}")
+    def F_p_max(self) -> Array:
+        return greatest(self.big_ends)
+
+    @profile("N", "main load x", along=CYCLE, axes=2, symbol="F_{mx}")
+    def F_mx(self) -> Array:
+        return along_x(self.mains)
+
+    @profile("N", "main load y", along=CYCLE, axes=2, symbol="F_{my}")
+    def F_my(self) -> Array:
+        return along_y(self.mains)
+
+    @profile("N", "main load max", along=MAINS, symbol=r"F_\mathrm{m,max}")
+    def F_m_max(self) -> Array:
+        return greatest(self.mains)
+
+    @profile("deg", "main load max angle", along=MAINS, symbol=r"\theta_\mathrm{m,max}")
+    def theta_m(self) -> Array:
+        return greatest_at(self.mains, self.theta)
+
+    @formula("1", "governing main", symbol=r"i_\mathrm{m}")
+    def i_m(self) -> Array:
+        return governing(self.mains)
+
+    @profile("N", "elastic main load x", along=CYCLE, axes=2, symbol="F_{ex}")
+    def F_ex(self) -> Array:
+        return along_x(self.elastic_mains)
+
+    @profile("N", "elastic main load y", along=CYCLE, axes=2, symbol="F_{ey}")
+    def F_ey(self) -> Array:
+        return along_y(self.elastic_mains)
+
+    @profile("N", "elastic main load max", along=MAINS, symbol=r"F_\mathrm{e,max}")
+    def F_e_max(self) -> Array:
+        return greatest(self.elastic_mains)
+
+    @formula("1", "governing elastic main", symbol=r"i_\mathrm{e}")
+    def i_e(self) -> Array:
+        return governing(self.elastic_mains)
+
+    @profile("1", "elastic difference", along=MAINS, symbol=r"\Delta_{e}", absent=UNLOADED)
+    def Delta_e(self) -> Array:
+        return change_on_supports(self.elastic_mains, self.mains)
+
+    @formula("1", "equilibrium residual", symbol=r"\epsilon_\mathrm{R}")
+    def residual(self) -> Array:
+        return imbalance(self.mains, self.loads, self.z_m)
+
+    @formula("1", "elastic equilibrium residual", symbol=r"\epsilon_\mathrm{e}")
+    def elastic_residual(self) -> Array:
+        return imbalance(self.elastic_mains, self.loads, self.z_m)
+
+    @formula("1", "support law residual", symbol=r"\epsilon_\mathrm{s}")
+    def law_residual(self) -> Array:
+        return law_residual(self.elastic_mains, self.played)

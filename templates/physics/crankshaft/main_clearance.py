@@ -1,0 +1,217 @@
+r"""Main bearings with play: an elastic crankshaft on elastic supports that it touches beyond a clearance.
+
+A support pushes back with R = k (|u| − c) along the displacement u of the shaft from the middle of its bore
+where that exceeds the clearance c, else not at all. The bore's middle may lie off the line of the others.
+
+By the force method of `crank_supports`: reactions R = R₀ + B x, with sets B that balance themselves. The
+shaft's own displacement d(R), the support's R/k + c R/|R| and the bore's offset o leave no gap,
+Bᵀ(d + R/k + c R/|R| − o) = 0. That is where a convex energy is least, and damped Newton steps find it, at all
+crank angles at once. |R| is √(R² + ε²), with ε lowered to 1e-9 of the loads: a main that touches nothing
+bears as little as that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array, Truth
+from templates.core.language.declare import units
+from templates.physics.crankshaft.crank_frame import CrankFrame, CrankSections, Throw
+from templates.physics.crankshaft.crank_supports import Flexibility, self_balancing
+from templates.physics.crankshaft.main_bearings import ShaftLoads, Vectors, lever_shares
+from templates.physics.crankshaft.shaft_loads import Places, fits, throw_places
+
+_NONE = np.array(np.nan)
+_SMOOTH = 10.0 ** -np.arange(1, 10)  # ε over the largest load, one after the other
+_STEPS = 40  # of Newton's method at each ε
+_HALVINGS = 30
+_SETTLED = 1e-11  # of the gap, relative to the displacements
+_COLUMNS = 20_000  # crank angles at once
+
+
+@dataclass(frozen=True)
+class Supports:
+    """Stiffness [N/m], clearance [m] and offset of the bore [m], complex in the engine's axes, (n,)."""
+
+    stiffness: Array
+    clearance: Array
+    offset: Vectors
+
+    @property
+    def have_play(self) -> bool:
+        """Whether any has a clearance or stands off the line."""
+        return bool(np.any(self.clearance > 0) or np.any(self.offset != 0))
+
+
+def supports_of(mains: Array, stiffness: Array, clearance: Array, x: Array, y: Array) -> Supports:
+    """The supports, one value for each main; rigid where no stiffness is given."""
+    each = np.zeros(np.size(mains))
+    return Supports(
+        np.where(np.isnan(stiffness), np.inf, stiffness) + each, clearance + each, x + 1j * y + each
+    )
+
+
+def flexibilities(
+    mains: Array, cylinders: Array, webs: Array, throw: Places, pins: Array, radius: Array,
+    sections: CrankSections,
+) -> list[Flexibility]:  # fmt: skip
+    """The elastic shaft at each point of pins [rad] and radii [m], (…, N); none where it is not given."""
+    if not np.ndim(mains) or np.isnan([vars(sections)[name] for name in vars(sections)]).any():
+        return []
+    if not np.isfinite(pins).all() or not fits(mains, cylinders, throw, sections):
+        return []
+    vectors = radius * np.exp(1j * pins)
+    order, middles = np.argsort(cylinders, kind="stable"), throw_places(cylinders, throw)
+    found = []
+    for one in vectors.reshape(-1, vectors.shape[-1]):
+        throws = [
+            Throw(z, tuple((float(cylinders[j]), complex(one[j]), int(j)) for j in order if throw[j] == t))
+            for t, z in enumerate(middles)
+        ]
+        found.append(CrankFrame(sections, mains, throws).flexibility(cylinders.size, webs))
+    return found
+
+
+@dataclass(frozen=True)
+class Supported:
+    """Reactions of the mains [N], (…, n, K), and what of the supports' law is left, relative."""
+
+    forces: Vectors
+    residual: float
+
+
+def with_play(
+    mains: Array, loads: ShaftLoads, shafts: Sequence[Flexibility], supports: Supports, theta: Array
+) -> Supported:
+    """Loads of mains with play; each point of the loads has the one shaft, or its own."""
+    turn = np.exp(1j * theta)
+    shape = loads.forces.shape[:-2]
+    points = loads.forces.reshape(-1, *loads.forces.shape[-2:])
+    turned = points * np.conj(turn)
+    offsets = supports.offset[:, None] * np.conj(turn)
+    if len(shafts) == 1:
+        flat = np.concatenate([*turned], axis=-1)
+        answer = _Play(mains, loads.places, shafts[0], supports).reactions(
+            flat, np.tile(offsets, points.shape[0])
+        )
+        split = np.moveaxis(answer.forces.reshape(mains.size, points.shape[0], theta.size), 1, 0)
+        residual = answer.residual
+    else:
+        each = [
+            _Play(mains, loads.places, shaft, supports).reactions(one, offsets)
+            for shaft, one in zip(
+                shafts, np.broadcast_to(turned, (len(shafts), *turned.shape[1:])), strict=True
+            )
+        ]
+        split = np.array([one.forces for one in each])
+        residual = max(one.residual for one in each)
+        shape = shape if len(points) == len(shafts) else (len(shafts),)
+    return Supported(split.reshape(*shape, *split.shape[-2:]) * turn, residual)
+
+
+class _Play:
+    """Reactions of one shaft in axes that turn with it; real parts and imaginary parts take turns in rows."""
+
+    def __init__(self, mains: Array, places: Array, shaft: Flexibility, supports: Supports) -> None:
+        plane = np.eye(2)
+        self.start = -np.kron(lever_shares(mains, places), plane)
+        self.basis = np.kron(self_balancing(mains), plane)
+        self.shaft, self.supports = shaft, supports
+        self.give = shaft.mains + np.diag(np.repeat(1 / supports.stiffness, 2))
+        self.clearance = supports.clearance[:, None]
+
+    def reactions(self, forces: Vectors, offsets: Vectors) -> Supported:
+        """Reactions [N], (n, K), to loads, (L, K), with the bores' middles at offsets [m], (n, K)."""
+        parts = [
+            self._some(forces[:, at : at + _COLUMNS], offsets[:, at : at + _COLUMNS])
+            for at in range(0, forces.shape[-1], _COLUMNS)
+        ]
+        together = np.concatenate([part.forces for part in parts], axis=-1)
+        return Supported(together, max(part.residual for part in parts))
+
+    def _some(self, forces: Vectors, offsets: Vectors) -> Supported:
+        rows, bores = _rows(forces), _rows(offsets)
+        first = self.start @ rows
+        free = self.give @ first + self.shaft.loads @ rows - bores
+        B, stiff = self.basis, self.basis.T @ self.give @ self.basis
+        x = -np.linalg.solve(stiff, B.T @ free) if B.shape[1] else np.zeros((0, rows.shape[-1]))
+        size = np.maximum(np.abs(rows).max(axis=0), 1e-30)
+        for share in _SMOOTH:
+            x = self._settled(x, first, B.T @ free, stiff, share * size)
+        slope, _ = self._slope(x, first, B.T @ free, stiff, _SMOOTH[-1] * size)
+        moved = np.abs(free).max(axis=0) + np.max(self.clearance)
+        left = float((np.abs(slope).max(axis=0) / moved).max()) if B.shape[1] else 0.0
+        pairs = (first + B @ x).reshape(-1, 2, rows.shape[-1])
+        return Supported(pairs[:, 0] + 1j * pairs[:, 1], left)
+
+    def _settled(self, x: Array, first: Array, free: Array, stiff: Array, small: Array) -> Array:
+        """Newton's method from x, damped by the energy at each crank angle for itself."""
+        if not x.size:
+            return x
+        energy = self._energy(x, first, free, stiff, small)
+        for _ in range(_STEPS):
+            slope, bend = self._slope(x, first, free, stiff, small)
+            if np.all(
+                np.abs(slope).max(axis=0) <= _SETTLED * (np.abs(free).max(axis=0) + self.clearance.max())
+            ):
+                break
+            step = -np.linalg.solve(bend, slope.T[..., None])[..., 0].T
+            falls = (slope * step).sum(axis=0)
+            length = np.ones(x.shape[-1])
+            for _ in range(_HALVINGS):
+                tried = self._energy(x + length * step, first, free, stiff, small)
+                worse = tried > energy + 1e-4 * length * falls + 1e-15 * np.abs(energy)
+                if not worse.any():
+                    break
+                length = np.where(worse, length / 2, length)
+            x = x + length * step
+            energy = self._energy(x, first, free, stiff, small)
+        return x
+
+    def _energy(self, x: Array, first: Array, free: Array, stiff: Array, small: Array) -> Array:
+        sizes = _sizes(first + self.basis @ x, small)
+        return np.asarray(
+            (x * (stiff @ x)).sum(axis=0) / 2 + (x * free).sum(axis=0) + (self.clearance * sizes).sum(axis=0)
+        )
+
+    def _slope(self, x: Array, first: Array, free: Array, stiff: Array, small: Array) -> tuple[Array, Array]:
+        """First and second derivatives of the energy by x, (m, K) and (K, m, m)."""
+        R = first + self.basis @ x
+        sizes = _sizes(R, small)
+        pairs = R.reshape(-1, 2, R.shape[-1])
+        along = pairs / sizes[:, None]
+        push = (self.clearance[:, None] * along).reshape(R.shape)
+        curved = (self.clearance / sizes)[:, None, None] * (
+            np.eye(2)[None, :, :, None] - along[:, :, None] * along[:, None, :]
+        )
+        bases = self.basis.reshape(-1, 2, self.basis.shape[-1])
+        bend = stiff + np.einsum("nam,nabk,nbl->kml", bases, curved, bases, optimize=True)
+        return stiff @ x + free + self.basis.T @ push, bend
+
+
+def _rows(vectors: Vectors) -> Array:
+    """Complex rows, (n, K), as real ones, (2 n, K)."""
+    return np.stack([vectors.real, vectors.imag], axis=1).reshape(-1, vectors.shape[-1])
+
+
+def _sizes(R: Array, small: Array) -> Array:
+    pairs = R.reshape(-1, 2, R.shape[-1])
+    return np.sqrt((pairs**2).sum(axis=1) + small**2)
+
+
+@units("m", "m", "m", "m", returns="1")
+def play_of_each_main(clearance: Array, x: Array, y: Array, mains: Array) -> Truth:
+    """Whether clearances and offsets are one number, or a list with one for each main."""
+    given = (clearance, x, y)
+    return all(np.ndim(one) == 0 or np.ndim(mains) == 0 or np.shape(one) == np.shape(mains) for one in given)
+
+
+@units(None, None, returns="1")
+def law_residual(forces: Vectors, supported: Supported | None) -> Array:
+    """What of the supports' law is left over the displacements; 0 where it is linear, none without mains."""
+    if not np.ndim(forces):
+        return _NONE
+    return np.asarray(supported.residual if supported else 0.0)
