@@ -6,13 +6,13 @@ where that exceeds the clearance c, else not at all. The bore's middle may lie o
 By the force method of `crank_supports`: reactions R = R₀ + B x, with sets B that balance themselves. The
 shaft's own displacement d(R), the support's R/k + c R/|R| and the bore's offset o leave no gap,
 Bᵀ(d + R/k + c R/|R| − o) = 0. That is where a convex energy is least, and damped Newton steps find it, at all
-crank angles at once. |R| is √(R² + ε²), with ε lowered to 1e-9 of the loads: a main that touches nothing
+crank angles at once. |R| is √(R² + ε²), with ε lowered to 1e-7 of the loads: a main that touches nothing
 bears as little as that.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,10 +25,11 @@ from templates.physics.crankshaft.main_bearings import ShaftLoads, Vectors, leve
 from templates.physics.crankshaft.shaft_loads import Places, fits, throw_places
 
 _NONE = np.array(np.nan)
-_SMOOTH = 10.0 ** -np.arange(1, 10)  # ε over the largest load, one after the other
+_SMOOTH = 10.0 ** -np.arange(1, 8)  # ε over the largest load, one after the other
 _STEPS = 40  # of Newton's method at each ε
 _HALVINGS = 30
-_SETTLED = 1e-11  # of the gap, relative to the displacements
+_SETTLED = 1e-9  # of the gap, relative to the displacements
+_LAW = 1e-8
 _COLUMNS = 20_000  # crank angles at once
 
 
@@ -49,9 +50,8 @@ class Supports:
 def supports_of(mains: Array, stiffness: Array, clearance: Array, x: Array, y: Array) -> Supports:
     """The supports, one value for each main; rigid where no stiffness is given."""
     each = np.zeros(np.size(mains))
-    return Supports(
-        np.where(np.isnan(stiffness), np.inf, stiffness) + each, clearance + each, x + 1j * y + each
-    )
+    middle: Vectors = np.asarray(x + 1j * y + each, dtype=complex)
+    return Supports(np.where(np.isnan(stiffness), np.inf, stiffness) + each, clearance + each, middle)
 
 
 def flexibilities(
@@ -77,10 +77,10 @@ def flexibilities(
 
 @dataclass(frozen=True)
 class Supported:
-    """Reactions of the mains [N], (…, n, K), and what of the supports' law is left, relative."""
+    """Reactions of the mains [N], (…, n, K), and what of the supports' law is left, relative, (…, K)."""
 
     forces: Vectors
-    residual: float
+    residual: Array
 
 
 def with_play(
@@ -93,23 +93,19 @@ def with_play(
     turned = points * np.conj(turn)
     offsets = supports.offset[:, None] * np.conj(turn)
     if len(shafts) == 1:
-        flat = np.concatenate([*turned], axis=-1)
-        answer = _Play(mains, loads.places, shafts[0], supports).reactions(
-            flat, np.tile(offsets, points.shape[0])
-        )
+        play = _Play(mains, loads.places, shafts[0], supports)
+        answer = play.reactions(np.concatenate([*turned], axis=-1), np.tile(offsets, points.shape[0]))
         split = np.moveaxis(answer.forces.reshape(mains.size, points.shape[0], theta.size), 1, 0)
-        residual = answer.residual
+        left = answer.residual.reshape(points.shape[0], theta.size)
     else:
+        turned = np.broadcast_to(turned, (len(shafts), *turned.shape[1:]))
         each = [
             _Play(mains, loads.places, shaft, supports).reactions(one, offsets)
-            for shaft, one in zip(
-                shafts, np.broadcast_to(turned, (len(shafts), *turned.shape[1:])), strict=True
-            )
+            for shaft, one in zip(shafts, turned, strict=True)
         ]
-        split = np.array([one.forces for one in each])
-        residual = max(one.residual for one in each)
+        split, left = np.array([one.forces for one in each]), np.array([one.residual for one in each])
         shape = shape if len(points) == len(shafts) else (len(shafts),)
-    return Supported(split.reshape(*shape, *split.shape[-2:]) * turn, residual)
+    return Supported(split.reshape(*shape, *split.shape[-2:]) * turn, left.reshape(*shape, theta.size))
 
 
 class _Play:
@@ -130,20 +126,22 @@ class _Play:
             for at in range(0, forces.shape[-1], _COLUMNS)
         ]
         together = np.concatenate([part.forces for part in parts], axis=-1)
-        return Supported(together, max(part.residual for part in parts))
+        return Supported(together, np.concatenate([part.residual for part in parts]))
 
     def _some(self, forces: Vectors, offsets: Vectors) -> Supported:
         rows, bores = _rows(forces), _rows(offsets)
         first = self.start @ rows
         free = self.give @ first + self.shaft.loads @ rows - bores
         B, stiff = self.basis, self.basis.T @ self.give @ self.basis
-        x = -np.linalg.solve(stiff, B.T @ free) if B.shape[1] else np.zeros((0, rows.shape[-1]))
+        x = np.zeros((B.shape[1], rows.shape[-1]))
+        if B.shape[1]:
+            x -= np.linalg.solve(stiff, B.T @ free)
         size = np.maximum(np.abs(rows).max(axis=0), 1e-30)
         for share in _SMOOTH:
             x = self._settled(x, first, B.T @ free, stiff, share * size)
         slope, _ = self._slope(x, first, B.T @ free, stiff, _SMOOTH[-1] * size)
         moved = np.abs(free).max(axis=0) + np.max(self.clearance)
-        left = float((np.abs(slope).max(axis=0) / moved).max()) if B.shape[1] else 0.0
+        left = np.abs(slope).max(axis=0, initial=0.0) / moved
         pairs = (first + B @ x).reshape(-1, 2, rows.shape[-1])
         return Supported(pairs[:, 0] + 1j * pairs[:, 1], left)
 
@@ -151,25 +149,34 @@ class _Play:
         """Newton's method from x, damped by the energy at each crank angle for itself."""
         if not x.size:
             return x
-        energy = self._energy(x, first, free, stiff, small)
         for _ in range(_STEPS):
             slope, bend = self._slope(x, first, free, stiff, small)
-            if np.all(
-                np.abs(slope).max(axis=0) <= _SETTLED * (np.abs(free).max(axis=0) + self.clearance.max())
-            ):
+            gap = np.abs(slope).max(axis=0)
+            moves = gap > _SETTLED * (np.abs(free).max(axis=0) + self.clearance.max())
+            if not moves.any():
                 break
-            step = -np.linalg.solve(bend, slope.T[..., None])[..., 0].T
-            falls = (slope * step).sum(axis=0)
-            length = np.ones(x.shape[-1])
-            for _ in range(_HALVINGS):
-                tried = self._energy(x + length * step, first, free, stiff, small)
-                worse = tried > energy + 1e-4 * length * falls + 1e-15 * np.abs(energy)
-                if not worse.any():
-                    break
-                length = np.where(worse, length / 2, length)
-            x = x + length * step
-            energy = self._energy(x, first, free, stiff, small)
+            step = np.asarray(-np.linalg.solve(bend, slope.T[..., None])[..., 0].T, dtype=float)
+            length = self._damped(x, step, slope, lambda tried: (
+                self._energy(tried, first, free, stiff, small),
+                self._slope(tried, first, free, stiff, small)[0],
+            ))  # fmt: skip
+            x = np.where(moves, x + length * step, x)  # one angle's answer does not depend on others
         return x
+
+    def _damped(
+        self, x: Array, step: Array, slope: Array, look: Callable[[Array], tuple[Array, Array]]
+    ) -> Array:
+        """The length of each step by which the energy falls, or else its slope: energies end in rounding."""
+        energy, _ = look(x)
+        falls, steep = (slope * step).sum(axis=0), np.abs(slope).max(axis=0)
+        length = np.ones(x.shape[-1])
+        for _ in range(_HALVINGS):
+            there, slope_there = look(x + length * step)
+            worse = (there > energy + 1e-4 * length * falls) & (np.abs(slope_there).max(axis=0) > steep / 2)
+            if not worse.any():
+                break
+            length = np.where(worse, length / 2, length)
+        return length
 
     def _energy(self, x: Array, first: Array, free: Array, stiff: Array, small: Array) -> Array:
         sizes = _sizes(first + self.basis @ x, small)
@@ -211,7 +218,10 @@ def play_of_each_main(clearance: Array, x: Array, y: Array, mains: Array) -> Tru
 
 @units(None, None, returns="1")
 def law_residual(forces: Vectors, supported: Supported | None) -> Array:
-    """What of the supports' law is left over the displacements; 0 where it is linear, none without mains."""
+    """What of the supports' law is left over the displacements; 0 below 1e-8, none without mains."""
     if not np.ndim(forces):
         return _NONE
-    return np.asarray(supported.residual if supported else 0.0)
+    if supported is None:
+        return np.zeros(forces.shape[:-2])[()]
+    left = supported.residual.max(axis=-1)
+    return np.where(left < _LAW, 0.0, left)[()]

@@ -85,7 +85,7 @@ class ArticulatedCrank(OffsetCrank):
         for _ in range(_NEWTON):
             motion = self.at(place[..., None])
             place = place - motion.x1[..., 0] / motion.x2[..., 0]
-        return np.asarray(place)
+        return np.where(np.isfinite(place), place, 0.0)  # a rule reports rods that do not reach
 
 
 @dataclass(frozen=True)
@@ -186,9 +186,15 @@ def with_articulated(
     """The mechanisms with articulated rods; the same where there are none."""
     count = carrier.size
     articulated = carrier != np.arange(count)
-    if not articulated.any() or np.ndim(radius) > 1 or np.ndim(angle) > 1 or np.ndim(bank) > 1:
+    shapes = {np.shape(one) for one in (radius, angle, bank)}
+    if not articulated.any() or not shapes <= {(), (1,), (count,)}:
+        return crank  # rules report what is wrong
+    vectors: Vectors = np.asarray(radius * np.exp(1j * np.asarray(angle)), dtype=complex)
+    arm = np.where(articulated, vectors, 0j)
+    if not np.isfinite(arm).all() or any(
+        one.shape[-1] not in (1, count) for one in (crank.r, crank.l, crank.e)
+    ):
         return crank
-    arm = np.where(articulated, radius * np.exp(1j * np.asarray(angle)), 0.0) + np.zeros(count)
     banks = bank + np.zeros(count)
     r, l, e = (np.broadcast_to(one, (*one.shape[:-1], count)) for one in (crank.r, crank.l, crank.e))  # noqa: E741
     return ArticulatedCrank(r, l, e, carrier, arm, banks - banks[carrier])

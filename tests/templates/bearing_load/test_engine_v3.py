@@ -156,8 +156,9 @@ class TestArticulated:
     @ARTICULATED
     def test_conservation_torque_is_the_change_of_energy_of_rigid_bodies(self, raw):
         out = values(raw, ["torque", "crank_angle"])
-        changed = slope(Bodies(raw, np.radians(out["crank_angle"])).energy())
-        assert np.abs(out["torque"] + changed).max() < 1e-10 * np.abs(changed).max()
+        energy = Bodies(raw, np.radians(out["crank_angle"])).energy()
+        assert np.abs(out["torque"] + slope(energy)).max() < 1e-10 * energy.max()  # two series lose digits
+        assert np.abs(out["torque"]).max() > 0.01 * energy.max()
 
     @ARTICULATED
     def test_conservation_shaking_force_is_the_change_of_momentum(self, raw):
@@ -180,7 +181,7 @@ class TestArticulated:
         out = values(raw, ["torque", "roll_moment", "crank_angle"])
         bodies = Bodies(raw, np.radians(out["crank_angle"]))
         left = out["roll_moment"] + out["torque"] + slope(bodies.angular_momentum()) * OMEGA
-        assert np.abs(left).max() < 1e-10 * np.abs(out["torque"]).max()
+        assert np.abs(left).max() < 1e-10 * bodies.energy().max()
 
     @ARTICULATED
     def test_conservation_orders_are_those_of_the_pistons(self, raw):
@@ -249,7 +250,8 @@ class TestArticulated:
             ({"masters": [0, 2]}, "masters", "cylinder whose rod"),
             ({"articulation_radius": "0 mm"}, "articulation_radius", "crankpin"),
             ({"articulation_radius": None}, "articulation_radius", "crankpin"),
-            ({"rod_length": mm(145, 70)}, "articulation_radius", "longer rod"),
+            ({"rod_length": mm(145, 70), "articulation_angle": "150 deg"},
+             "articulation_radius", "longer rod"),
             ({"cylinder_positions": mm(40, 54)}, "cylinder_positions", "one position"),
             ({"throws": [1, 2]}, "throws", "throws"),
             ({"crank_radius": mm(43, 42)}, "masters", "throws"),
@@ -297,7 +299,7 @@ class TestPlay:
         answer = with_play(
             mains, ShaftLoads(places, forces), [shaft], supports, self.theta[: forces.shape[1]]
         )
-        assert answer.residual < 1e-8
+        assert answer.residual.max() < 1e-8
         return answer.forces
 
     def test_analytic_a_middle_main_bears_what_bends_the_bar_further_than_its_clearance(self):
