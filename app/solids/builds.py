@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Mapping
 from sqlalchemy.orm import Session
 
 from app.brought.programs import Programs
-from app.calculations.sources import Source, loaded, source_of
+from app.calculations.sources import FileSource, Source, loaded, source_of
 from app.plain import JsonObject
 from app.solids import measures, rows
 from app.solids.ages import is_fresh, renew
@@ -22,7 +22,7 @@ from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild
 from app.storage.tables import ArtifactRow
-from app.workers.base import Runner
+from app.workers.base import Runner, may_share
 from cad.brought import BroughtModel, Drawn, brought
 from cad.errors import ProgramMissing
 from cad.export import DRAWINGS, derive
@@ -176,8 +176,12 @@ def _signed_otherwise(row: ArtifactRow) -> CannotRebuild:
     return CannotRebuild("signed_otherwise", detail)
 
 
+@may_share(lambda source, texts: isinstance(source, FileSource) and not source.digest)
 def build_in_worker(source: Source, texts: Mapping[str, str]) -> Build:
-    """`cad.regenerate.regenerate_class`, reporting progress to the job; runs in the worker's process."""
+    """`cad.regenerate.regenerate_class`, reporting progress to the job; runs in the worker's process.
+
+    The process may build for another job after a built-in model, never after a team's own code.
+    """
     cls = loaded(source)
     assert issubclass(cls, CadModel), "the source is that of a model"
     return regenerate_class(cls, texts, report=report)

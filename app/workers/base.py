@@ -26,6 +26,28 @@ class Limits:
     memory_mb: int = 3072
 
 
+def shares_process(function: Callable[..., object], args: tuple[object, ...]) -> bool:
+    """Whether the process in which a function runs may serve another job after it, see `may_share`."""
+    is_shared: Callable[..., bool] | None = getattr(function, _SHARED, None)
+    return is_shared is not None and is_shared(*args)
+
+
+def may_share(when: Callable[[*Ts], bool]) -> Callable[[Callable[[*Ts], T]], Callable[[*Ts], T]]:
+    """Mark a function that leaves nothing behind that another job could notice, where `when` says so.
+
+    `when` gets the arguments. Functions without the mark have a process that ends with their job.
+    """
+
+    def mark(function: Callable[[*Ts], T]) -> Callable[[*Ts], T]:
+        setattr(function, _SHARED, when)
+        return function
+
+    return mark
+
+
+_SHARED = "shares_process"
+
+
 class Runner(Protocol):
     """Runs functions one after another on behalf of one piece of work, within that one's limits or others."""
 

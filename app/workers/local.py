@@ -1,11 +1,15 @@
-"""The worker of a server on one machine: every job in a fresh process, several functions of a job in one."""
+"""The worker of a server on one machine: several functions of a job in one process, which ends with the job.
+
+The process of a job that ran nothing but marked functions (`app.workers.base.may_share`) is kept for the next
+such job. A process costs more than a small solid: the fork, and what the kernel loads at first use.
+"""
 
 import logging
 import threading
 from collections.abc import Callable, Sequence
-from typing import TypeVar, TypeVarTuple, cast
+from typing import NamedTuple, TypeVar, TypeVarTuple, cast
 
-from app.workers.base import GEOMETRY, UNLIMITED, Lane, Limits
+from app.workers.base import GEOMETRY, UNLIMITED, Lane, Limits, shares_process
 from app.workers.errors import DeadlineExceeded, JobCancelled, WorkerError
 from app.workers.isolated import ForkServer, JobProcess
 from app.workers.messages import Outcome, Request, Returned
@@ -32,6 +36,8 @@ class LocalProcesses:
         self._forkserver = ForkServer(preload, ONE_THREAD)
         self._lock = threading.Lock()
         self._spare = self._forkserver.fork()
+        self._kept: list[Used] = []
+        self._closed = False
 
     def run(
         self,
@@ -52,7 +58,7 @@ class LocalProcesses:
 
     def batch(self, lane: Lane = GEOMETRY) -> "Batch":
         """Run several functions in one process; see `BatchWorker.batch`."""
-        return Batch(self.started)
+        return Batch(self.started, self)
 
     def capacity(self, lane: Lane) -> int:
         """The queue has as many threads as this machine shall run jobs."""
@@ -73,7 +79,24 @@ class LocalProcesses:
         """Kill all processes; jobs that still run end with JobCrashed."""
         self._forkserver.close()  # before the lock, which who waits for a stopped forkserver may hold
         with self._lock:
+            self._closed = True
             self._spare.kill()
+            for used in self._kept:
+                used.process.kill()
+            self._kept.clear()
+
+    def lend(self) -> "Used | None":
+        """The process that an earlier job has left, if one waits."""
+        with self._lock:
+            return self._kept.pop() if self._kept else None
+
+    def keep(self, used: "Used") -> None:
+        """Keep the process of a job for the next one, or end it if another one waits already."""
+        with self._lock:
+            if len(self._kept) < MOST_KEPT and not self._closed:
+                self._kept.append(used)
+                return
+        used.process.kill()
 
     def started(self, request: Request) -> JobProcess:
         """Give the job to the process that waits for it, and have the next one forked meanwhile."""
@@ -88,6 +111,14 @@ class LocalProcesses:
 
 
 MOST_IN_BATCH = 100  # functions that one process runs: what leaks in it ends with it
+MOST_KEPT = 1  # processes that wait for another job after their own
+
+
+class Used(NamedTuple):
+    """A process that has returned from so many functions, and waits for another."""
+
+    process: JobProcess
+    count: int
 
 
 class Batch:
@@ -95,13 +126,23 @@ class Batch:
 
     Its process is given up after whatever did not return: the kernel may be in any state then. If it had run
     other functions before, the same one runs once more in a new process, whose answer counts. So no function
-    fails for what another has left behind.
+    fails for what another has left behind, in this batch or in an earlier one.
+
+    Parameters
+    ----------
+    started
+        Gives a request to a new process.
+    keeper
+        Lends the process of an earlier batch, and takes the process of this one; nobody, if None.
     """
 
-    def __init__(self, started: Callable[[Request], JobProcess]) -> None:
-        self._started = started
+    def __init__(
+        self, started: Callable[[Request], JobProcess], keeper: "LocalProcesses | None" = None
+    ) -> None:
+        self._started, self._keeper = started, keeper
         self._process: JobProcess | None = None
         self._count = 0
+        self._is_shared = True
 
     def run(
         self,
@@ -113,13 +154,23 @@ class Batch:
     ) -> T:
         """Run the function in the process of this batch, or in a new one; see `Worker.run`."""
         request = Request.of(function, args, limits, reusable=True)
-        return cast(T, self.outcome(request, on_progress, cancelled).result())
+        is_shared = shares_process(function, args)
+        return cast(T, self.outcome(request, on_progress, cancelled, is_shared=is_shared).result())
 
     def outcome(
-        self, request: Request, on_progress: Reporter | None, cancelled: threading.Event | None
+        self,
+        request: Request,
+        on_progress: Reporter | None,
+        cancelled: threading.Event | None,
+        *,
+        is_shared: bool = False,
     ) -> Outcome:
-        """Run a packed, reusable function as `run` does; see `JobProcess.finish`."""
-        if (process := self._taken()) is not None:
+        """Run a packed, reusable function as `run` does; see `JobProcess.finish`.
+
+        `is_shared` says whether its process may serve other batches as well.
+        """
+        self._is_shared = self._is_shared and is_shared
+        if (process := self._taken() or self._lent()) is not None:
             try:
                 process.start(request)
                 outcome = self._finished(process, request.limits, on_progress, cancelled)
@@ -135,9 +186,21 @@ class Batch:
         return self._finished(self._started(request), request.limits, on_progress, cancelled)
 
     def close(self) -> None:
-        """End the process, if one waits."""
-        if (process := self._taken()) is not None:
+        """Leave the process, if one waits, to the next batch; end it if it may not serve another."""
+        if (process := self._taken()) is None:
+            return
+        if self._keeper is not None and self._is_shared:
+            self._keeper.keep(Used(process, self._count))
+        else:
             process.kill()
+
+    def _lent(self) -> JobProcess | None:
+        """The process of an earlier batch, if all that this one runs may share it."""
+        lent = self._keeper.lend() if self._keeper is not None and self._is_shared else None
+        if lent is None:
+            return None
+        self._count = lent.count
+        return lent.process
 
     def _taken(self) -> JobProcess | None:
         process, self._process = self._process, None

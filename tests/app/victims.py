@@ -8,6 +8,7 @@ import sys
 import time
 from pathlib import Path
 
+from app.workers.base import may_share
 from templates.core.progress import report
 
 
@@ -20,6 +21,17 @@ class Awkward(Exception):
 
 def process_id():
     return os.getpid()
+
+
+@may_share(lambda is_shared=True: is_shared)
+def shared_process_id(is_shared=True):
+    return os.getpid()
+
+
+@may_share(lambda: True)
+def shared_second_fails():
+    """Like `second_fails`, but another job may have the process."""
+    return second_fails()
 
 
 def main_module_file():

@@ -1,14 +1,13 @@
 """`/templates/{id}/versions/{n}/evaluate` and `…/solve` and `…/worksheet`.
 
 What is cheap is calculated here, in the event loop or a thread; what is expensive, or comes in a large body,
-goes to a calculation process as it is.
+goes to a calculation process as it is. `app.api.express` answers the plainest requests before they come here.
 """
 
 from __future__ import annotations
 
 import re
-from functools import cached_property
-from typing import Annotated, cast, get_type_hints
+from typing import Annotated
 
 from fastapi import APIRouter, Header, Request, Response
 from pydantic_core import to_json
@@ -23,7 +22,7 @@ from app.api.waiting import LATER
 from app.calculations.array_files import NPY, Form, npy
 from app.calculations.cost import EXPENSIVE, estimated_seconds, is_quick, solving_seconds, writing_seconds
 from app.calculations.operations import LARGE, OPERATIONS, Question
-from app.calculations.schemas import Asked, EvaluateIn, SolveIn
+from app.calculations.schemas import EvaluateIn, SolveIn
 from app.calculations.service import evaluated, run_evaluate, run_solve
 from app.calculations.size import points
 from app.calculations.worksheet import run_worksheet
@@ -67,35 +66,6 @@ class LargeRoute(StrictRoute):
         return await services_of(request).answering.answer(request, question)
 
 
-class PlainRoute(LargeRoute):
-    """A route that reads a request that is right by itself.
-
-    FastAPI's general way costs more than an evaluation. What is not plainly right goes that way, and gets its
-    errors.
-    """
-
-    async def shortcut(self, request: StrictRequest) -> Response | None:
-        """The answer, unless something about the request is not plain."""
-        if not _is_plain(request):
-            return None
-        if len(await request.pieces()) > LARGE:
-            return await super().shortcut(request)
-        try:
-            body = self.asked.model_validate(await request.json())
-        except ValueError:  # no JSON, or not what is asked for
-            return None
-        services = services_of(request)
-        answer: Response = await self.endpoint(
-            *_template(request), body, services.catalogues, services.answering, request
-        )
-        return answer
-
-    @cached_property
-    def asked(self) -> type[Asked]:
-        """The model of the body."""
-        return cast(type[Asked], get_type_hints(self.endpoint)["body"])
-
-
 def _is_plain(request: Request) -> bool:
     """Whether the path names a template and a version in their usual form."""
     id, number = request.path_params["id"], request.path_params["number"]
@@ -112,7 +82,7 @@ def _system(request: Request) -> System | None:
     return SYSTEMS.get(request.query_params.get("units"))
 
 
-router = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=PlainRoute)
+router = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=LargeRoute)
 
 
 @router.post(
