@@ -26,9 +26,7 @@ LONGEST = min(65_536, MOST_BRACKETS, MOST_QUOTES)  # bytes: too short to be intr
 _PATH = re.compile(r"/api/v1/templates/([a-z0-9_]{1,64})/versions/([1-9][0-9]{0,5})/evaluate")
 _TYPES = frozenset(kind.encode() for kind in JSON_TYPES)
 _ROUTE = next(
-    route
-    for route in router.routes
-    if isinstance(route, APIRoute) and route.endpoint is evaluate_template
+    route for route in router.routes if isinstance(route, APIRoute) and route.endpoint is evaluate_template
 )
 _HEADER = (b"content-type", b"application/json")
 

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Hashable, Mapping
+from collections.abc import Collection, Hashable, Mapping
+from threading import Lock
 from typing import NamedTuple, Self
+
+import numpy as np
+from cachetools import LRUCache
 
 from app.calculations.begun import fingerprint
 from app.calculations.cache import results as cache
@@ -126,8 +130,31 @@ def remember(answer: JsonObject, evaluation: Evaluation) -> None:
         cache.keep(question.key(type(evaluation.template)), evaluation)
 
 
-def _formulas(template: Template, system: System, names: Container[str]) -> list[WorkedFormula]:
-    return [WorkedFormula.model_validate(row) for row in formulas(template, system, names)]
+def _formulas(template: Template, system: System, names: Collection[str]) -> list[WorkedFormula]:
+    """The formulas written out, or as they were written out for equal values before."""
+    key = _values_of(template)
+    if key is None:
+        return [WorkedFormula.model_validate(row) for row in formulas(template, system, names)]
+    asked = (type(template), template.level, system, tuple(sorted(names)), key)
+    with _writing:
+        written: list[WorkedFormula] | None = _written.get(asked)
+    if written is None:
+        written = [WorkedFormula.model_validate(row) for row in formulas(template, system, names)]
+        with _writing:
+            _written[asked] = written
+    return written
+
+
+_written: LRUCache[Hashable, list[WorkedFormula]] = LRUCache(256)  # steps of some 40 kB each
+_writing = Lock()
+
+
+def _values_of(template: Template) -> Hashable | None:
+    """The single values that the template has, by which its formulas are written; None if it has arrays."""
+    values = [vars(template).get(attribute) for attribute in template.declarations]
+    if any(isinstance(value, (np.ndarray, tuple)) for value in values):
+        return None
+    return tuple("none" if value != value else value for value in values)  # NaN equals nothing
 
 
 def _evaluated(cls: type[Template], step: RevisionStep) -> Evaluation:

@@ -46,6 +46,7 @@ from app.web.limits import library
 from app.web.model_page import finished_analyses
 from app.web.names import names_json, values_of
 from app.web.rendering import show, units_of
+from app.web.sections import sections
 from app.web.study_page import studies_of
 from app.web.tolerances_page import toleranced
 from app.web.upgrades import upgrades_of
@@ -91,6 +92,9 @@ async def design_page(
         revision=revision,
         parameters=parameters,
         steps=steps,
+        sections=sections(
+            steps, verdict, None if variants.count else opened([s.name for s in steps], verdict)
+        ),
         models=parts,
         measured=measured,
         analyses=await _analyses(request, api, measured, models),
@@ -103,7 +107,6 @@ async def design_page(
         refused=bool(faults) or table is not None,
         notice=notice,
         verdict=verdict,
-        opened=None if variants.count else opened([step.name for step in steps], verdict),
         can_decide=_has_route(request, DECIDE),
         toleranced=toleranced(design),
         base=f"/api/v1/designs/{id}",
@@ -141,7 +144,8 @@ async def _form(request: Request, api: Api, design: Design, refusal: Refusal) ->
     id, within = design.id, 0 if design.state == "regenerating" else QUICK
     revision = await _revision(request, api, id, design.revision, within=within)
     templates, models = await _templates(api, _steps_of_design(design)), await _models(api, design)
-    query: dict[str, Scalar] = {"worksheet": True, "units": units_of(request), "within": within}
+    has_parameters = bool(design.parameters)  # only with the worksheet a preview has their values
+    query: dict[str, Scalar] = {"worksheet": has_parameters, "units": units_of(request), "within": within}
     preview = await api.post(f"/designs/{id}/preview", Preview, {}, **query)
     before = await _revision(request, api, id, design.revision - 1, within=0) if design.revision > 1 else None
     computed = {name: step.outputs for name, step in design.steps.items()}

@@ -118,7 +118,7 @@ class Used(NamedTuple):
     """A process that has returned from so many functions, and waits for another."""
 
     process: JobProcess
-    count: int
+    runs: int
 
 
 class Batch:
@@ -199,7 +199,7 @@ class Batch:
         lent = self._keeper.lend() if self._keeper is not None and self._is_shared else None
         if lent is None:
             return None
-        self._count = lent.count
+        self._count = lent.runs
         return lent.process
 
     def _taken(self) -> JobProcess | None:

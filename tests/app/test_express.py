@@ -1,4 +1,4 @@
-"""A plain request to evaluate is answered past the general machinery; the answer and the errors are the same."""
+"""A plain request to evaluate is answered past the framework; answers and errors are the same."""
 
 import pytest
 from serving import API
@@ -43,7 +43,7 @@ def served_generally(monkeypatch):
         {"inputs": OIL_FILM},
         {"inputs": OIL_FILM, "outputs": ["minimum_film_thickness"]},
         {"inputs": {**OIL_FILM, "radial_load": {"value": [10, 25, 1e5], "unit": "kN"}}},
-        {"inputs": {**OIL_FILM, "speed": "5000 ± 10 rpm"}, "units": {"minimum_film_thickness": "mil"}},
+        {"inputs": {**OIL_FILM, "speed": "5000 ± 10 rpm"}, "units": {"minimum_film_thickness": "inch"}},
     ],
 )
 def test_same_answers(http, body):
@@ -118,4 +118,5 @@ def test_other_methods_and_versions_are_as_before(http):
 
 
 def test_without_a_key_nothing_is_evaluated(team):
-    assert team.http().post(EVALUATE, json={"inputs": OIL_FILM}).status_code == 401
+    with team.http() as http:
+        assert http.post(EVALUATE, json={"inputs": OIL_FILM}).status_code == 401

@@ -24,7 +24,7 @@ Shift = tuple[Mapping[str, Value], Mapping[str, Value]]
 """The values of all names [SI], with something from which they follow shifted to either end of its band."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)  # frozen, each would cost four times as much
 class Estimate:
     """A named value [SI] and how far off it may be.
 

@@ -101,6 +101,11 @@ class Criterion:
         return {limit.name: limit for limit in self.limits}
 
     @cached_property
+    def limits_last(self) -> tuple[str, ...]:
+        """The names in the order of the text, those of limits behind the others."""
+        return tuple(sorted(self.names, key=self.limits_by_name.__contains__))
+
+    @cached_property
     def scale(self) -> Unit:
         """The unit in which value and limit are shown."""
         return unit(self.unit)

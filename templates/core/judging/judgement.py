@@ -21,7 +21,7 @@ class Place:
     unit: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)  # frozen, each would cost 25 times as much
 class Judgement:
     """A criterion as judged; over several points or places it stands for the worst of them.
 

@@ -131,7 +131,7 @@ def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: Ma
     for name, side in (("value", criterion.value), ("limit", criterion.limit)):
         if side.names <= estimates.keys():
             si = side_of(side, estimates)
-            if not np.ndim(si) and math.isfinite(si):
+            if (isinstance(si, float) or not np.ndim(si)) and math.isfinite(si):
                 parts[name] = float(criterion.scale.from_si(float(si)))
     give, reasons = dict[str, None](), dict[str, None]()
     for name in criterion.names:

@@ -102,8 +102,11 @@ class Evaluated:
     @cached_property
     def computed(self) -> frozenset[str]:
         """The names of outputs that have to be computed here: not those that were given."""
-        handed = self.template.ledger.handed
-        return frozenset(n for n, f in self.template.formulas.items() if f.attribute not in handed)
+        template = self.template
+        if template.ledger.handed.isdisjoint(template._results):
+            return template._result_names
+        handed = template.ledger.handed
+        return frozenset(n for n, f in template.formulas.items() if f.attribute not in handed)
 
     def value(self, name: str) -> Value:
         """The SI value of an output that exists; NaN in an array where there is none."""
@@ -157,7 +160,8 @@ def _judged(evaluated: Evaluated, criterion: Criterion) -> Judgement:
     estimates, absent = estimates_of(evaluated, criterion)
     subject = criterion.subject or ""
     shown = evaluated.shown_in[subject].text if subject in evaluated.shown_in else None
-    along = along_of(evaluated.template, criterion.names)
+    template = evaluated.template
+    along = None if template._curves.isdisjoint(criterion.names) else along_of(template, criterion.names)
     more = notes(evaluated, criterion)
     instead = _instead(evaluated, criterion) if criterion.absent else None
     return judge(criterion, estimates, absent, along, shown, noted=more, instead=instead)
@@ -180,7 +184,7 @@ def estimates_of(evaluated: Evaluated, criterion: Criterion) -> tuple[dict[str, 
     estimates: dict[str, Estimate] = {}
     absent: dict[str, Absent] = {}
     limits = criterion.limits_by_name
-    for name in sorted(criterion.names, key=limits.__contains__):  # a limit has to fit the other values
+    for name in criterion.limits_last:  # a limit has to fit the other values
         if name in limits:
             one = _limit(evaluated, limits[name], estimates)
         else:
@@ -206,8 +210,12 @@ def estimate_of(evaluated: Evaluated, name: str) -> Estimate | Absent:
     if name in evaluated.computed:
         return _estimate_of_output(evaluated, name)
     declared = template.inputs[name]
-    with np.errstate(all="ignore"):
-        si = getattr(template, declared.attribute)
+    si = vars(template).get(declared.attribute)
+    if si is None:
+        with np.errstate(all="ignore"):
+            si = getattr(template, declared.attribute)
+    if isinstance(si, float):
+        return Estimate(si) if si == si else Absent((name,), f"give {name}")  # NaN stands for none
     if not np.ndim(si) and np.isnan(si):
         return Absent((name,), f"give {name}")
     return Estimate(si, axes=1 if isinstance(declared, Curve) and np.ndim(si) else 0)
@@ -262,7 +270,7 @@ def _estimate_of_output(evaluated: Evaluated, name: str) -> Estimate | Absent:
     axes = formula.axes if isinstance(formula, Profile) else 0
     error, is_stated = _error(evaluated, name)
     scale = None if axes else _scale(evaluated, name)
-    if scale is not None and np.isnan(scale).any():
+    if scale is not None and (scale != scale if isinstance(scale, float) else np.isnan(scale).any()):
         error, is_stated, scale = _where_it_has_a_scale(error, scale)
     return Estimate(evaluated.value(name), error, is_stated, axes, scale, answer.reasons)
 

@@ -28,7 +28,7 @@ from templates.core.language.unmet import unmet
 from templates.core.units.quantity import Typed, Unit
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)  # frozen, each would cost four times as much
 class Answer:
     """One result in its unit; NaN in an array, or None, where there is none, with its reason."""
 
@@ -38,7 +38,7 @@ class Answer:
     reasons: NDArray[np.object_] | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)  # as `Answer`
 class Echo:
     """One input as it was used: as typed, or its default."""
 
@@ -67,7 +67,10 @@ class Evaluation:
 
     def count(self) -> int:
         """How many values all outputs have together."""
-        return sum(np.size(answer.value) for answer in self.outputs.values())
+        return sum(
+            answer.value.size if isinstance(answer.value, np.ndarray) else 1
+            for answer in self.outputs.values()
+        )
 
 
 def evaluate(

@@ -251,7 +251,7 @@ def _violated_points(self: Template, rule: Requirement, holds: NDArray[np.bool_]
 
 def remarks(self: Template) -> Iterator[Notice]:
     """A warning for every rule that refuses nothing, where it does not hold."""
-    for rule in (rule for rule in self.requirements if rule.warning):
+    for rule in self._remarks:
         if not np.all(rule.function(self)):
             yield from (Notice(rule.warning, name, f"{rule.sentence}; {rule.remedy}") for name in rule.names)
 

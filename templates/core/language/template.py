@@ -94,6 +94,10 @@ class Template:
 
     _ancestry: ClassVar[dict[str, frozenset[str]]] = {}
     _dependencies: ClassVar[dict[str, frozenset[str]]] = {}
+    _results: ClassVar[frozenset[str]] = frozenset()  # attributes of formulas
+    _result_names: ClassVar[frozenset[str]] = frozenset()
+    _curves: ClassVar[frozenset[str]] = frozenset()  # names of formulas that are profiles
+    _remarks: ClassVar[tuple[Requirement, ...]] = ()  # the rules that refuse nothing
     ledger: Ledger
 
     def __init_subclass__(cls) -> None:
@@ -108,7 +112,11 @@ class Template:
         named = by_name(declared)
         cls.inputs = {name: v for name, v in named.items() if isinstance(v, (Given, Choice, Derived))}
         cls.formulas = {n: v for n, v in named.items() if n not in cls.inputs or getattr(v, "shown", False)}
+        cls._results = frozenset(formula.attribute for formula in cls.formulas.values())
+        cls._result_names = frozenset(cls.formulas)
+        cls._curves = frozenset(name for name, v in cls.formulas.items() if isinstance(v, Profile))
         cls.requirements = tuple(v for v in everything.values() if isinstance(v, Requirement))
+        cls._remarks = tuple(rule for rule in cls.requirements if rule.warning)
         cls.intermediates = {name: v for name, v in everything.items() if isinstance(v, Shared)}
         cls.declared_criteria = declared_criteria(cls.__name__, cls.criteria, cls.inputs, cls.formulas)
 
@@ -179,8 +187,9 @@ class Template:
 
     def shape_of_points(self) -> tuple[int, ...]:
         """The shape of the points that the inputs make; a curve is one thing for each."""
-        given = {name: vars(self)[name] for name in self.ledger.handed}
-        return points_of(self, {name: v for name, v in given.items() if isinstance(v, np.ndarray)})
+        given = vars(self)
+        arrays = {name: given[name] for name in self.ledger.handed if isinstance(given[name], np.ndarray)}
+        return points_of(self, arrays) if arrays else ()
 
     def as_given(self, attribute: str) -> Any:
         """The value of an input as it was given, or its default; NaN where its formula has to make it.
