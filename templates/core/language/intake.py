@@ -94,6 +94,10 @@ def admitted(cls: type[Template], typed: Mapping[str, Typed | str]) -> Intake:
 
 def _bounded(declared: Input, typed: Typed) -> tuple[Any, Fault | Mask | None]:
     """The value and what is wrong with it; a faulty point of an array is masked, and is not a fault."""
+    if isinstance(typed.si, float) and typed.tolerance is None and not isinstance(declared, (Curve, Table)):
+        low, high = declared.meaning.interval  # most inputs are one number within its bounds
+        if low <= typed.si <= high and not declared.meaning.integer:
+            return np.float64(typed.si), None
     if isinstance(declared, Table):
         return _rows(declared, typed.si)
     if isinstance(typed.si, np.ndarray) and is_single(declared):
