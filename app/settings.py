@@ -73,6 +73,15 @@ class Settings(BaseSettings):
         "/usr/bin/python3",
         description="the Python that FreeCAD was built for: it draws models in .FCStd files",
     )
+    creoson_url: str | None = Field(
+        None, description="CREOSON beside a running Creo: `http://127.0.0.1:9056/creoson`"
+    )
+    creoson_folder: Path | None = Field(
+        None, description="folder into which Creo exports, as this service names it"
+    )
+    creoson_exports: str | None = Field(
+        None, description="the same folder as Creo names it; as `creoson_folder` if not given"
+    )
     wait_seconds: float = Field(2.0, ge=0, description="how long an answer waits for its job [s]")
     queue_limit: int = Field(1000, gt=0, description="jobs that may be queued before new ones are refused")
     client_queue_limit: int = Field(50, gt=0, description="jobs of one client that may be queued")

@@ -160,7 +160,8 @@ class BroughtModel(CadModel):
             if not one.role:
                 continue
             wanted = float(self.inputs[one.name].meaning.scale.from_si(getattr(self, _attribute(one.name))))
-            offered = [value / (2 if one.role == "radius" else 1) for value in sizes[_SIZE[one.role]]]
+            per_size = _factor(one)
+            offered = [size / per_size for size in sizes[_SIZE[one.role]]]
             if not offered:
                 raise LookupError(f"no {one.role} for {one.name}")
             read[one.name] = min((abs(size - wanted), size) for size in offered)[1]
@@ -230,6 +231,16 @@ def _distances(planes: Any) -> Iterator[float]:
     for one, other in combinations(planes, 2):
         if one.along(other.direction):
             yield round(abs((one.point - other.point).dot(one.direction)), 9)
+
+
+def _factor(one: Parameter) -> float:
+    """By how much a size on the solid [mm] is greater than the parameter's number."""
+    return (2 if one.role == "radius" else 1) * (25.4 if one.unit == "inch" else 1)
+
+
+def shows(one: Parameter, sizes: Sizes) -> bool:
+    """Whether the solid has the size that a parameter is said to be."""
+    return bool(one.role) and _has(sizes[_SIZE[one.role]], _factor(one) * one.value)
 
 
 def role_of(

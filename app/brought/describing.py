@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from app.brought.creo.manifest import read
 from app.brought.naming import parameter_name
 from app.brought.programs import Programs, given_to_freecad
 from app.brought.warm import WarmProcesses
 from app.jobs.context import JobContext
 from app.storage.artifacts import Artifacts
 from app.workers.base import Limits
-from cad.brought import Description, Drawn, Parameter, Role, role_of, trial_sizes
-from cad.errors import GeometryError
+from cad.brought import Description, Drawn, Parameter, Role, role_of, shows, trial_sizes
+from cad.errors import GeometryError, UnreadableModel
 from cad.freecad.admission import admitted
 
 READING = Limits(deadline=20.0, memory_mb=512)
@@ -49,6 +50,29 @@ def described_freecad(
         made_with=answered.about["program"],
         parameters=tuple(replace(one, role=roles.get(one.name, "")) for one in parameters),
     )
+
+
+def described_creo(
+    content: bytes, file_name: str, store: Artifacts, programs: Programs, context: JobContext
+) -> Description:
+    """The description that a manifest gives of a model in Creo, after Creo has drawn it once as it is stored.
+
+    Raises
+    ------
+    UnreadableModel, GeometryError, DeadlineExceeded
+        If the manifest is wrong, Creo cannot draw the model, or a size that it names is not on the solid.
+    """
+    described = read(content).described(store.put(content), file_name)
+    context.progress(0.1, "Creo draws the model")
+    drawn = programs.drawn(described, {}, context.cancelled)
+    context.progress(0.7, "the solid is examined")
+    sizes = context.run(trial_sizes, drawn)
+    for one in described.parameters:
+        if one.role and not shows(one, sizes):
+            raise UnreadableModel(
+                "check", f"{one.name}: no {one.role} of {one.value:g} {one.unit} on the solid"
+            )
+    return described
 
 
 def described_step(content: bytes, file_name: str, store: Artifacts, context: JobContext) -> Description:

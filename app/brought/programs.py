@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
+from app.brought.creo.manifest import read
+from app.brought.creo.session import CreoDrawing, Creoson
 from app.brought.finding import FreeCad, find
 from app.brought.warm import WarmProcesses
 from app.jobs.context import JobContext
@@ -47,6 +49,18 @@ class StepFiles:
         return Drawn(step=self._store.read(described.file))
 
 
+class CreoModels:
+    """Draws by a running Creo what manifests describe."""
+
+    def __init__(self, store: Artifacts, drawing: CreoDrawing) -> None:
+        self._store, self.drawing = store, drawing
+
+    def draw(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
+        """The STEP file that Creo exports; see `Drawing.draw`."""
+        manifest = read(self._store.read(described.file))
+        return self.drawing.draw_manifest(manifest, described, values, cancelled)
+
+
 class FreeCadDrawing:
     """Draws by FreeCAD, in a warm process of each file."""
 
@@ -72,6 +86,12 @@ def given_to_freecad(one: Parameter, value: float) -> list[str | float]:
     return [thing, kind, key, value, one.unit]
 
 
+SET_CREO = (
+    "let the operator set CRANKWRIGHT_CREOSON_URL, such as http://127.0.0.1:9056/creoson, and "
+    "CRANKWRIGHT_CREOSON_FOLDER, the folder into which Creo exports"
+)
+
+
 @dataclass(frozen=True)
 class Programs:
     """The programs of this service, by name."""
@@ -81,12 +101,15 @@ class Programs:
 
     def draw(self, shape: BroughtModel, context: Runner) -> Drawn:
         """What the program of a model draws for its parameters; raises as `Drawing.draw` does."""
-        described = shape.brought
+        cancelled = context.cancelled if isinstance(context, JobContext) else threading.Event()
+        return self.drawn(shape.brought, values_of(shape), cancelled)
+
+    def drawn(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
+        """What a program draws for some values; raises as `Drawing.draw` does."""
         program = self.by_name.get(described.program)
         if program is None:
-            raise ProgramMissing("program_missing", f"this service has no {described.program}")
-        cancelled = context.cancelled if isinstance(context, JobContext) else threading.Event()
-        return program.draw(described, values_of(shape), cancelled)
+            raise ProgramMissing("program_missing", f"this service drives no Creo: {SET_CREO}")
+        return program.draw(described, values, cancelled)
 
     def close(self) -> None:
         """End all processes."""
@@ -105,4 +128,9 @@ def assembled(settings: Settings, store: Artifacts) -> Programs:
     """The programs that the settings name."""
     limits = Limits(settings.job_deadline, settings.job_memory_mb)
     freecad = FreeCadDrawing(store, lambda: find(settings.freecad, settings.freecad_python), limits)
-    return Programs(freecad, {"freecad": freecad, "step": StepFiles(store)})
+    by_name: dict[Program, Drawing] = {"freecad": freecad, "step": StepFiles(store)}
+    if settings.creoson_url and settings.creoson_folder:
+        exports = settings.creoson_exports or str(settings.creoson_folder)
+        creoson = Creoson(settings.creoson_url, exports, settings.creoson_folder)
+        by_name["creo"] = CreoModels(store, CreoDrawing(creoson, settings.job_deadline))
+    return Programs(freecad, by_name)

@@ -7,7 +7,8 @@ from typing import Literal
 from sqlalchemy.orm import Session
 
 from app.brought import repository
-from app.brought.describing import described_freecad, described_step
+from app.brought.creo.manifest import read
+from app.brought.describing import described_creo, described_freecad, described_step
 from app.brought.errors import ModelIdTaken
 from app.brought.naming import require_free
 from app.brought.programs import Programs
@@ -26,7 +27,7 @@ from cad.errors import GeometryError, ProgramMissing, UnreadableModel, Unreadabl
 from templates.core.errors import TemplateError
 
 IMPORT = "model_import"
-Kind = Literal["freecad", "step"]
+Kind = Literal["freecad", "creo", "step"]
 FAILURES = (
     UnreadableModel, UnreadableStep, GeometryError, ModelIdTaken, TemplateError, DeadlineExceeded,
     MemoryExceeded, JobCrashed, ArtifactMissing, ArtifactDamaged,
@@ -67,6 +68,8 @@ class ModelImports:
         kind = kind_of(content)
         if kind == "freecad":
             self.programs.freecad.warm.find()
+        if kind == "creo":
+            read(content)
         sha = self.store.put(content)
         payload = {"file": sha, "id": id, "name": file, "kind": kind, "client": once.client}
 
@@ -118,6 +121,8 @@ class ModelImports:
     def _described(self, kind: Kind, content: bytes, name: str, context: JobContext) -> Description:
         if kind == "step":
             return described_step(content, name, self.store, context)
+        if kind == "creo":
+            return described_creo(content, name, self.store, self.programs, context)
         return described_freecad(content, name, self.store, self.programs, context)
 
 
@@ -133,5 +138,10 @@ def kind_of(content: bytes) -> Kind:
         return "freecad"
     if content[:200].lstrip().startswith(b"ISO-10303-21"):
         return "step"
-    what = "the body is empty" if not content else "it begins neither as a ZIP package nor as a STEP file"
-    raise UnreadableModel("not_a_model", f"{what}: send a .FCStd of FreeCAD, or a STEP file (ISO 10303-21)")
+    if content[:200].lstrip().startswith(b"{"):
+        return "creo"
+    what = "the body is empty" if not content else "it begins as no model does"
+    raise UnreadableModel(
+        "not_a_model",
+        f"{what}: send a .FCStd of FreeCAD, a STEP file (ISO 10303-21), or a manifest for Creo (JSON)",
+    )

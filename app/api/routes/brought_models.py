@@ -13,6 +13,7 @@ from app.api.routes.models import Id
 from app.api.routes.templates import Number
 from app.api.stored import UNCHANGED, StoredFile
 from app.api.waiting import LATER, accepted
+from app.brought.programs import SET_CREO
 from app.brought.views import origin
 from app.schemas.brought import DrawingProgram, DrawingPrograms, ModelOrigin
 from app.schemas.problems import refusals
@@ -48,7 +49,14 @@ def list_programs(imports: TheModelImports) -> DrawingPrograms:
     fixed = DrawingProgram(
         name="STEP", files=".step, .stp", available=True, detail="a fixed part without parameters"
     )
-    return DrawingPrograms(items=[freecad, fixed])
+    drives = "creo" in imports.programs.by_name
+    creo = DrawingProgram(
+        name="Creo",
+        files=".json, a manifest",
+        available=drives,
+        detail="driven through CREOSON" if drives else SET_CREO,
+    )
+    return DrawingPrograms(items=[freecad, creo, fixed])
 
 
 @router.post(
@@ -66,7 +74,7 @@ async def import_model(
     id: NewId,
     file: FileName = "model",
 ) -> Response:
-    """A file of FreeCAD (.FCStd) as a model, or a STEP file as a fixed part; the body is the file itself.
+    """A file of FreeCAD (.FCStd) or a manifest for Creo as a model, or a STEP file as a fixed part.
 
     Aliases of spreadsheet cells and named constraints of sketches become parameters. Macros and Python
     features never run: a file that has them is refused. The job answers with the version of the model once it

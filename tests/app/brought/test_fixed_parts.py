@@ -101,5 +101,5 @@ def test_a_service_without_freecad_says_on_the_page_how_to_install_it(http, serv
     page = http.get("/models/import")
     assert page.status_code == 200
     assert "apt install freecad-python3" in page.text
-    (freecad, fixed) = http.get(f"{API}/models/import").json()["items"]
+    (freecad, _, fixed) = http.get(f"{API}/models/import").json()["items"]
     assert (freecad["available"], fixed["available"]) == (False, True)
