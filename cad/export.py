@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from cad.drafting.paper import as_pdf
 from cad.drafting.sheet import write_dxf
 from cad.drafting.svg import write_drawing
 from cad.drawing import write_svg
@@ -22,10 +23,11 @@ MEDIA_TYPES = {
     "svg": "image/svg+xml",
     "png": "image/png",
     "dxf": "image/vnd.dxf",
+    "drawing.pdf": "application/pdf",
 }
 """Every kind of file in which a build can be had; the last kind of a media type is its usual one."""
 
-DRAWINGS = ("drawing.svg", "dxf")
+DRAWINGS = ("drawing.svg", "dxf", "drawing.pdf")
 """Kinds that show dimensions; they take longer than a picture."""
 
 
@@ -56,6 +58,7 @@ _WRITERS: dict[str, Writer] = {
     "svg": lambda bodies, _header: write_svg(bodies),
     "png": _of_meshes(write_png),
     "dxf": write_dxf,
+    "drawing.pdf": lambda bodies, header: as_pdf(write_drawing(bodies, header)),
 }
 
 DERIVED = tuple(_WRITERS)

@@ -13,7 +13,9 @@ from dataclasses import dataclass, field
 from functools import partial
 from html import escape
 
-from cad.naming import stem, wide_stem
+from cad.drafting.lettering import clipped
+from cad.drafting.title import STAMPED as STAMPED_FIELDS
+from cad.naming import name, stem, wide_stem
 from cad.part21 import end_of_string, plain, quoted
 
 _STRING = r"'(?:[^']|'')*'"
@@ -22,14 +24,11 @@ _PRODUCT = re.compile(rf"^#\d+ = PRODUCT\(\s*({_STRING}\s*,\s*({_STRING})\s*,\s*
 _COMMA = re.compile(r"\s*,\s*")
 _VERSION = re.compile(rf"^#\d+ = PRODUCT_DEFINITION_FORMATION\(\s*({_STRING})", re.MULTILINE)
 
-BLOCK = ("design", "part", "material")
-"""The lines of a drawing's title block that a stamp fills in."""
-
 MARK = "stamp:"
 """In the extended data of a DXF text: behind it stands which line of the block the text is."""
 
-LONGEST_LINE = 44  # letters that have room in the title block
-_SVG_LINE = re.compile(r'(<text data-stamp="([a-z]+)"[^>]*>)[^<]*')
+LONGEST_LINE = 44  # letters that have room in the title block of an older drawing
+_SVG_LINE = re.compile(r'(<text data-stamp="([a-z-]+)"[^>]*>)[^<]*')
 
 
 @dataclass(frozen=True)
@@ -47,6 +46,12 @@ class Stamp:
     materials: Mapping[str, str] = field(default_factory=dict)
     variant: str | None = None
     is_only: bool = True
+    owner: str = ""
+    author: str = ""
+    checker: str = ""
+    approver: str = ""
+    status: str = ""
+    mass: float | None = None  # [kg]
 
     @property
     def called(self) -> str:
@@ -66,11 +71,33 @@ class Stamp:
         return wide_stem(self.design, self.called, self.revision)
 
     @property
+    def named(self) -> str:
+        """The model, and the variant that it is of."""
+        return ", ".join(filter(None, (self.variant, self.model)))
+
+    @property
     def block(self) -> dict[str, str]:
-        """The lines of a drawing's title block."""
-        named = ", ".join(filter(None, (self.variant, self.model)))
-        part = f"{named}, revision {self.revision}, {self.date[:10]}"
+        """The lines of an older drawing's title block."""
+        part = f"{self.named}, revision {self.revision}, {self.date[:10]}"
         return {"design": self.design, "part": part, "material": self.material}
+
+    @property
+    def fields(self) -> dict[str, str]:
+        """The texts of a drawing's title block (ISO 7200), by field."""
+        return {
+            "owner": self.owner,
+            "title": self.design,
+            "author": self.author,
+            "checker": self.checker,
+            "approver": self.approver,
+            "status": self.status,
+            "number": f"{name(self.design)}_{self.called}",
+            "revision": str(self.revision),
+            "date": self.date[:10],
+            "material": self.material,
+            "mass": "" if self.mass is None else f"{self.mass:.4g} kg",
+            "part": self.named,
+        }
 
     @property
     def material(self) -> str:
@@ -187,19 +214,18 @@ def _stamped_dxf(text: str, stamp: Stamp) -> str:
         code, value = lines[place].strip(), lines[place + 1]
         if code == "1":
             last = place + 1
-        elif code == "1000" and (name := value.removeprefix(MARK)) != value and name in written:
-            lines[last] = written[name].replace("^", "^ ").replace("%%", "%%%%%%")
+        elif code == "1000" and (mark := value.removeprefix(MARK)) != value and mark in written:
+            lines[last] = written[mark].replace("^", "^ ").replace("%%", "%%%%%%")
     return "\n".join(lines)
 
 
 def _lines(stamp: Stamp) -> dict[str, str]:
-    """The lines of a title block as they are drawn."""
-    return {name: _clipped(line_of(name, value)) for name, value in stamp.block.items()}
-
-
-def line_of(name: str, value: str = "") -> str:
-    """A line of a title block; without a value there is room to write it by hand."""
-    return f"{name}: {value}".rstrip()
+    """The lines of a title block as they are drawn, those of older drawings among them, by their marks."""
+    older = {name: _clipped(f"{name}: {value}") for name, value in stamp.block.items()}
+    fields = stamp.fields
+    return older | {
+        mark: clipped(fields[field.name], field.room, field.letters) for mark, field in STAMPED_FIELDS.items()
+    }
 
 
 def _clipped(line: str) -> str:

@@ -24,7 +24,9 @@ _WORDS: dict[str, tuple[Sort, ...]] = {
 }
 _LENGTHS: tuple[Sort, ...] = ("length", "width", "offset", "gap")
 _ANY: tuple[Sort, ...] = (*_LENGTHS, "diameter", "radius")
-_AMOUNT = re.compile(r"(-?[0-9.eE+-]+) (\S+)")
+_AMOUNT = re.compile(
+    r"(-?[0-9.eE+-]+) (\S+)(?: [A-Za-z]{1,2}[0-9]{1,2}| [-+±].*)?"
+)  # with a tolerance behind it
 _WITHIN = ("aligned", "circle", "arc", "angle")  # dimensions that do not stand beside the view
 _PRECISION = 1e-6  # relative and in mm
 
@@ -35,12 +37,26 @@ class Dimension:
 
     measure: Measure
     name: str | None
+    limits: Limits | None = None
+    alike: tuple[Measure, ...] = ()  # others that show the same parameter in the same way
 
 
-def matched(parameters: Mapping[str, str], measures: Sequence[Measure]) -> tuple[list[Dimension], list[str]]:
+@dataclass(frozen=True)
+class Limits:
+    """Limit deviations of a dimension [mm], and their zone of ISO 286, if they come from one."""
+
+    lower: float
+    upper: float
+    zone: str | None = None
+
+
+def matched(
+    parameters: Mapping[str, str], measures: Sequence[Measure], limits: Mapping[str, Limits] | None = None
+) -> tuple[list[Dimension], list[str]]:
     """A dimension for every parameter that is seen, and the names of the lengths and angles that are not.
 
-    `parameters` are as in the header of a STEP file: `{"inner_diameter": "50 mm", "shell": "half"}`.
+    `parameters` are as in the header of a STEP file: `{"inner_diameter": "50 mm", "shell": "half"}`; `limits`
+    are those of toleranced ones.
     """
     matches: list[Dimension] = []
     unseen: list[str] = []
@@ -51,7 +67,9 @@ def matched(parameters: Mapping[str, str], measures: Sequence[Measure]) -> tuple
         fitting = _fitting(name, *size, measures)
         fresh = [m for m in fitting if all(m.points != taken.measure.points for taken in matches)]
         if fitting:
-            matches.append(Dimension(_clearest(fresh or fitting, matches), name))
+            measure = _clearest(fresh or fitting, matches)
+            alike = tuple(m for m in fresh if _kind(m) == _kind(measure) and m is not measure)
+            matches.append(Dimension(measure, name, (limits or {}).get(name), alike))
         else:
             unseen.append(name)
     return matches, unseen
@@ -63,8 +81,12 @@ def _clearest(fitting: Sequence[Measure], matches: Sequence[Dimension]) -> Measu
     first = fitting[0]
     if first.form not in _WITHIN or not others:
         return first
-    alike = [m for m in fitting if (m.sort, m.place, m.form) == (first.sort, first.place, first.form)]
+    alike = [m for m in fitting if _kind(m) == _kind(first)]
     return max(alike, key=lambda m: min(dist(m.points[0], other) for other in others))
+
+
+def _kind(measure: Measure) -> tuple[str, str, str]:
+    return measure.sort, measure.place, measure.form
 
 
 def _fitting(name: str, value: float, is_angle: bool, measures: Sequence[Measure]) -> list[Measure]:

@@ -10,7 +10,8 @@ from typing import Literal
 
 from cadquery import Vector
 
-from cad.drafting.views import Point, View
+from cad.drafting.curves import Point
+from cad.drafting.views import View
 from cad.inspect import look_at
 from cad.step import Body
 from cad.surfaces import Seen, Surface, X, Y, Z
@@ -105,8 +106,8 @@ def _edge_at(section: View, v: float, reach: tuple[float, float]) -> float | Non
 def _on_circle(view: View, centre: Point, radius: float) -> Point | None:
     """A point of a visible line on that circle, on the longest run of such points, beside its middle."""
     runs = [
-        [p for p in line if abs(hypot(p[0] - centre[0], p[1] - centre[1]) - radius) < 1e-4]
-        for line in view.visible
+        [p for p in curve.points if abs(hypot(p[0] - centre[0], p[1] - centre[1]) - radius) < 1e-4]
+        for curve in view.visible
     ]
     run = max(runs, key=len, default=[])
     return run[len(run) // 4] if len(run) > 2 else None
@@ -214,5 +215,5 @@ def _of_flanks(seen: Seen, end: View) -> Iterator[Measure]:
 def _leg(plane: Surface, end: View) -> Point | None:
     """The end of a visible line that runs away from the shaft within a plane."""
     normal = end.frame.flat(plane.direction)
-    on = [p for line in end.visible for p in line if abs(p[0] * normal[0] + p[1] * normal[1]) < 1e-4]
+    on = [p for curve in end.visible for p in curve.points if abs(p[0] * normal[0] + p[1] * normal[1]) < 1e-4]
     return max(on, key=lambda p: hypot(*p), default=None)

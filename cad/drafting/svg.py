@@ -1,19 +1,38 @@
-"""The dimensioned drawing as SVG: what the DXF document holds, line by line, on its sheet."""
+"""The drawing as SVG: the entities of its DXF, one after another, at the size of its sheet.
+
+An arc is an arc, not a line of points. No style attributes, which the pages' policy forbids, and no scripts.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from html import escape
-from math import cos, degrees, radians, sin
+from math import cos, hypot, radians, sin
 from typing import Any
 
-from cad.drafting.sheet import APP, SHEET, draw
+from ezdxf import path as paths
+
+from cad.drafting.hatching import hatch
+from cad.drafting.labels import SMALL, read_stack
+from cad.drafting.lettering import SIZE, width_of
+from cad.drafting.page import APP
+from cad.drafting.plan import SHEET
+from cad.drafting.sheet import draw
 from cad.header import Header
 from cad.stamp import MARK
 from cad.step import Body
 
 FONTS = "Inter, 'Liberation Sans', Arial, sans-serif"
-_WIDTHS = {"OUTLINE": 0.6, "FRAME": 0.4, "DIMENSIONS": 0.22, "HATCH": 0.12, "SMOOTH": 0.2, "HIDDEN": 0.25}
+_WIDTHS = {
+    "OUTLINE": 0.6,
+    "FRAME": 0.4,
+    "DIMENSIONS": 0.22,
+    "HATCH": 0.12,
+    "SMOOTH": 0.2,
+    "HIDDEN": 0.25,
+    "CUTTING": 0.7,
+    "SYMBOLS": 0.3,
+}
 _COLOURS = {
     "HATCH": "#8593a0",
     "SMOOTH": "#5b6671",
@@ -23,7 +42,7 @@ _COLOURS = {
 }
 _DASHES = {"HIDDEN": "2.4 1.4", "CENTRE": "9 1.5 1.5 1.5"}
 _INK = "#1d2733"
-_STEP = radians(4)  # between two points of an arc
+_FLAT = 0.02  # greatest distance of a hatched outline from its arcs [mm on paper]
 
 
 def write_drawing(bodies: Sequence[Body], header: Header | None) -> bytes:
@@ -33,7 +52,7 @@ def write_drawing(bodies: Sequence[Body], header: Header | None) -> bytes:
     (left, low), (right, _) = frame.get_points("xy")[:2]
     scale = SHEET[0] / (right - left)
     ink = Ink(left, low, scale)
-    lines = "\n".join(ink.of(entity, entity.dxf.layer) for entity in document.modelspace())
+    lines = "\n".join(filter(None, (ink.of(entity, entity.dxf.layer) for entity in document.modelspace())))
     width, height = SHEET
     return (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -65,59 +84,90 @@ class Ink:
             case "DIMENSION" | "INSERT":
                 return "".join(self.of(part, layer) for part in entity.virtual_entities())
             case "LINE":
-                return self._path([entity.dxf.start, entity.dxf.end], layer)
+                return self._stroke(self._line([entity.dxf.start, entity.dxf.end]), layer)
             case "LWPOLYLINE":
-                return self._path(entity.get_points("xy"), layer)
-            case "ARC" | "CIRCLE":
-                return self._path([*_round(entity)], layer)
+                return self._stroke(self._line(entity.get_points("xy")), layer)
+            case "ARC":
+                turn = (entity.dxf.end_angle - entity.dxf.start_angle) % 360
+                return self._stroke(self._arc(entity, entity.dxf.start_angle, turn), layer)
+            case "CIRCLE":
+                return self._stroke(self._arc(entity, 0.0, 360.0), layer)
+            case "HATCH":
+                return self._hatch(entity, layer)
             case "SOLID":
-                return self._solid(entity, layer)
+                d = self._line(entity.wcs_vertices()) + "z"
+                return f'<path fill="{_COLOURS.get(layer, _INK)}" d="{d}"/>\n'
             case "TEXT":
-                place, size = entity.dxf.insert, entity.dxf.height
-                return self._text(entity.dxf.text, place, size, 0.0, "start", 0.0, _mark_of(entity))
+                return self._letters(entity)
             case "MTEXT":
-                angle = entity.get_rotation()
-                return self._text(
-                    entity.plain_text(), entity.dxf.insert, entity.dxf.char_height, angle, "middle", 0.36
-                )
+                return self._words(entity)
         return ""  # points, which only CAD programs need
 
-    def _path(self, points: Sequence[Any], layer: str) -> str:
-        d = "M" + "L".join("{:.3f} {:.3f}".format(*self.at(point)) for point in points)
+    def _line(self, points: Sequence[Any]) -> str:
+        return "M" + "L".join("{:.3f} {:.3f}".format(*self.at(point)) for point in points)
+
+    def _arc(self, entity: Any, start: float, turn: float) -> str:
+        """An arc as one or two arcs of SVG, none of which turns more than half; y points down there."""
+        (x, y), r = self.at(entity.dxf.center), entity.dxf.radius * self.scale
+        parts = 2 if turn > 180 else 1
+        angles = [radians(start + turn * i / parts) for i in range(parts + 1)]
+        ends = [f"{x + r * cos(angle):.3f} {y - r * sin(angle):.3f}" for angle in angles]
+        return f"M{ends[0]}" + "".join(f"A{r:.3f} {r:.3f} 0 0 0 {end}" for end in ends[1:])
+
+    def _hatch(self, entity: Any, layer: str) -> str:
+        line = entity.pattern.lines[0]
+        apart, is_falling = hypot(line.offset.x, line.offset.y), 90 < line.angle % 180
+        outlines = [
+            [(p.x, p.y) for p in outline.flattening(_FLAT / self.scale)]
+            for outline in paths.from_hatch(entity)
+        ]
+        lines = hatch(outlines, apart, falling=is_falling)
+        d = "".join(self._line(ends) for ends in lines)
+        return self._stroke(d, layer) if d else ""
+
+    def _stroke(self, d: str, layer: str) -> str:
         dash = f' stroke-dasharray="{_DASHES[layer]}"' if layer in _DASHES else ""
         colour, width = _COLOURS.get(layer, _INK), _WIDTHS.get(layer, 0.2)
         return f'<path stroke="{colour}" stroke-width="{width:g}"{dash} d="{d}"/>\n'
 
-    def _solid(self, entity: Any, layer: str) -> str:
-        d = "M" + "L".join("{:.3f} {:.3f}".format(*self.at(point)) for point in entity.wcs_vertices()) + "z"
-        return f'<path fill="{_COLOURS.get(layer, _INK)}" d="{d}"/>\n'
-
-    def _text(
-        self, text: str, place: Any, height: float, angle: float, anchor: str, drop: float, mark: str = ""
-    ) -> str:
-        x, y = self.at(place)
-        size = height * self.scale * 1.3  # letters of that height; a font's size is that of its line
-        turn = f' transform="rotate({-angle:.4g} {x:.3f} {y:.3f})"' if angle else ""
+    def _letters(self, entity: Any) -> str:
+        x, y = self.at(entity.dxf.insert)
+        size = entity.dxf.height * self.scale * SIZE
+        mark = _mark_of(entity)
         return (
-            f'<text{mark} x="{x:.3f}" y="{y:.3f}" dy="{drop * size:.3f}" font-size="{size:.3f}" fill="{_INK}"'
-            f' text-anchor="{anchor}"{turn}>{escape(text)}</text>\n'
+            f'<text{mark} x="{x:.3f}" y="{y:.3f}" font-size="{size:.3f}" fill="{_INK}">'
+            f"{escape(entity.dxf.text)}</text>\n"
+        )
+
+    def _words(self, entity: Any) -> str:
+        """The words of a dimension about their middle, deviations one above the other behind them."""
+        height = entity.dxf.char_height * self.scale
+        angle = entity.get_rotation()
+        x, y = self.at(entity.dxf.insert)
+        text, upper, lower = read_stack(entity.text)
+        plain = text if upper else entity.plain_text()
+        turn = f' transform="rotate({-angle:.4g} {x:.3f} {y:.3f})"' if angle else ""
+        if not upper:
+            return _text(plain, x, y + 0.36 * SIZE * height, height, "middle", turn)
+        small = height * SMALL
+        first, rest = width_of(f"{plain} ", height), max(width_of(upper, small), width_of(lower, small))
+        left = x - (first + rest) / 2
+        return (
+            _text(plain, left, y + 0.36 * SIZE * height, height, "start", turn)
+            + _text(upper, left + first, y - 0.25 * small, small, "start", turn)
+            + _text(lower, left + first, y + 1.15 * small, small, "start", turn)
         )
 
 
+def _text(text: str, x: float, y: float, height: float, anchor: str, turn: str) -> str:
+    return (
+        f'<text x="{x:.3f}" y="{y:.3f}" font-size="{height * SIZE:.3f}" fill="{_INK}"'
+        f' text-anchor="{anchor}"{turn}>{escape(text)}</text>\n'
+    )
+
+
 def _mark_of(entity: Any) -> str:
-    """The attribute that says which line of the title block a text is, if a stamp fills it in."""
+    """The attribute that says which field of the title block a text is, if a stamp fills it in."""
     if not entity.has_xdata(APP):
         return ""
     return f' data-stamp="{entity.get_xdata(APP)[0].value.removeprefix(MARK)}"'
-
-
-def _round(entity: Any) -> Iterator[tuple[float, float]]:
-    """Points of an arc or a circle."""
-    centre, radius = entity.dxf.center, entity.dxf.radius
-    whole = entity.dxftype() == "CIRCLE"
-    start = 0.0 if whole else radians(entity.dxf.start_angle)
-    turn = 360.0 if whole else (entity.dxf.end_angle - entity.dxf.start_angle) % 360
-    steps = max(2, int(turn / degrees(_STEP)))
-    for i in range(steps + 1):
-        angle = start + radians(turn) * i / steps
-        yield centre[0] + radius * cos(angle), centre[1] + radius * sin(angle)

@@ -1,31 +1,38 @@
 """The two views of a drawing: a section along the shaft (z), and the end seen along it; all in millimetres.
 
 Of the two planes through the shaft that is cut which holds the axes of more cylinders: an oil hole, a pin. In
-the section z points right; beside it, in first-angle projection, stands the view from the left.
+the section z points right; beside it, in first-angle projection, stands the view from the left. Balls and
+shafts are not cut lengthwise (ISO 128-3): they are drawn whole, a shaft with its hidden lines.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import hypot
+from math import atan2, degrees
 
-import numpy as np
 from cadquery import Compound, Edge, Face, Shape, Solid, Vector
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from OCP.HLRAlgo import HLRAlgo_Projector
 from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape
 
-from cad.drawing import lines_of
+from cad.drafting.curves import (
+    Curve,
+    Point,
+    Round,
+    Vertex,
+    curves_of,
+    joined,
+    outline,
+    recognised,
+    rounded,
+)
 from cad.inspect import look_at
 from cad.step import Body
 from cad.surfaces import X, Y, Z
 
-Point = tuple[float, float]
-Polyline = list[Point]
-
 _DRAWN = 100.0  # [mm], the size at which edges are hidden: of a part of 5 m the kernel takes 25 times as long
-_TURN = 0.05  # [rad] between two pieces of a curve
+_TURN = 0.05  # [rad] between two points of a curve
 _CLEAR = 1e-5  # [mm]; boxes of the kernel are good to some 1e-7
 
 
@@ -61,7 +68,7 @@ class Cut:
     """A cut face: its outlines, holes among them, and of which part it is."""
 
     part: int
-    outlines: list[Polyline]
+    outlines: list[list[Vertex]]
 
 
 @dataclass(frozen=True)
@@ -69,9 +76,9 @@ class View:
     """The lines and faces of one view."""
 
     frame: Frame
-    visible: list[Polyline]
-    smooth: list[Polyline]
-    hidden: list[Polyline]
+    visible: list[Curve]
+    smooth: list[Curve]
+    hidden: list[Curve]
     cut: list[Cut]
     arcs: list[Arc]
     edges: list[tuple[Point, Point]]  # straight ones of the section
@@ -79,18 +86,44 @@ class View:
     @property
     def box(self) -> tuple[Point, Point]:
         """Lower left and upper right corner of what is drawn."""
-        points = np.array([p for line in (*self.visible, *self.hidden) for p in line])
-        (left, low), (right, high) = points.min(axis=0), points.max(axis=0)
-        return (float(left), float(low)), (float(right), float(high))
+        points = [point for curve in (*self.visible, *self.hidden) for point in curve.points]
+        across, up = [x for x, _ in points], [y for _, y in points]
+        return (min(across), min(up)), (max(across), max(up))
+
+    @property
+    def circles(self) -> list[Round]:
+        """Circles, and arcs of at least half a turn, whether they are hidden or not."""
+        turns: dict[tuple[float, ...], list[Round]] = {}
+        for curve in (*self.visible, *self.hidden):
+            if (arc := curve.arc) is not None:
+                key = round(arc.centre[0], 3), round(arc.centre[1], 3), round(arc.radius, 3)
+                turns.setdefault(key, []).append(arc)
+        return [arcs[0] for arcs in turns.values() if sum(arc.turn for arc in arcs) > 179.9]
 
 
-def views(bodies: Sequence[Body]) -> tuple[View, View]:
-    """Section and end view."""
+def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View]:
+    """Section and end view; of a shaft, the view from its side instead of a section."""
     up = _upright(bodies)
     section, end = Frame(Z, up), Frame(Z.cross(up), up)
-    shapes = [body.shape.moved(place) for body in bodies for place in body.places]
-    parts = [part for part, body in enumerate(bodies) for _ in body.places]
-    return _section(shapes, parts, section), _projected(shapes, end)
+    placed = [
+        _Placed(part, body.shape.moved(place), is_shaft or _is_ball(body.shape))
+        for part, body in enumerate(bodies)
+        for place in body.places
+    ]
+    return _section(placed, section), _projected([one.shape for one in placed], end)
+
+
+@dataclass(frozen=True)
+class _Placed:
+    """A part where it stands; `is_whole` if a section does not cut it."""
+
+    part: int
+    shape: Shape
+    is_whole: bool
+
+
+def _is_ball(shape: Shape) -> bool:
+    return all(face.geomType() == "SPHERE" for face in shape.Faces())
 
 
 def _upright(bodies: Sequence[Body]) -> Vector:
@@ -127,23 +160,31 @@ def _sides(shape: Shape, normal: Vector) -> tuple[float, float]:
     return low, high
 
 
-def _section(shapes: Sequence[Shape], parts: Sequence[int], frame: Frame) -> View:
-    """The half behind the plane, and the faces that the plane cuts."""
-    sections = [
-        (part, face) for part, shape in zip(parts, shapes, strict=True) for face in _cut(shape, frame.towards)
-    ]
+def _section(placed: Sequence[_Placed], frame: Frame) -> View:
+    """What lies behind the plane, with what is not cut, and the faces that the plane cuts."""
+    sections = [(one, face) for one in placed for face in _cut(one.shape, frame.towards)]
     faces = [face for _, face in sections]
-    behind = [half for shape in shapes for half in _behind(shape, frame.towards)]
-    view = _projected(behind or shapes, frame)  # a part beside the plane is seen whole
-    outlines = [
-        Cut(part, [_polyline(wire.Edges(), frame) for wire in _wires(face)]) for part, face in sections
+    behind = [shape for one in placed for shape in _seen(one, frame.towards)]
+    view = _projected(behind or [one.shape for one in placed], frame)  # a part beside the plane is seen whole
+    cuts = [
+        Cut(one.part, [outline([_curve(edge, frame) for edge in wire.Edges()]) for wire in _wires(face)])
+        for one, face in sections
+        if not one.is_whole
     ]
     edges = [edge for face in faces for edge in face.Edges()]
     straight = [
         (frame.flat(e.startPoint()), frame.flat(e.endPoint())) for e in edges if e.geomType() == "LINE"
     ]
     arcs = [_arc(edge, frame) for edge in edges if edge.geomType() == "CIRCLE"]
-    return View(frame, view.visible, view.smooth, [], outlines, arcs, straight)
+    hidden = view.hidden if all(one.is_whole for one in placed) else []
+    return View(frame, view.visible, view.smooth, hidden, cuts, arcs, straight)
+
+
+def _seen(one: _Placed, normal: Vector) -> list[Shape]:
+    """What a section leaves of a part: its half behind the plane, or all of it if it is not cut."""
+    if not one.is_whole:
+        return _behind(one.shape, normal)
+    return [one.shape] if _sides(one.shape, normal)[0] < -_CLEAR else []
 
 
 def _wires(face: Face) -> list[Shape]:
@@ -184,62 +225,40 @@ def _projected(shapes: Sequence[Shape], frame: Frame) -> View:
     algorithm.Hide()
     edges = HLRBRep_HLRToShape(algorithm)
     visible, smooth, hidden = (
-        [[(x / shrunk, -y / shrunk) for x, y in line] for line in lines_of(some)]
+        curves_of(some, 1 / shrunk)
         for some in (
             (edges.VCompound(), edges.OutLineVCompound()),
             (edges.Rg1LineVCompound(),),
             (edges.HCompound(), edges.OutLineHCompound()),
         )
     )
-    return View(frame, visible, smooth, hidden, [], [], [])
+    visible = joined(visible)
+    return View(frame, visible, joined(smooth, visible), joined(hidden, visible), [], [], [])
 
 
-def _polyline(edges: Sequence[Edge], frame: Frame) -> Polyline:
-    """The edges of a closed wire as one line; edges come in any order and direction."""
-    pieces = [_points(edge, frame) for edge in edges]
-    line = pieces.pop(0)
-    while pieces:
-        end = line[-1]
-        nearest = min(pieces, key=lambda piece: min(_apart(end, piece[0]), _apart(end, piece[-1])))
-        pieces.remove(nearest)
-        line += nearest if _apart(end, nearest[0]) <= _apart(end, nearest[-1]) else nearest[::-1]
-    return line
-
-
-def _apart(one: Point, other: Point) -> float:
-    return hypot(one[0] - other[0], one[1] - other[1])
-
-
-def _points(edge: Edge, frame: Frame) -> Polyline:
+def _curve(edge: Edge, frame: Frame) -> Curve:
+    """An edge of a cut face."""
     if edge.geomType() == "LINE":
-        return [frame.flat(edge.startPoint()), frame.flat(edge.endPoint())]
-    turn = edge.Length() / edge.radius() if edge.geomType() == "CIRCLE" else 2 * np.pi
-    steps = max(8, int(turn / _TURN))
-    return [frame.flat(edge.positionAt(i / steps)) for i in range(steps + 1)]
+        return Curve([frame.flat(edge.startPoint()), frame.flat(edge.endPoint())])
+    if edge.geomType() == "CIRCLE":
+        return _round(edge, frame)
+    steps = max(8, int(6.3 / _TURN))
+    return recognised([frame.flat(edge.positionAt(i / steps)) for i in range(steps + 1)])
+
+
+def _round(edge: Edge, frame: Frame) -> Curve:
+    """A circular edge in the plane of the paper."""
+    centre, radius = frame.flat(edge.arcCenter()), edge.radius()
+    turn = min(degrees(edge.Length() / radius), 360.0)
+    begin, middle, end = (frame.flat(edge.positionAt(share)) for share in (0.0, 0.25, 1.0))
+    is_counter = (begin[0] - centre[0]) * (middle[1] - centre[1]) > (begin[1] - centre[1]) * (
+        middle[0] - centre[0]
+    )
+    first = begin if is_counter else end
+    start = degrees(atan2(first[1] - centre[1], first[0] - centre[0]))
+    return rounded(Round(centre, radius, start, 360.0 if turn > 360 - 1e-6 else turn))
 
 
 def _arc(edge: Edge, frame: Frame) -> Arc:
     whole = bool(edge.startPoint().sub(edge.endPoint()).Length < _CLEAR)
     return Arc(frame.flat(edge.arcCenter()), edge.radius(), frame.flat(edge.positionAt(0.5)), whole)
-
-
-def hatch(
-    outlines: Sequence[Polyline], apart: float, *, falling: bool = False
-) -> Iterator[tuple[Point, Point]]:
-    """Lines at 45° within closed outlines; holes among them stay empty."""
-    turn = np.array([[1.0, 1.0], [-1.0, 1.0]]) / np.sqrt(2)  # what slopes becomes level
-    turned = [np.asarray(line) * ([-1, 1] if falling else [1, 1]) @ turn.T for line in outlines]
-    low = min(line[:, 1].min() for line in turned)
-    high = max(line[:, 1].max() for line in turned)
-    for level in np.arange(np.floor(low / apart) + 0.5, high / apart) * apart:
-        crossings = sorted(x for line in turned for x in _crossings(line, level))
-        for left, right in zip(crossings[::2], crossings[1::2], strict=False):
-            ends = np.array([[left, level], [right, level]]) @ turn * ([-1, 1] if falling else [1, 1])
-            yield (float(ends[0, 0]), float(ends[0, 1])), (float(ends[1, 0]), float(ends[1, 1]))
-
-
-def _crossings(line: np.ndarray, level: float) -> list[float]:
-    start, end = line, np.roll(line, -1, axis=0)
-    across = (start[:, 1] > level) != (end[:, 1] > level)
-    a, b = start[across], end[across]
-    return list(a[:, 0] + (level - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0]))

@@ -1,0 +1,81 @@
+"""What stands on a dimension: its signs, its number, its tolerance as a zone and as deviations (ISO 129-1)."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from cad.drafting.lettering import width_of
+from cad.drafting.matching import Dimension
+
+SMALL = 0.7  # deviations are of so many times the height of the number
+_STACK = re.compile(r"(?s)(.*)\{\\H0\.7x;\\S([^^]*)\^ ([^;]*);\}(.*)")
+
+
+@dataclass(frozen=True)
+class Label:
+    """The words of a dimension; `<>` in `text` is its number."""
+
+    text: str
+    number: str
+    upper: str = ""
+    lower: str = ""
+
+    @property
+    def mtext(self) -> str:
+        """The words as DXF has them: deviations one above the other."""
+        stack = f" {{\\H{SMALL}x;\\S{self.upper}^ {self.lower};}}" if self.upper else ""
+        return f"{self.text}{stack}"
+
+    def width(self, height: float) -> float:
+        """Their width, for letters of that height."""
+        deviations = max(width_of(self.upper, height), width_of(self.lower, height)) * SMALL
+        gap = width_of(" ", height) if self.upper else 0.0
+        return width_of(self.text.replace("<>", self.number), height) + deviations + gap
+
+    def height(self, height: float) -> float:
+        """Their height, for letters of that height."""
+        return 2.4 * SMALL * height if self.upper else height
+
+
+def label_of(dimension: Dimension) -> Label:
+    """Ø before a diameter, the count before what several have, in brackets what is for reference only."""
+    measure = dimension.measure
+    several = f"{measure.count}×" if measure.count > 1 else ""
+    is_round = measure.form in ("circle", "arc")  # these have their signs from the DIMENSION
+    sign = "Ø" if measure.sort == "diameter" and not is_round else ""
+    own = {"circle": "Ø", "arc": "R"}.get(measure.form, "")
+    number = own + _number(measure.value, 2 if measure.sort == "angle" else 3)
+    text = f"{several}{sign}<>"
+    if dimension.name is None:
+        return Label(f"({text})", number)
+    if measure.sort == "angle":
+        number += "°"
+    limits = dimension.limits
+    if limits is None:
+        return Label(text, number)
+    zone = f" {limits.zone}" if limits.zone else ""
+    if limits.upper == -limits.lower:
+        return Label(f"{text}{zone} ±{_deviation(limits.upper)}", number)
+    upper, lower = (_signed(end) for end in (limits.upper, limits.lower))
+    return Label(f"{text}{zone}", number, upper, lower)
+
+
+def read_stack(mtext: str) -> tuple[str, str, str]:
+    """The words of a dimension in DXF, without its deviations; and these."""
+    match = _STACK.fullmatch(mtext)
+    return (match[1].rstrip() + match[4], match[2], match[3]) if match else (mtext, "", "")
+
+
+def _number(value: float, digits: int) -> str:
+    return f"{value:.{digits}f}".rstrip("0").rstrip(".")
+
+
+def _deviation(value: float) -> str:
+    return f"{value:.6f}".rstrip("0").rstrip(".")
+
+
+def _signed(value: float) -> str:
+    if value == 0:
+        return "0"
+    return f"{'+' if value > 0 else '-'}{_deviation(abs(value))}"

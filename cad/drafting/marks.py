@@ -1,0 +1,157 @@
+"""Centre lines of a view, and what marks its section: label, cutting line, arrows (ISO 128-2, ISO 128-3)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from math import hypot
+
+from cadquery import Vector
+
+from cad.drafting.curves import Point
+from cad.drafting.lettering import width_of
+from cad.drafting.page import Page
+from cad.drafting.plan import Plan
+from cad.drafting.room import Room
+from cad.drafting.symbols import arrow
+from cad.drafting.views import View
+from cad.inspect import look_at
+from cad.step import Body, rigid
+from cad.surfaces import Z
+
+LETTERS = 5.0  # height of the letters that name a section [mm on paper]
+_OVER = 5.0  # of a centre line beyond what it is the centre of [mm on paper]
+_LEAST = 0.8  # radius of a circle that gets centre lines [mm on paper]
+_MOST = 80  # centre lines of a view
+_CLEAR = 1e-5
+
+Segment = tuple[Point, Point]
+
+
+@dataclass(frozen=True)
+class Centres:
+    """Centre lines and pitch circles, in the drawing's coordinates."""
+
+    lines: list[Segment]
+    circles: list[tuple[Point, float]]
+
+
+def centre_lines(section: View, end: View, bodies: Sequence[Body], plan: Plan) -> Centres:
+    """Those of both views."""
+    over = _OVER / plan.scale
+    (left, _), (right, _) = section.box
+    (end_left, low), (end_right, high) = end.box
+    low, high = min(low, 0.0), max(high, 0.0)
+    shaft: list[Segment] = [
+        ((left - over, 0.0), (right + over, 0.0)),
+        ((end_left - over, 0.0), (end_right + over, 0.0)),
+        ((0.0, low - over), (0.0, high + over)),
+    ]
+    axes = _distinct(_axes(section, bodies, over))
+    crosses = _distinct(_crosses(section, plan, over))
+    pitch, of_end = _pitched(end, plan, over)
+    moved = [(_right(a, plan.beside), _right(b, plan.beside)) for a, b in (*shaft[1:], *_distinct(of_end))]
+    return Centres([shaft[0], *axes, *crosses, *moved], [((plan.beside, 0.0), radius) for radius in pitch])
+
+
+def _axes(view: View, bodies: Sequence[Body], over: float) -> Iterator[Segment]:
+    """Axes of cylinders that lie in the plane of the section, but for the shaft's own."""
+    normal = view.frame.towards
+    for body in bodies:
+        seen = look_at([body])[body.name]
+        for place in body.places:
+            turn, shift = rigid(place)
+            for cylinder in seen.cylinders:
+                point = Vector(*(turn @ cylinder.point.toTuple() + shift))
+                direction = Vector(*(turn @ cylinder.direction.toTuple()))
+                is_within = abs(point.dot(normal)) < _CLEAR and abs(direction.dot(normal)) < _CLEAR
+                if not is_within or (direction.cross(Z).Length < _CLEAR and point.cross(Z).Length < _CLEAR):
+                    continue
+                start = cylinder.point.dot(cylinder.direction)
+                low, high = (reach - start for reach in cylinder.reach)
+                ends = (point + direction * (low - over), point + direction * (high + over))
+                yield view.frame.flat(ends[0]), view.frame.flat(ends[1])
+
+
+def _middles(view: View, plan: Plan) -> dict[Point, float]:
+    """The middles of circles that are not the shaft's, with the largest radius about each."""
+    radii: dict[Point, float] = {}
+    for circle in view.circles:
+        middle = round(circle.centre[0], 4) + 0.0, round(circle.centre[1], 4) + 0.0
+        if circle.radius * plan.scale >= _LEAST and (view.edges or middle != (0.0, 0.0)):
+            radii[middle] = max(radii.get(middle, 0.0), circle.radius)
+    return radii
+
+
+def _crosses(view: View, plan: Plan, over: float) -> Iterator[Segment]:
+    """Two lines through the middle of every circle."""
+    for (x, y), radius in _middles(view, plan).items():
+        reach = radius + min(over, radius)
+        yield (x - reach, y), (x + reach, y)
+        yield (x, y - reach), (x, y + reach)
+
+
+def _pitched(view: View, plan: Plan, over: float) -> tuple[list[float], Iterator[Segment]]:
+    """Circles through the middles of several circles about the shaft, and lines that cross them there."""
+    middles = _middles(view, plan)
+    away = Counter(round(hypot(*middle), 3) for middle in middles)
+    pitch = [size for size, count in away.items() if count > 2 and size > 0]
+
+    def lines() -> Iterator[Segment]:
+        for (x, y), radius in middles.items():
+            size, reach = hypot(x, y), radius + min(over, radius)
+            u, v = (x / size, y / size) if round(size, 3) in pitch else (0.0, 1.0)
+            yield (x - reach * u, y - reach * v), (x + reach * u, y + reach * v)
+            if round(size, 3) not in pitch:
+                yield (x - reach, y), (x + reach, y)
+
+    return pitch, lines()
+
+
+def _distinct(segments: Iterable[Segment]) -> list[Segment]:
+    """Each line once, and of very many only the first."""
+    seen: dict[tuple[float, ...], Segment] = {}
+    for one, other in segments:
+        ends = sorted((one, other))
+        seen.setdefault(tuple(round(c, 3) for end in ends for c in end), (ends[0], ends[1]))
+    return list(seen.values())[:_MOST]
+
+
+def _right(point: Point, away: float) -> Point:
+    return point[0] + away, point[1]
+
+
+def cutting_line(page: Page, section: View, end: View, room: Room) -> None:
+    """The line along which a section is cut, in the end view: thick at its ends, with arrows and letters.
+
+    The eye stands to the right of the end view: the arrows point left, as the view in first angle does.
+    """
+    if not section.cut:
+        return
+    plan = page.plan
+    (_, low), (_, high) = end.box
+    middle, top = plan.paper((0.0, high), plan.beside)
+    _, bottom = plan.paper((0.0, low), plan.beside)
+    width = width_of("A", LETTERS)
+    for start, out in ((top + 2.0, 1), (bottom - 2.0, -1)):
+        stop = start + 6.0 * out
+        page.line([(middle, start), (middle, stop)], "CUTTING")
+        page.symbol(arrow((middle - 9.0, stop), (middle, stop), 4.0))
+        page.write("A", middle + 1.5, stop - LETTERS / 2, LETTERS)
+        room.add((middle + 1.0, stop - LETTERS / 2 - 0.5, middle + 1.5 + width, stop + LETTERS / 2 + 0.5))
+        room.add((middle - 9.5, min(start, stop) - 0.5, middle + 0.5, max(start, stop) + 1.0))
+
+
+def section_label(page: Page, section: View, room: Room) -> None:
+    """A–A over the section, above what stands there."""
+    if not section.cut:
+        return
+    (left, _), (right, high) = section.box
+    text = "A–A"
+    width = width_of(text, LETTERS)
+    x, y = page.plan.paper(((left + right) / 2, high))
+    boxes = ((x - width / 2, y + up, x + width / 2, y + up + LETTERS + 1.0) for up in range(3, 120))
+    place = room.first((box, (box[0], box[1] + 0.5)) for box in boxes)
+    at_x, at_y = place or (x - width / 2, y + 3.0)
+    page.write(text, at_x, at_y, LETTERS)

@@ -1,0 +1,82 @@
+"""Which places of a sheet are still free: texts keep off one another, off views and off lines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from cad.drafting.curves import Point
+
+Rectangle = tuple[float, float, float, float]
+"""Left, low, right, high [mm on paper]."""
+
+_APART = 0.8  # between two texts, and between a text and a line [mm on paper]
+
+
+class Room:
+    """What a sheet holds so far, in millimetres on paper."""
+
+    def __init__(self, area: Rectangle) -> None:
+        self.area = area
+        self.boxes: list[Rectangle] = []
+        self._lines: list[tuple[float, float, float, float]] = []
+        self._array = np.zeros((0, 4))
+
+    def add(self, box: Rectangle) -> None:
+        """Take a rectangle."""
+        self.boxes.append(box)
+
+    def add_line(self, points: Sequence[Point]) -> None:
+        """Take what lies on a line through points."""
+        self._lines += [(*a, *b) for a, b in zip(points, points[1:], strict=False)]
+
+    def holds(self, box: Rectangle) -> bool:
+        """Whether a rectangle lies on the sheet's area."""
+        left, low, right, high = self.area
+        return box[0] >= left and box[1] >= low and box[2] <= right and box[3] <= high
+
+    def is_clear(self, box: Rectangle, apart: float = _APART) -> bool:
+        """Whether a rectangle lies on the area and off all others."""
+        return self.holds(box) and not any(overlap(box, other, apart) for other in self.boxes)
+
+    def is_free(self, box: Rectangle) -> bool:
+        """Whether a rectangle lies on the area, off all others and off all lines."""
+        return self.is_clear(box) and not self._is_crossed(box)
+
+    def first(self, boxes: Iterable[tuple[Rectangle, Point]]) -> Point | None:
+        """The point that belongs to the first free rectangle, which is taken."""
+        for box, point in boxes:
+            if self.is_free(box):
+                self.add(box)
+                return point
+        return None
+
+    def _is_crossed(self, box: Rectangle) -> bool:
+        if len(self._array) != len(self._lines):
+            self._array = np.array(self._lines)
+        return bool(len(self._array) and crossed(self._array, box, _APART).any())
+
+
+def overlap(one: Rectangle, other: Rectangle, apart: float = 0.0) -> bool:
+    """Whether two rectangles overlap, or come nearer than that."""
+    is_beside = one[0] >= other[2] + apart or other[0] >= one[2] + apart
+    return not (is_beside or one[1] >= other[3] + apart or other[1] >= one[3] + apart)
+
+
+def crossed(lines: np.ndarray, box: Rectangle, apart: float = 0.0) -> np.ndarray:
+    """Which of straight pieces (n, 4) meet a rectangle, or come nearer than that (Liang and Barsky)."""
+    start, away = lines[:, :2], lines[:, 2:] - lines[:, :2]
+    away = np.where(np.abs(away) < 1e-12, 1e-12, away)
+    low = (np.array([box[0] - apart, box[1] - apart]) - start) / away
+    high = (np.array([box[2] + apart, box[3] + apart]) - start) / away
+    enter = np.minimum(low, high).max(axis=1)
+    leave = np.maximum(low, high).min(axis=1)
+    meets: np.ndarray = np.maximum(enter, 0.0) <= np.minimum(leave, 1.0)
+    return meets
+
+
+def around(centre: Point, width: float, height: float) -> Rectangle:
+    """A rectangle by its middle."""
+    x, y = centre
+    return x - width / 2, y - height / 2, x + width / 2, y + height / 2

@@ -1,0 +1,94 @@
+"""The title block of a drawing (ISO 7200): its fields, where they stand, and how long their texts may be."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+WIDTH, HEIGHT = 180.0, 46.0
+"""Of the title block [mm on paper]; ISO 7200 has it 180 mm wide on every sheet."""
+
+CAPTION = 1.8  # height of the letters that name a field [mm on paper]
+_INSET = 1.5  # from the left side of a field to its text
+
+MADE_OUT = "iso-"
+"""Before the names of fields that a stamp fills in; the lines of older drawings have names without it."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """A field: its place from the lower left corner of the block, what names it, the height of its letters."""
+
+    name: str
+    caption: str
+    left: float
+    low: float
+    width: float
+    height: float
+    letters: float = 2.5
+    is_stamped: bool = True
+
+    @property
+    def mark(self) -> str:
+        """Its name in files, for a stamp."""
+        return MADE_OUT + self.name
+
+    @property
+    def room(self) -> float:
+        """Width of its text [mm on paper]."""
+        return self.width - 2 * _INSET
+
+    @property
+    def text_at(self) -> tuple[float, float]:
+        """Where its text begins, from the lower left corner of the block."""
+        return self.left + _INSET, self.low + 1.7
+
+    @property
+    def caption_at(self) -> tuple[float, float]:
+        """Where its caption begins."""
+        return self.left + _INSET, self.low + self.height - 2.7
+
+
+FIELDS = (
+    Field("owner", "legal owner", 0, 36, 60, 10, 3.5),
+    Field("title", "title", 60, 36, 120, 10, 3.5),
+    Field("author", "created by", 0, 27, 45, 9),
+    Field("checker", "checked by", 45, 27, 45, 9),
+    Field("approver", "approved by", 90, 27, 45, 9),
+    Field("status", "document status", 135, 27, 45, 9),
+    Field("number", "identification number", 0, 18, 85, 9),
+    Field("revision", "revision", 85, 18, 17, 9),
+    Field("date", "date of issue", 102, 18, 28, 9),
+    Field("sheet", "sheet", 130, 18, 15, 9, is_stamped=False),
+    Field("language", "language", 145, 18, 15, 9, is_stamped=False),
+    Field("format", "format", 160, 18, 20, 9, is_stamped=False),
+    Field("material", "material", 0, 9, 105, 9),
+    Field("mass", "mass", 105, 9, 30, 9),
+    Field("part", "part", 135, 9, 45, 9),
+    Field("model", "document type, model", 0, 0, 85, 9, is_stamped=False),
+    Field("general", "general tolerances", 85, 0, 40, 9, is_stamped=False),
+    Field("scale", "scale", 125, 0, 20, 9, is_stamped=False),
+    Field("projection", "projection", 145, 0, 35, 9, is_stamped=False),
+)
+
+STAMPED: Mapping[str, Field] = {field.mark: field for field in FIELDS if field.is_stamped}
+"""The fields that a stamp fills in, by their marks."""
+
+GENERAL = "ISO 2768-mK"
+"""General tolerances of sizes, angles and geometry where a drawing gives none."""
+
+TEXTURE = 3.2
+"""Roughness Ra [µm] of every surface for which a drawing gives none."""
+
+_ROUGHNESS = (0.1, 0.2, 0.4, 0.8, 1.6, TEXTURE)
+_SHARE = 20  # a tolerance is at least so many times the roughness of its surface
+
+
+def roughness(width: float) -> float:
+    """Greatest roughness Ra [µm] of a surface whose dimension has a tolerance of that width [mm].
+
+    The rule is ours: the largest preferred value (ISO 21920-1) of at most a twentieth of the tolerance, so that
+    peaks, some five times Ra high, take at most a quarter of it. Measured sizes stay within their limits then.
+    """
+    fitting = [value for value in _ROUGHNESS if value <= width * 1e3 / _SHARE]
+    return max(fitting, default=_ROUGHNESS[0])
