@@ -13,7 +13,7 @@ from math import atan2, ceil, cos, degrees, hypot, pi, radians, sin, tan
 from typing import Any
 
 import numpy as np
-from cadquery import Shape
+from cadquery import BoundBox, Shape
 from OCP.BRepLib import BRepLib
 from OCP.GCPnts import GCPnts_TangentialDeflection
 from scipy.interpolate import CubicSpline
@@ -87,7 +87,7 @@ def curves_of(compounds: Iterable[Any], scale: float) -> list[Curve]:
             continue
         BRepLib.BuildCurves3d_s(compound)  # the projection leaves curves on a plane only
         for edge in Shape.cast(compound).Edges():
-            size = edge.BoundingBox().DiagonalLength
+            size = BoundBox._fromTopoDS(edge.wrapped, None, False).DiagonalLength
             if size > _POINT:  # what is seen end on is a point
                 found.append(_scaled(curve_of(edge._geomAdaptor(), size), scale))
     return found
@@ -129,7 +129,7 @@ def recognised(points: Polyline) -> Curve:
     if any(abs(hypot(p[0] - x, p[1] - y) - radius) > _ROUND * radius for p in points):
         return Curve(smoothed(points))
     turns = [atan2(p[1] - y, p[0] - x) for p in points]
-    turn = sum((b - a + pi) % (2 * pi) - pi for a, b in zip(turns, turns[1:], strict=False))
+    turn = sum((b - a + pi) % (2 * pi) - pi for a, b in pairwise(turns))
     return rounded(Round((x, y), radius, degrees(turns[0] if turn > 0 else turns[-1]), degrees(abs(turn))))
 
 

@@ -1,30 +1,82 @@
-"""What a drawing takes from a model's declaration: whether it is a shaft, and the limits of its dimensions."""
+"""What a drawing takes from a model's declaration: is it a shaft, limits, datums, tolerances of form."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from cad.catalogue import models
-from cad.drafting.matching import Limits
+from cad.drafting.title import roughness
 from cad.header import Header
 from cad.model import CadModel
+from cad.toleranced import Limits, carried, limits_in
+
+_FACES = ("cylinders", "beside", "spheres", "planes")  # that a tool machines, so they have a texture
+
+
+@dataclass(frozen=True)
+class Control:
+    """A geometric tolerance of the faces of a dimension: its width [mm] and the datum to which it refers."""
+
+    parameter: str
+    form: str
+    width: float
+    to: str
 
 
 @dataclass(frozen=True)
 class Declared:
-    """Of a file of nobody, or of a team's model, which other machines lack, it says nothing."""
+    """The declaration of a model.
+
+    A file of nobody, or of a team's model, which other machines lack, has its limits from its header alone.
+
+    Attributes
+    ----------
+    limits
+        Limit deviations by parameter.
+    datums
+        Letters of datums by parameter, of those to which a tolerance refers.
+    textures
+        Greatest roughness Ra [µm] by parameter.
+    """
 
     is_shaft: bool = False
     limits: Mapping[str, Limits] = field(default_factory=dict)
+    controls: tuple[Control, ...] = ()
+    datums: Mapping[str, str] = field(default_factory=dict)
+    textures: Mapping[str, float] = field(default_factory=dict)
 
     @staticmethod
     def of(header: Header | None) -> Declared:
         """What the model of a STEP file declares."""
         if header is None:
             return Declared()
+        limits = limits_in(header)
         model = models().versions.get((header.model, header.version))
-        return Declared(model is not None and _is_shaft(model), {})
+        if model is None:
+            return Declared(limits=limits)
+        carriers = carried(model)
+        controls = tuple(_controls(model, limits))
+        used = {control.to for control in controls}
+        return Declared(
+            _is_shaft(model),
+            limits,
+            controls,
+            {name: one.datum for name, one in carriers.items() if one.datum in used - {""}},
+            {
+                name: roughness(limits[name].width)
+                for name, one in carriers.items()
+                if name in limits and one.faces in _FACES
+            },
+        )
+
+
+def _controls(model: type[CadModel], limits: Mapping[str, Limits]) -> Iterator[Control]:
+    for name, one in carried(model).items():
+        if name in limits:
+            for form, share in one.forms.items():
+                to = "" if form == "cylindricity" else one.to
+                yield Control(name, form, limits[name].share(share), to)
 
 
 def _is_shaft(model: type[CadModel]) -> bool:

@@ -1,4 +1,4 @@
-"""What stands on a dimension: its signs, its number, its tolerance as a zone and as deviations (ISO 129-1)."""
+"""What stands on a dimension: signs, number, its tolerance as a zone and as deviations (ISO 129-1)."""
 
 from __future__ import annotations
 

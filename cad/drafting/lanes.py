@@ -1,4 +1,4 @@
-"""On which side of a view a dimension stands: in lanes beside it, or at its place if it is drawn within it."""
+"""On which side of a view a dimension stands: in lanes beside it, or at its own place within it."""
 
 from __future__ import annotations
 

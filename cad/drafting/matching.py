@@ -9,6 +9,7 @@ from itertools import pairwise
 from math import dist, isclose
 
 from cad.drafting.measures import Measure, Sort
+from cad.toleranced import Limits
 from templates.core.units.units import unit
 
 _WORDS: dict[str, tuple[Sort, ...]] = {
@@ -39,15 +40,6 @@ class Dimension:
     name: str | None
     limits: Limits | None = None
     alike: tuple[Measure, ...] = ()  # others that show the same parameter in the same way
-
-
-@dataclass(frozen=True)
-class Limits:
-    """Limit deviations of a dimension [mm], and their zone of ISO 286, if they come from one."""
-
-    lower: float
-    upper: float
-    zone: str | None = None
 
 
 def matched(

@@ -150,7 +150,8 @@ class Page:
 
     def _line_under(self, placed: Placed, along: int) -> None:
         """Prolong a dimension line under words that stand beyond its end."""
-        assert placed.ends is not None and placed.words is not None
+        assert placed.ends is not None
+        assert placed.words is not None
         half = placed.label.width(TEXT) / 2
         middle = self.plan.paper(placed.words)[along]
         ends = sorted(end[along] for end in placed.ends)

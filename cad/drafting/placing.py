@@ -1,7 +1,7 @@
 """Where dimensions and their words stand, so that no words overlap and none lie across a view.
 
-Dimensions beside a view run in lanes, each in the first one in which it has room. Those of arcs, oblique holes
-and angles have words at the nearest free place outside the views, and a leader to them.
+Dimensions beside a view run in lanes, each in the first one in which it has room. Those of arcs, oblique
+holes and angles have words at the nearest free place outside the views, and a leader to them.
 """
 
 from __future__ import annotations
@@ -226,7 +226,7 @@ class Placing:
 
 
 def _middle(low: float, high: float, width: float, others: list[float]) -> float:
-    """The middle of words along a dimension line: between its ends, or beyond one where no line crosses them."""
+    """The middle of words on a dimension line: between its ends, or beyond that which fewer lines cross."""
     half = width / 2
     if width + 1.0 <= high - low:
         return (low + high) / 2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -29,7 +30,7 @@ class Room:
 
     def add_line(self, points: Sequence[Point]) -> None:
         """Take what lies on a line through points."""
-        self._lines += [(*a, *b) for a, b in zip(points, points[1:], strict=False)]
+        self._lines += [(*a, *b) for a, b in pairwise(points)]
 
     def holds(self, box: Rectangle) -> bool:
         """Whether a rectangle lies on the sheet's area."""

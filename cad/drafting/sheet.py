@@ -14,6 +14,7 @@ from itertools import islice
 from ezdxf._options import options
 from ezdxf.document import Drawing
 
+from cad.drafting.controls import Controls
 from cad.drafting.declared import Declared
 from cad.drafting.marks import Centres, centre_lines, cutting_line, section_label
 from cad.drafting.matching import matched, references
@@ -73,7 +74,9 @@ def draw(bodies: Sequence[Body], header: Header | None) -> Drawing:
         room = _room(section, end, centres, plan)
         cutting_line(page, section, end, room)
         try:
-            placed = Placing(plan, room, is_last=plan is tried[-1]).all()
+            is_last = plan is tried[-1]
+            placed = Placing(plan, room, is_last=is_last).all()
+            Controls(page, room, is_last=is_last).draw(declared, placed)
         except NoRoom:
             continue
         break

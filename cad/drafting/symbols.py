@@ -1,7 +1,7 @@
 """Symbols of a drawing as lines: projection, surface texture, geometric tolerances, datums, cutting arrows.
 
-All sizes are millimetres on paper, from the symbol's own origin. A symbol is lines, circles and filled corners,
-not letters of a font: so it looks the same in every program.
+All sizes are millimetres on paper, from the symbol's own origin. A symbol is lines, circles and filled
+corners, not letters of a font: so it looks the same in every program.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Symbol:
 
 
 def first_angle(height: float) -> Symbol:
-    """A truncated cone from its side, and to the right of it as it is seen from its left (ISO 5456-2)."""
+    """A truncated cone from its side, and to its right as it is seen from its left (ISO 5456-2)."""
     small, large, half = height / 4, height / 2, height / 2
     right = 1.25 * height
     cone = [
@@ -70,7 +70,7 @@ def first_angle(height: float) -> Symbol:
 
 
 def texture(height: float, reach: float) -> Symbol:
-    """Machining required: a hook at 60° with a bar, and a line over its text (ISO 21920-1); tip at the origin."""
+    """Machining required: a hook at 60° with a bar, a line over its text (ISO 21920-1); its tip at 0."""
     rise = 1.4 * height
     low, high = rise / sqrt(3), 2 * rise / sqrt(3)
     return Symbol(
@@ -147,7 +147,7 @@ def arrow(tip: Point, start: Point, length: float = 3.0) -> Symbol:
 
 
 def datum(tip: Point, angle: float, stem: float) -> tuple[Symbol, Point]:
-    """A filled triangle that stands on a line at `tip`, its stem away at an angle [rad], and the stem's end."""
+    """A filled triangle on a line at `tip`, with a stem away at an angle [rad]; and the stem's end."""
     u, v = cos(angle), sin(angle)
     top = tip[0] + 3.0 * u, tip[1] + 3.0 * v
     base = [(tip[0] - 1.7 * v, tip[1] + 1.7 * u), (tip[0] + 1.7 * v, tip[1] - 1.7 * u)]

@@ -17,7 +17,7 @@ MADE_OUT = "iso-"
 
 @dataclass(frozen=True)
 class Field:
-    """A field: its place from the lower left corner of the block, what names it, the height of its letters."""
+    """A field: its place from the lower left corner of the block, what names it, its letters."""
 
     name: str
     caption: str
@@ -87,8 +87,8 @@ _SHARE = 20  # a tolerance is at least so many times the roughness of its surfac
 def roughness(width: float) -> float:
     """Greatest roughness Ra [µm] of a surface whose dimension has a tolerance of that width [mm].
 
-    The rule is ours: the largest preferred value (ISO 21920-1) of at most a twentieth of the tolerance, so that
-    peaks, some five times Ra high, take at most a quarter of it. Measured sizes stay within their limits then.
+    The rule is ours: the largest usual value of at most a twentieth of the tolerance, so that peaks and
+    valleys, some five times Ra apart, take at most a quarter of it.
     """
     fitting = [value for value in _ROUGHNESS if value <= width * 1e3 / _SHARE]
     return max(fitting, default=_ROUGHNESS[0])

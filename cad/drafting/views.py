@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import atan2, degrees
 
-from cadquery import Compound, Edge, Face, Shape, Solid, Vector
+from cadquery import BoundBox, Compound, Edge, Face, Shape, Solid, Vector
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from OCP.HLRAlgo import HLRAlgo_Projector
 from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape
@@ -192,7 +192,7 @@ def _wires(face: Face) -> list[Shape]:
 
 
 def _reach(shape: Shape) -> float:
-    box = shape.BoundingBox()
+    box = BoundBox._fromTopoDS(shape.wrapped, None, False)  # loose, a hundred times as fast
     sides = (box.xmin, box.xmax, box.ymin, box.ymax, box.zmin, box.zmax)
     return 2.5 * max(abs(side) for side in sides)
 

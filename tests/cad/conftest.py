@@ -3,6 +3,7 @@ from collections.abc import Callable
 import pytest
 
 from cad.catalogue import models
+from cad.export import derive
 from cad.model import CadModel
 from cad.regenerate import Build, regenerate
 
@@ -38,3 +39,15 @@ def example_of() -> Callable[[type[CadModel]], Build]:
 def example(model: type[CadModel], example_of: Callable[[type[CadModel]], Build]) -> Build:
     """The build of this model's example."""
     return example_of(model)
+
+
+@pytest.fixture(scope="session")
+def dxf(example: Build) -> bytes:
+    """The drawing of this model's example."""
+    return derive(example.step, "dxf")
+
+
+@pytest.fixture(scope="session")
+def svg(example: Build) -> bytes:
+    """The same as a picture."""
+    return derive(example.step, "drawing.svg")

@@ -1,0 +1,74 @@
+"""Draw every model at three sizes, for `docs/drawings`: `python -m benchmarks.drawings [MODEL_vN ...]`.
+
+A size is the example of a model with all its lengths multiplied; a model whose sizes are standardised, and
+that refuses the product, is drawn at the nearest size of its own.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cad.catalogue import models
+from cad.drafting.paper import as_pdf
+from cad.errors import GeometryError
+from cad.export import derive
+from cad.model import CadModel
+from cad.regenerate import Build, regenerate
+from templates.core.errors import TemplateError
+from templates.core.units.units import unit
+
+FOLDER = Path("docs/drawings")
+SIZES = (0.25, 1.0, 4.0)
+"""Factors of all lengths of a model's example."""
+
+
+def latest() -> Iterator[type[CadModel]]:
+    """The newest version of every built-in model."""
+    catalogue = models()
+    return (catalogue.latest(id) for id in catalogue.ids)
+
+
+def sized(model: type[CadModel], factor: float) -> Build:
+    """The example of a model with all lengths multiplied.
+
+    Raises
+    ------
+    TemplateError, GeometryError
+        If the model has no such size.
+    """
+    example = model.from_quantities(model.example)
+    given: dict[str, Any] = {name: example.inputs_si()[name] for name in model.example}
+    for name, value in given.items():
+        is_text = isinstance(value, str)
+        if not is_text and unit(model.inputs[name].meaning.unit).base == unit("m").base:
+            given[name] = np.multiply(value, factor).tolist()
+    return regenerate(model.id, model.version, given)
+
+
+def main(names: list[str]) -> None:
+    """Write the drawings, and one of them as PDF."""
+    FOLDER.mkdir(exist_ok=True)
+    for model in latest():
+        if names and f"{model.id}_v{model.version}" not in names:
+            continue
+        for factor in SIZES:
+            name = f"{model.id}_v{model.version}_x{factor:g}"
+            try:
+                step = sized(model, factor).step
+            except (TemplateError, GeometryError) as error:
+                print(f"{name}: {error}")
+                continue
+            svg = derive(step, "drawing.svg")
+            (FOLDER / f"{name}.svg").write_bytes(svg)
+            print(f"{name}.svg: {len(svg) / 1000:.0f} kB")
+            if model.id == "plain_bearing" and factor == 1:
+                (FOLDER / f"{name}.pdf").write_bytes(as_pdf(svg))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,134 @@
+"""Geometric tolerances in frames, datums and surface textures, at free places with leaders to their faces.
+
+Frames stand as ISO 1101 has them, datums as ISO 5459, on the dimension line of a feature whose axis they are;
+textures as ISO 21920-1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from math import cos, pi, radians, sin
+
+from cad.drafting.curves import Point
+from cad.drafting.declared import Control, Declared
+from cad.drafting.lettering import width_of
+from cad.drafting.page import Page
+from cad.drafting.placing import TEXT, NoRoom, Placed
+from cad.drafting.room import Rectangle, Room, around
+from cad.drafting.symbols import Symbol, arrow, datum, geometric, texture
+
+_HIGH = 2 * TEXT  # of a frame [mm on paper]
+_INTO = 3.0  # from the corner of a face to where a leader points [mm on paper]
+_STEMS = range(2, 90, 3)
+
+BoxAt = Callable[[float, float], Rectangle]
+
+
+class Controls:
+    """Draws what a model declares of the faces of its dimensions."""
+
+    def __init__(self, page: Page, room: Room, *, is_last: bool) -> None:
+        self.page, self.plan, self.room, self.is_last = page, page.plan, room, is_last
+
+    def draw(self, declared: Declared, placed: Sequence[Placed]) -> None:
+        """Everything that belongs to a dimension that is drawn.
+
+        Raises
+        ------
+        NoRoom
+            If something has no place, unless it is the last scale to be tried.
+        """
+        of: Mapping[str, Placed] = {one.dimension.name: one for one in placed if one.dimension.name}
+        for name, letter in declared.datums.items():
+            if name in of:
+                self._datum(of[name], letter)
+        for control in declared.controls:
+            if control.parameter in of:
+                self._frame(of[control.parameter], control)
+        for name, height in declared.textures.items():
+            if name in of:
+                self._texture(of[name], f"Ra {height:g}")
+
+    def _datum(self, placed: Placed, letter: str) -> None:
+        tries = list(self._stems(placed))
+        chosen = next((one for one in tries if self.room.is_free(one[0])), None)
+        if chosen is None and not self.is_last:
+            raise NoRoom
+        box, symbol = chosen or tries[0]
+        self.room.add(box)
+        corners = [(box[0], box[1]), (box[2], box[1]), (box[2], box[3]), (box[0], box[3]), (box[0], box[1])]
+        self.page.symbol(symbol.joined(Symbol(lines=[corners])))
+        middle = (box[0] + box[2]) / 2
+        self.page.write(letter, middle - width_of(letter, TEXT) / 2, box[1] + TEXT / 2, TEXT)
+
+    def _stems(self, placed: Placed) -> Iterator[tuple[Rectangle, Symbol]]:
+        """Places of a datum's letter: in line with a dimension line, or about what is measured."""
+        if placed.ends is None:
+            tip, turns = self._target(placed), [radians(turn) for turn in range(0, 360, 30)]
+            starts = [(tip, turn) for turn in turns]
+        else:
+            low, high = sorted(placed.ends)
+            turn = pi / 2 if low[0] == high[0] else 0.0
+            starts = [(high, turn), (low, turn + pi)]
+        for stem in _STEMS:
+            for tip, turn in starts:
+                symbol, end = datum(tip, turn, stem)
+                middle = end[0] + _HIGH / 2 * cos(turn), end[1] + _HIGH / 2 * sin(turn)
+                yield around(middle, _HIGH, _HIGH), symbol
+
+    def _frame(self, placed: Placed, control: Control) -> None:
+        """A frame: sign, width, datum."""
+        text = f"{control.width:.6f}".rstrip("0").rstrip(".")
+        cells = [_HIGH, width_of(text, TEXT) + 2.0, *([_HIGH] if control.to else [])]
+        width = sum(cells)
+        target = self._target(placed)
+        left, low = self._place(
+            target, lambda x, y: (x - 0.5, y - 0.5, x + width + 0.5, y + _HIGH + 0.5), width
+        )
+        places = [left + sum(cells[:i]) for i in range(len(cells) + 1)]
+        lines = [[(left, low), (left + width, low)], [(left, low + _HIGH), (left + width, low + _HIGH)]]
+        lines += [[(x, low), (x, low + _HIGH)] for x in places]
+        sign = geometric(control.form, _HIGH).moved(left + _HIGH / 2, low + _HIGH / 2)
+        start = (left if target[0] < left + width / 2 else left + width), low + _HIGH / 2
+        self.page.symbol(Symbol(lines=lines).joined(sign, arrow(target, start)))
+        self.page.write(text, places[1] + 1.0, low + TEXT / 2, TEXT)
+        if control.to:
+            self.page.write(
+                control.to, places[2] + (_HIGH - width_of(control.to, TEXT)) / 2, low + TEXT / 2, TEXT
+            )
+        self.room.add_line([target, start])
+
+    def _texture(self, placed: Placed, text: str) -> None:
+        reach = width_of(text, 2.5)
+        target = self._target(placed)
+        x, y = self._place(target, lambda x, y: (x - 3.5, y - 0.5, x + 6.5 + reach, y + 10.5), reach)
+        self.page.symbol(texture(TEXT, reach).moved(x, y).joined(arrow(target, (x, y))))
+        self.page.write(text, x + 5.5, y + 6.0, 2.5)
+        self.room.add_line([target, (x, y)])
+
+    def _target(self, placed: Placed) -> Point:
+        """A point of a face that carries a dimension, on the paper; within an edge, off its corner."""
+        measure = placed.dimension.measure
+        x, y = self.plan.paper(measure.points[1], placed.right)
+        return (x, y + _INTO) if measure.sort == "length" else (x, y)
+
+    def _place(self, target: Point, box_at: BoxAt, width: float) -> Point:
+        """The nearest free place about a target, which is taken."""
+        tries = (
+            (box_at(x, y), (x, y))
+            for away in range(8, 150, 4)
+            for turn in range(0, 360, 20)
+            for x, y in [_beside(target, away, radians(turn), width)]
+        )
+        place = self.room.first(tries)
+        if place is None and not self.is_last:
+            raise NoRoom
+        if place is None:
+            place = _beside(target, 8, 0.0, width)
+            self.room.add(box_at(*place))
+        return place
+
+
+def _beside(target: Point, away: float, turn: float, width: float) -> Point:
+    u, v = cos(turn), sin(turn)
+    return target[0] + away * u - (width if u < 0 else 0.0), target[1] + away * v

@@ -1,0 +1,265 @@
+"""The rules of a technical drawing, as a checklist on the entities of its DXF; and no words that overlap."""
+
+import io
+from collections.abc import Sequence
+from math import cos, hypot, radians, sin
+from xml.etree import ElementTree
+
+import ezdxf
+import pytest
+from ezdxf import path
+from ezdxf.document import Drawing
+from ezdxf.math import is_point_in_polygon_2d
+from PIL import ImageFont
+
+from benchmarks.drawings import SIZES, latest, sized
+from cad.catalogue import models
+from cad.drafting.curves import Curve, Round, joined, recognised, rounded
+from cad.drafting.room import overlap
+from cad.export import derive
+from cad.model import CadModel
+from cad.regenerate import Build, as_text, regenerate_from_text
+
+SVG = "{http://www.w3.org/2000/svg}"
+FIELDS = (
+    "owner title author checker approver status number revision date material mass part"
+).split()
+
+Rectangle = tuple[float, float, float, float]
+
+
+@pytest.fixture(scope="module")
+def font() -> ImageFont.FreeTypeFont:
+    """DejaVu Sans, the widest letters in which a browser shows a drawing."""
+    matplotlib = pytest.importorskip("matplotlib")
+    return ImageFont.truetype(f"{matplotlib.get_data_path()}/fonts/ttf/DejaVuSans.ttf", 200)
+
+
+def read(dxf: bytes) -> Drawing:
+    return ezdxf.read(io.StringIO(dxf.decode()))
+
+
+def boxes(svg: bytes, font: ImageFont.FreeTypeFont) -> dict[str, Rectangle]:
+    """The rectangle of every text of a drawing [mm], by its place and words; y points down."""
+    result = {}
+    for node in ElementTree.fromstring(svg).iter(f"{SVG}text"):
+        text, size = node.text or "", float(node.attrib["font-size"])
+        if not text:
+            continue
+        x, y = float(node.attrib["x"]), float(node.attrib["y"])
+        width = font.getlength(text) / 200 * size
+        left = x - width / 2 if node.attrib.get("text-anchor") == "middle" else x
+        corners = [(left, y - 0.74 * size), (left + width, y), (left, y), (left + width, y - 0.74 * size)]
+        if turn := node.attrib.get("transform"):
+            angle, at_x, at_y = map(float, turn.removeprefix("rotate(").removesuffix(")").split())
+            c, s = cos(radians(angle)), sin(radians(angle))
+            corners = [
+                (at_x + (a - at_x) * c - (b - at_y) * s, at_y + (a - at_x) * s + (b - at_y) * c)
+                for a, b in corners
+            ]
+        across, down = zip(*corners, strict=True)
+        result[f"{x:.1f} {y:.1f} {text}"] = min(across), min(down), max(across), max(down)
+    return result
+
+
+def overlapping(svg: bytes, font: ImageFont.FreeTypeFont) -> list[tuple[str, str]]:
+    every = list(boxes(svg, font).items())
+    return [
+        (one, other)
+        for i, (one, box) in enumerate(every)
+        for other, its in every[:i]
+        if overlap(box, its, -0.05)
+    ]
+
+
+def outlines_under_dimensions(drawing: Drawing) -> list[str]:
+    """Words of dimensions across an edge of the part."""
+    space, crossed = drawing.modelspace(), []
+    edges = list(space.query('LINE[layer=="OUTLINE"]'))
+    for dimension in space.query("DIMENSION"):
+        for words in dimension.virtual_entities():
+            if words.dxftype() != "MTEXT":
+                continue
+            (x, y, _), half = words.dxf.insert, words.dxf.char_height / 2
+            for edge in edges:
+                (a, b, _), (c, d, _) = edge.dxf.start, edge.dxf.end
+                share = max(
+                    0.0, min(1.0, ((x - a) * (c - a) + (y - b) * (d - b)) / (hypot(c - a, d - b) ** 2))
+                )
+                if hypot(a + share * (c - a) - x, b + share * (d - b) - y) < half:
+                    crossed.append(words.plain_text())
+    return crossed
+
+
+def marks(drawing: Drawing) -> set[str]:
+    texts = drawing.modelspace().query("TEXT")
+    return {t.get_xdata("CRANKWRIGHT")[0].value for t in texts if t.has_xdata("CRANKWRIGHT")}
+
+
+def words(drawing: Drawing) -> list[str]:
+    return [text.dxf.text for text in drawing.modelspace().query("TEXT")]
+
+
+def is_shaft(model: type[CadModel]) -> bool:
+    return model.is_throw() or model.shaft is not CadModel.shaft
+
+
+def test_checklist(model: type[CadModel], dxf: bytes) -> None:
+    drawing = read(dxf)
+    space = drawing.modelspace()
+    layers: dict[str, list[str]] = {}
+    for entity in space:
+        layers.setdefault(entity.dxf.layer, []).append(entity.dxftype())
+    # ISO 7200: every field of the title block, those of a design for a stamp
+    assert marks(drawing) >= {f"stamp:iso-{name}" for name in FIELDS}
+    captions = words(drawing)
+    for caption in ("legal owner", "identification number", "document status", "mass", "scale", "projection"):
+        assert caption in captions
+    # ISO 5456-2: first angle, the cone's small end to the left, the circles to its right
+    circles = sorted(space.query('CIRCLE[layer=="SYMBOLS"]'), key=lambda circle: circle.dxf.radius)[-2:]
+    assert circles[0].dxf.center.isclose(circles[1].dxf.center)
+    assert circles[1].dxf.radius == pytest.approx(2 * circles[0].dxf.radius)
+    # ISO 128-2: centre lines, dash-dotted
+    assert layers["CENTRE"].count("LINE") >= 3
+    assert drawing.layers.get("CENTRE").dxf.linetype == "CENTER"
+    # true arcs
+    assert {"ARC", "CIRCLE"} & set(layers["OUTLINE"])
+    # ISO 128-3: cut faces are hatched by one entity each, and marked; shafts are not cut
+    hatches = space.query("HATCH")
+    assert bool(hatches) is not is_shaft(model)
+    assert ("A–A" in captions) is bool(hatches)
+    assert captions.count("A") >= 2 * bool(hatches)
+    assert layers.get("CUTTING", []).count("LWPOLYLINE") == 2 * bool(hatches)
+    # ISO 129-1, ISO 2768, ISO 21920-1
+    assert layers["DIMENSIONS"].count("DIMENSION") >= 1
+    assert "ISO 2768-mK" in captions
+    assert "Ra 3.2" in captions
+    assert outlines_under_dimensions(drawing) == []
+
+
+def test_no_words_overlap(svg: bytes, font: ImageFont.FreeTypeFont) -> None:
+    assert overlapping(svg, font) == []
+
+
+def test_overlapping_words_are_noticed(font: ImageFont.FreeTypeFont) -> None:
+    svg = '<svg xmlns="http://www.w3.org/2000/svg">{}</svg>'
+    text = '<text x="{}" y="10" font-size="4">Ø48</text>'
+    assert len(overlapping(svg.format(text.format(10) + text.format(12)).encode(), font)) == 1
+    assert overlapping(svg.format(text.format(10) + text.format(30)).encode(), font) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("factor", SIZES)
+@pytest.mark.parametrize("newest", list(latest()), ids=lambda cls: cls.id)
+def test_no_words_overlap_at_three_sizes(
+    newest: type[CadModel], factor: float, font: ImageFont.FreeTypeFont
+) -> None:
+    build = sized(newest, factor)
+    assert overlapping(derive(build.step, "drawing.svg"), font) == []
+    assert outlines_under_dimensions(read(derive(build.step, "dxf"))) == []
+
+
+def toleranced(texts: dict[str, str]) -> Build:
+    model = models().get("plain_bearing", 1).from_quantities({"inner_diameter": "48 mm", **texts})
+    return regenerate_from_text(model.id, model.version, as_text(model))
+
+
+@pytest.fixture(scope="module")
+def fitted() -> bytes:
+    return toleranced(
+        {"inner_diameter": "48 mm H7", "width": "24 mm +0.05/-0.02 mm", "wall": "2.4 mm ±0.01 mm"}
+    ).step
+
+
+def labels(drawing: Drawing) -> dict[str, str]:
+    """The words of every dimension that carries a parameter, as DXF has them."""
+    return {
+        dimension.get_xdata("CRANKWRIGHT")[0].value: part.text
+        for dimension in drawing.modelspace().query("DIMENSION")
+        if dimension.has_xdata("CRANKWRIGHT")
+        for part in dimension.virtual_entities()
+        if part.dxftype() == "MTEXT"
+    }
+
+
+def test_tolerances_and_fits(fitted: bytes) -> None:
+    """ISO 286-2: H7 at 48 mm is +25/0 µm."""
+    result = labels(read(derive(fitted, "dxf")))
+    assert result["inner_diameter"] == "Ø48 H7 {\\H0.7x;\\S+0.025^ 0;}"
+    assert result["width"] == "24 {\\H0.7x;\\S+0.05^ -0.02;}"
+    assert result["wall"] == "2.4 ±0.01"
+    assert result["oil_hole_diameter"] == "Ø3.84"
+
+
+def test_datum_geometric_tolerances_and_texture(fitted: bytes, font: ImageFont.FreeTypeFont) -> None:
+    drawing = read(derive(fitted, "dxf"))
+    texts = words(drawing)
+    assert texts.count("0.0125") == 1  # cylindricity: half of 25 µm
+    assert texts.count("0.07") == 1  # perpendicularity: the width of +50/-20 µm
+    assert texts.count("A") == 2 + 2  # of the cutting line, the datum, and the frame that refers to it
+    assert "Ra 0.8" in texts  # a twentieth of 25 µm is 1.25 µm
+    assert (
+        len(drawing.modelspace().query('SOLID[layer=="SYMBOLS"]')) >= 2 + 1 + 2
+    )  # arrows, the triangle, leaders
+    svg = derive(fitted, "drawing.svg")
+    shown = [node.text for node in ElementTree.fromstring(svg).iter(f"{SVG}text")]
+    assert shown.count("+0.025") == shown.count("-0.02") == 1
+    assert overlapping(svg, font) == []
+
+
+def test_balls_are_not_cut_and_rings_are(example_of, font) -> None:
+    build = example_of(models().get("ball_bearing", 1))
+    drawing = read(derive(build.step, "dxf"))
+    radius = build.dimensions["ball_diameter"] / 2
+    balls = [c for c in drawing.modelspace().query("CIRCLE") if c.dxf.radius == pytest.approx(radius)]
+    hatches = list(drawing.modelspace().query("HATCH"))
+    assert balls
+    assert len(hatches) == 4  # two rings, each cut twice
+    assert {hatch.dxf.pattern_name for hatch in hatches} == {"ANSI31"}
+    assert len({hatch.pattern.lines[0].angle for hatch in hatches}) == 2
+    for ball in balls:
+        for hatch in hatches:
+            assert not holds(hatch, ball.dxf.center)
+
+
+def holds(hatch, point) -> bool:
+    outlines = [[corner.vec2 for corner in line.flattening(0.01)] for line in path.from_hatch(hatch)]
+    return any(is_point_in_polygon_2d(point.vec2, line) > 0 for line in outlines)
+
+
+def test_arcs_of_the_svg_are_arcs() -> None:
+    build = toleranced({"shell": "full"})
+    root = ElementTree.fromstring(derive(build.step, "drawing.svg"))
+    outlines = [p.attrib["d"] for p in root.iter(f"{SVG}path") if p.attrib.get("stroke-width") == "0.6"]
+    assert any("A" in d for d in outlines)
+    assert all(d.count("L") < 20 for d in outlines)
+
+
+def test_pdf_is_the_drawing() -> None:
+    pypdf = pytest.importorskip("pypdf")
+    pdf = derive(toleranced({}).step, "drawing.pdf")
+    assert derive(toleranced({}).step, "drawing.pdf") == pdf
+    (page,) = pypdf.PdfReader(io.BytesIO(pdf)).pages
+    width, height = (float(side) / 72 * 25.4 for side in page.mediabox[2:])
+    assert (width, height) == pytest.approx((420, 297), abs=0.1)
+    text = page.extract_text()
+    for expected in ("identification number", "ISO 2768-mK", "plain bearing, version 1", "24"):
+        assert expected in text
+
+
+def test_curves_join_and_give_way() -> None:
+    halves = [rounded(Round((0, 0), 5, start, 180.0)) for start in (90.0, 270.0)]
+    (circle,) = joined([*halves, halves[0]])
+    assert circle.arc is not None
+    assert circle.arc.is_whole
+    (line,) = joined([Curve([(0, 0), (4, 0)]), Curve([(10, 0), (3, 0)])])
+    assert sorted(line.points) == [(0, 0), (10, 0)]
+    left = joined([line], [Curve([(2, 0), (5, 0)])])
+    assert sorted(sorted(curve.points) for curve in left) == [
+        [(0.0, 0.0), (2.0, 0.0)],
+        [(5.0, 0.0), (10.0, 0.0)],
+    ]
+    points: Sequence[tuple[float, float]] = [(cos(t / 10), sin(t / 10)) for t in range(12)]
+    found = recognised([*points]).arc
+    assert found is not None
+    assert (found.radius, found.turn) == pytest.approx((1.0, 63.025), abs=1e-2)
