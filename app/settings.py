@@ -52,6 +52,9 @@ class Settings(BaseSettings):
         5.0, gt=0, description="how often a server of a team looks into the database without a hint [s]"
     )
     minimum_free_mb: int = Field(200, ge=0, description="free disk space below which /readyz says 503 [MiB]")
+    owner: str = Field(
+        "", max_length=80, description="legal owner of drawings, in their title blocks (ISO 7200)"
+    )
     host: str = "127.0.0.1"
     port: int = Field(8000, ge=0, le=65535)
     allowed_hosts: tuple[Annotated[str, AfterValidator(check_entry)], ...] = Field(

@@ -37,6 +37,7 @@ from app.reports.paper import Press
 from app.reports.service import Reports
 from app.schemas.solve import DesignSolution
 from app.schemas.tolerances import ToleranceAnalysis
+from app.settings import Settings
 from app.solids.analyses import Analyses
 from app.solids.healing import Healing
 from app.solids.models import Models
@@ -66,6 +67,7 @@ def _part(name: str) -> Callable[[Request], Awaitable[object]]:
 TheCatalogues = Annotated[Catalogues, Depends(_part("catalogues"))]
 TheDatabase = Annotated[Database, Depends(_part("database"))]
 TheIdentity = Annotated[Identity, Depends(_part("identity"))]
+TheSettings = Annotated[Settings, Depends(_part("settings"))]
 TheStore = Annotated[Artifacts, Depends(_part("store"))]
 TheJobs = Annotated[Jobs, Depends(_part("jobs"))]
 TheThreads = Annotated[Threads, Depends(_part("threads"))]

@@ -1,15 +1,19 @@
-"""The stamp that a downloaded file of a model carries: its design, revision, date and materials."""
+"""The stamp that a downloaded file of a model carries: its design, revision, date, materials, signatures."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.designs import repository
+from app.identity.acting import LOCAL
 from app.plain import Json
+from app.schemas.approvals import ORDER
 from app.solids import rows
-from app.storage.tables import BuildRow, RevisionModelRow
+from app.storage.tables import ApprovalRow, BuildRow, PrincipalRow, RevisionModelRow
 from cad.model import material_named
 from cad.stamp import Stamp
 
@@ -28,6 +32,27 @@ def stamp(session: Session, model: RevisionModelRow) -> Stamp:
         materials=_materials(build) if build else {},
         variant=model.variant,
         is_only=len(revision.document["models"]) == 1,
+    )
+
+
+def signed(session: Session, model: RevisionModelRow, owner: str) -> Stamp:
+    """The stamp with what a title block says of the approval: it changes with every step of that.
+
+    From the hand-over on the author has the name of that time, as in a report.
+    """
+    revision = repository.revision(session, model.design_id, model.number)
+    build = rows.build(session, model.build_key or "")
+    of_revision = ApprovalRow.design_id == model.design_id, ApprovalRow.revision == model.number
+    names = {row.step: row.name for row in session.scalars(select(ApprovalRow).where(*of_revision))}
+    author = session.get(PrincipalRow, revision.author) if revision.author not in (None, LOCAL.id) else None
+    return replace(
+        stamp(session, model),
+        owner=owner,
+        author=names.get("calculated") or (author.name if author else ""),
+        checker=names.get("checked", ""),
+        approver=names.get("released", ""),
+        status=next((step for step in reversed(ORDER) if step in names), "unsigned"),
+        mass=build.measurements["measures"]["mass"] if build else None,
     )
 
 

@@ -1,4 +1,4 @@
-"""The press: reports are typeset in a process each, which can be stopped, and few at a time."""
+"""The press: reports and drawings are typeset in a process each, which can be stopped, and few at a time."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from app.reports.errors import Unprintable
 from app.reports.typesetting import Pictures, typeset
 from app.workers.base import Limits, Worker
 from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
+from cad.drafting.paper import as_pdf
 
 
 class Press:
@@ -34,3 +35,17 @@ class Press:
                 formulas = sum(len(step["formulas"]) for step in report["steps"])
                 reason = f"with {formulas} formulas it takes more time or memory than a job may have"
                 raise Unprintable(f"this report is too long for paper: {reason} ({error})") from error
+
+    def draw(self, svg: bytes) -> bytes:
+        """A drawing as PDF; equal drawings give equal bytes. It waits, so call it in a thread.
+
+        Raises
+        ------
+        Unprintable
+            If the typesetter had to be stopped, or stopped for want of memory.
+        """
+        with self._free:
+            try:
+                return self._worker.run(as_pdf, svg, limits=self._limits)
+            except (DeadlineExceeded, MemoryExceeded, JobCrashed) as error:
+                raise Unprintable(f"this drawing cannot be typeset; take its SVG or DXF ({error})") from error

@@ -44,8 +44,11 @@ NO_PICTURE = "no picture and drawing could be made of it"
 class Reports:
     """Gathers reports of revisions."""
 
-    def __init__(self, database: Database, store: Artifacts, models: Models, catalogues: Catalogues) -> None:
+    def __init__(
+        self, database: Database, store: Artifacts, models: Models, catalogues: Catalogues, owner: str
+    ) -> None:
         self.database, self.store, self.models, self.catalogues = database, store, models, catalogues
+        self.owner = owner  # legal owner of drawings
 
     def number(self, id: str, number: int | None) -> int:
         """The revision meant: the newest, if none is named.
@@ -146,7 +149,7 @@ class Reports:
         files = {model.name: {file.kind: file.sha256 for file in model.files} for model in report.models}
         with self.database.read() as session:
             models = repository.revision(session, report.design, report.revision).models
-            named = {model.name: stamps.stamp(session, model) for model in models}
+            named = {model.name: stamps.signed(session, model, self.owner) for model in models}
         own = {
             name: {
                 kind: stamped(self.store.read(shas[kind]), kind, named[name])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from math import hypot, isclose
 
-from cad.drafting.measures import Measure
+from cad.drafting.measures import Measure, Sort
 from cad.drafting.views import View
 from cad.inspect import look_at
 from cad.step import Body
@@ -41,7 +41,7 @@ def of_levels(seen: Seen, end: View) -> Iterator[Measure]:
             for start in (0.0, radius if side > 0 else -radius):
                 if abs(side) > abs(start) + _CLEAR:
                     ends = ((start, 0.0), (side, 0.0)) if up == 0 else ((0.0, start), (0.0, side))
-                    sort = "gap" if start else "offset"
+                    sort: Sort = "gap" if start else "offset"
                     yield Measure(sort, abs(side - start), "end", "across" if up == 0 else "up", ends)
 
 

@@ -194,7 +194,7 @@ def _wires(face: Face) -> list[Shape]:
 def _reach(shape: Shape) -> float:
     box = BoundBox._fromTopoDS(shape.wrapped, None, False)  # loose, a hundred times as fast
     sides = (box.xmin, box.xmax, box.ymin, box.ymax, box.zmin, box.zmax)
-    return 2.5 * max(abs(side) for side in sides)
+    return 2.5 * float(max(abs(side) for side in sides))
 
 
 def _cut(shape: Shape, normal: Vector) -> list[Face]:

@@ -1,6 +1,7 @@
 """Approval over HTTP: three principals, one after another, each of whom signs what was seen."""
 
 import hashlib
+import re
 
 import pytest
 from approving import Room, signed, signing
@@ -34,6 +35,25 @@ def test_a_revision_is_calculated_checked_and_released(room, design):
         ("calculated", "author"), ("checked", "checker"), ("released", "releaser"),
     ]  # fmt: skip
     assert (released["state"], released["next"], released["obstacle"]) == ("released", None, None)
+
+
+def test_the_title_block_names_who_signed(room, design):
+    """ISO 7200: who created, checked and approved the drawing, and its state."""
+
+    def field(name):
+        url = f"{API}/designs/{design['id']}/model.drawing.svg"
+        answer = room.author.get(url, headers={"Prefer": "wait=60"})
+        assert answer.status_code == 200, answer.text
+        return re.search(rf'<text data-stamp="iso-{name}"[^>]*>([^<]*)</text>', answer.text)[1]
+
+    assert [field(name) for name in ("author", "checker", "approver", "status")] == [
+        "author", "", "", "unsigned",
+    ]  # fmt: skip
+    signed(room, design)
+    assert [field(name) for name in ("author", "checker", "approver", "status")] == [
+        "author", "checker", "releaser", "released",
+    ]  # fmt: skip
+    assert field("mass").endswith(" kg")
 
 
 def test_each_digest_is_that_of_the_content_and_chains_to_the_step_before(room, design):

@@ -9,6 +9,7 @@ import ezdxf
 import httpx
 import pytest
 from click.testing import CliRunner
+from pypdf import PdfReader
 from serving import API, created, paper, patched, problem, revision
 
 from app.cli import main
@@ -50,7 +51,7 @@ def products(step):
     return [tuple(map(plain, strings)) for strings in pattern.findall(step.decode("latin-1"))]
 
 
-@pytest.mark.parametrize("kind", ["step", "stl", "svg", "png", "glb", "dxf", "drawing.svg"])
+@pytest.mark.parametrize("kind", ["step", "stl", "svg", "png", "glb", "dxf", "drawing.svg", "drawing.pdf"])
 def test_a_download_is_named_by_design_model_and_revision(http, design, kind):
     answer = get(http, design, f"models/shell/model.{kind}")
     wide = quote(f"{WIDE}.{kind}", safe="")
@@ -79,14 +80,23 @@ def test_the_drawing_says_whose_it_is(http, design, kind):
         drawing = ezdxf.read(io.StringIO(text))
         assert not drawing.audit().errors
         lines = {entity.dxf.text for entity in drawing.modelspace().query("TEXT")}
-        assert {
-            f"design: {NAME}",
-            f"part: shell, revision 1, {day}",
-            "material: steel (7850 kg/m³)",
-        } <= lines
+        assert {NAME, "shell", "1", day, "steel (7850 kg/m³)", "unsigned"} <= lines
     else:
-        assert "design: Käfig &#x27;A&#x27; 轴承</text>" in text
-        assert f"part: shell, revision 1, {day}</text>" in text
+        assert ">Käfig &#x27;A&#x27; 轴承</text>" in text
+        for field in ("shell", "1", day, "steel (7850 kg/m³)", "unsigned"):
+            assert f">{field}</text>" in text
+
+
+def test_the_drawing_on_paper_says_whose_it_is(http, design):
+    answer = get(http, design, "models/shell/model.drawing.pdf")
+    assert answer.headers["content-type"] == "application/pdf"
+    (page,) = PdfReader(io.BytesIO(answer.content)).pages
+    text = page.extract_text()
+    assert "Käfig" in text
+    assert "unsigned" in text
+    assert get(http, design, "models/shell/model.drawing.pdf").content == answer.content
+    same = http.get(answer.url, headers={"If-None-Match": answer.headers["etag"]})
+    assert same.status_code == 304
 
 
 def test_builds_and_artifacts_are_shared_and_stay(http, design):
@@ -234,7 +244,7 @@ def test_a_drawing_of_an_older_program_is_drawn_again(served, http):
     drawing = get(http, older, "models/shell/model.dxf").text
     unmarked = drawing.replace("stamp:", "other:").encode()
     key = aged(served, older, "dxf", unmarked)
-    assert "design: drawn" in get(http, older, "models/shell/model.dxf").text
+    assert "\ndrawn\n" in get(http, older, "models/shell/model.dxf").text
     assert http.get(f"{API}/builds/{key}").json()["artifacts"]["dxf"] != hashlib.sha256(unmarked).hexdigest()
 
 

@@ -21,9 +21,7 @@ from cad.model import CadModel
 from cad.regenerate import Build, as_text, regenerate_from_text
 
 SVG = "{http://www.w3.org/2000/svg}"
-FIELDS = (
-    "owner title author checker approver status number revision date material mass part"
-).split()
+FIELDS = ("owner title author checker approver status number revision date material mass part").split()
 
 Rectangle = tuple[float, float, float, float]
 

@@ -2,6 +2,7 @@
 
 import io
 import re
+from dataclasses import replace
 
 import ezdxf
 import pytest
@@ -9,6 +10,7 @@ from cadquery import Location, func
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cad.drafting.lettering import clipped, width_of
 from cad.export import derive
 from cad.header import Header
 from cad.model import Part
@@ -28,6 +30,7 @@ NAMES = [
     "a\u202eb",
     "/* no comment */",
 ]
+APP, TITLE = "CRANKWRIGHT", "stamp:iso-title"
 NAME = st.text(st.characters(exclude_categories=["Cs", "Cc"]), min_size=1, max_size=60)
 
 
@@ -95,8 +98,10 @@ def test_a_drawing_stays_sound(shell, drawings, kind, design):
     if kind == "dxf":
         drawing = ezdxf.read(io.StringIO(file))
         assert not drawing.audit().errors
-        (line,) = [e.dxf.text for e in drawing.modelspace().query("TEXT") if e.dxf.text.startswith("design:")]
-        assert len(line) <= 44
+        fields = drawing.modelspace().query("TEXT")
+        (title,) = [e.dxf.text for e in fields if e.has_xdata(APP) and e.get_xdata(APP)[0].value == TITLE]
+        assert title
+        assert width_of(title, 3.5) <= 117
     assert takes_stamp(drawings[kind], kind)
     assert not takes_stamp(b"0\nSECTION", kind)
 
@@ -104,6 +109,61 @@ def test_a_drawing_stays_sound(shell, drawings, kind, design):
 @pytest.fixture(scope="module")
 def drawings(shell):
     return {kind: derive(shell, kind) for kind in ("dxf", "drawing.svg")}
+
+
+def older_drawing(kind):
+    """A title block as this program drew it before it followed ISO 7200."""
+    if kind == "dxf":
+        lines = [f"  1\n{name}:\n1001\n{APP}\n1000\nstamp:{name}" for name in ("design", "part", "material")]
+        return ("\n".join(lines) + "\n").encode()
+    lines = [f'<text data-stamp="{name}" x="0">{name}:</text>' for name in ("design", "part", "material")]
+    return "".join(lines).encode()
+
+
+@pytest.mark.parametrize("kind", ["dxf", "drawing.svg"])
+def test_a_drawing_of_an_older_program_keeps_its_lines(kind):
+    older = older_drawing(kind)
+    assert takes_stamp(older, kind)
+    text = stamped(older, kind, stamp("435 cc")).decode()
+    for line in ("design: 435 cc", "part: shell, revision 3, 2026-11-22", "material: CuSn8 (8800 kg/m³)"):
+        assert line in text
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.text(max_size=300), st.floats(5, 120))
+def test_property_a_clipped_text_is_one_line_that_has_room(text, width):
+    line = clipped(text, width, 2.5)
+    assert width_of(line, 2.5) <= width
+    assert line.isprintable()
+    assert line == text or len(line) <= len(text)
+
+
+def test_fields_of_a_title_block(drawings):
+    signed = replace(
+        stamp("435 cc"),
+        owner="Keller & Söhne",
+        author="Ada",
+        checker="Bo",
+        approver="Cy",
+        status="released",
+        mass=0.123456,
+    )
+    text = stamped(drawings["drawing.svg"], "drawing.svg", signed).decode()
+    for mark, field in {
+        "owner": "Keller &amp; Söhne",
+        "title": "435 cc",
+        "number": "435_cc_shell",
+        "revision": "3",
+        "date": "2026-11-22",
+        "author": "Ada",
+        "checker": "Bo",
+        "approver": "Cy",
+        "status": "released",
+        "mass": "0.1235 kg",
+        "material": "CuSn8 (8800 kg/m³)",
+        "part": "shell",
+    }.items():
+        assert re.search(rf'<text data-stamp="iso-{mark}"[^>]*>{re.escape(field)}</text>', text), mark
 
 
 @settings(max_examples=200, deadline=None)

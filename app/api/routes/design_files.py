@@ -13,7 +13,15 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api import problems
 from app.api.attachments import MemoryFile, disposition, http_time, is_at_hand, tag, unchanged
-from app.api.dependencies import TheDatabase, TheHealing, TheJobs, TheModels, TheStore
+from app.api.dependencies import (
+    TheDatabase,
+    TheHealing,
+    TheJobs,
+    TheModels,
+    ThePress,
+    TheSettings,
+    TheStore,
+)
 from app.api.designs import Id, Number, Prefer
 from app.api.gate.clients import TheClient
 from app.api.reading import StrictRoute
@@ -22,6 +30,7 @@ from app.api.stored import UNAVAILABLE, UNCHANGED, lost
 from app.api.waiting import LATER, accepted, accepted_weights, finished
 from app.designs import stamps, views
 from app.jobs.service import Jobs
+from app.reports.paper import Press
 from app.schemas.problems import RouteOptions
 from app.solids.healing import Healing
 from app.solids.models import File, Models
@@ -47,6 +56,9 @@ FILES: RouteOptions = {
 PATIENCE = "wait=30"
 """How long an answer waits for a file that is still being made, unless the client prefers otherwise."""
 
+PRINTED = {"drawing.pdf": "drawing.svg"}
+"""Kinds that are typeset of another one with its stamp: nothing can be written into a finished PDF."""
+
 Accept = Annotated[str | None, Header(description=", ".join(MEDIA_TYPES.values()))]
 IfNoneMatch = Annotated[str | None, Header(description="the ETags of files that are at hand")]
 
@@ -60,6 +72,8 @@ class FileRequest:
     models: Models
     jobs: Jobs
     healing: Healing
+    press: Press
+    owner: str
     client: str
     accept: str | None
     prefer: str | None
@@ -77,24 +91,25 @@ class FileRequest:
         prefer = self.prefer or PATIENCE
         if wanted not in MEDIA_TYPES:
             raise NotFound(f"there is no model.{wanted[:20]}; there are {', '.join(MEDIA_TYPES)}")
-        key, stamp, old = await run_in_threadpool(self._lookup, find, wanted)
+        made = PRINTED.get(wanted, wanted)
+        key, stamp, old = await run_in_threadpool(self._lookup, find, made)
         answer = await lost(old.sha256, self.healing, self.jobs, prefer) if old else None
-        if answer is None and (
-            old is None or await run_in_threadpool(_is_outdated, self.models, key, wanted)
-        ):
-            answer = await self._unless_ready(key, wanted, prefer, has_older=bool(old))
+        if answer is None and (old is None or await run_in_threadpool(_is_outdated, self.models, key, made)):
+            answer = await self._unless_ready(key, made, prefer, has_older=bool(old))
         if answer:
             return answer
-        file = await run_in_threadpool(lambda: self.models.file(key, wanted))
+        file = await run_in_threadpool(lambda: self.models.file(key, made))
         assert file is not None, "a job that has done its work left its file"
-        return await run_in_threadpool(_sent, self.store, file, stamp, self.if_none_match)
+        return await run_in_threadpool(self._sent, file, stamp, wanted)
 
     def _lookup(
         self, find: Callable[[Session], RevisionModelRow], kind: str
     ) -> tuple[str, Stamp, File | None]:
         with self.database.read() as session:
             model = find(session)
-            return model.build_key or "", stamps.stamp(session, model), views.file(session, model, kind)
+            is_drawing = kind in DRAWINGS
+            stamp = stamps.signed(session, model, self.owner) if is_drawing else stamps.stamp(session, model)
+            return model.build_key or "", stamp, views.file(session, model, kind)
 
     async def _unless_ready(self, key: str, kind: str, prefer: str, *, has_older: bool) -> Response | None:
         """None once a file is made; 202 if the client does not wait so long, or why it cannot be made."""
@@ -104,6 +119,25 @@ class FileRequest:
         problem = await run_in_threadpool(self.jobs.problem, job)
         return problems.answer(problem) if problem and not has_older else None
 
+    def _sent(self, file: File, stamp: Stamp, kind: str) -> Response:
+        """A file under its name, or 304; with its stamp, if it is of a kind that has one."""
+        name, wide_name = f"{stamp.stem}.{kind}", f"{stamp.wide_stem}.{kind}"
+        headers = {
+            "Design-Revision": str(stamp.revision),
+            "Vary": "Accept",
+            "Cache-Control": "no-cache",
+            "Content-Disposition": disposition(name, wide_name),
+        }
+        content = stamped(self.store.read(file.sha256), file.kind, stamp) if file.kind in STAMPED else None
+        if content is not None and kind in PRINTED:
+            content = self.press.draw(content)
+        headers["ETag"] = f'"{file.sha256}"' if content is None else tag(content)
+        if is_at_hand(self.if_none_match, headers["ETag"]):
+            return unchanged(headers)
+        if content is None:
+            return send_file(self.store, file, headers)
+        return MemoryFile(content, MEDIA_TYPES[kind], {**headers, "Last-Modified": http_time(stamp.date)})
+
 
 async def file_request(
     database: TheDatabase,
@@ -111,13 +145,17 @@ async def file_request(
     models: TheModels,
     jobs: TheJobs,
     healing: TheHealing,
+    press: ThePress,
+    settings: TheSettings,
     client: TheClient,
     accept: Accept = None,
     prefer: Prefer = None,
     if_none_match: IfNoneMatch = None,
 ) -> FileRequest:
     """The parts of a request that all routes of files have in common."""
-    return FileRequest(database, store, models, jobs, healing, client, accept, prefer, if_none_match)
+    return FileRequest(
+        database, store, models, jobs, healing, press, settings.owner, client, accept, prefer, if_none_match
+    )
 
 
 TheFileRequest = Annotated[FileRequest, Depends(file_request)]
@@ -141,7 +179,8 @@ async def read_model_file(
     """A file of a model, which names its design, model and revision.
 
     Other kinds than STEP are made when first asked for. The answer waits for that, and is 202 if it takes
-    longer than the client waits. STEP files and drawings also say inside whose they are.
+    longer than the client waits. STEP files and drawings also say inside whose they are, and
+    drawings who signed them.
     """
     return await request.answer(lambda session: views.good_model(session, id, name, number), kind)
 
@@ -150,23 +189,6 @@ def _is_outdated(models: Models, key: str, kind: str) -> bool:
     """Whether a drawing is one of an older program, which had no room for a stamp; it is drawn again."""
     file = models.file(key, kind) if kind in DRAWINGS else None
     return file is not None and not takes_stamp(models.store.read(file.sha256), kind)
-
-
-def _sent(store: Artifacts, file: File, stamp: Stamp, if_none_match: str | None) -> Response:
-    """A file under its name, or 304; with its stamp, if it is of a kind that has one."""
-    headers = {
-        "Design-Revision": str(stamp.revision),
-        "Vary": "Accept",
-        "Cache-Control": "no-cache",
-        "Content-Disposition": disposition(f"{stamp.stem}.{file.kind}", f"{stamp.wide_stem}.{file.kind}"),
-    }
-    content = stamped(store.read(file.sha256), file.kind, stamp) if file.kind in STAMPED else None
-    headers["ETag"] = f'"{file.sha256}"' if content is None else tag(content)
-    if is_at_hand(if_none_match, headers["ETag"]):
-        return unchanged(headers)
-    if content is None:
-        return send_file(store, file, headers)
-    return MemoryFile(content, MEDIA_TYPES[file.kind], {**headers, "Last-Modified": http_time(stamp.date)})
 
 
 def _accepted(accept: str | None) -> str:
