@@ -132,7 +132,8 @@ def _star(values: Values, declared: Members) -> Iterator[Picture]:
 
 def _campbell(values: Values, declared: Members) -> Iterator[Picture]:
     if _have(values, "natural_frequencies", "engine_orders"):
-        names = {"frequencies": "natural_frequencies", "orders": "engine_orders", "range": "speed_range"}
+        spans = "speeds" if "speed_range" not in values and _is_curve(values, "speeds") else "speed_range"
+        names = {"frequencies": "natural_frequencies", "orders": "engine_orders", "range": spans}
         yield Picture("campbell", "Campbell diagram", names)
 
 
@@ -154,6 +155,32 @@ def _curves(values: Values, declared: Members) -> Iterator[Picture]:
             lines = names[first : first + MOST_LINES]
             words = ", ".join(declared[name].title for name in lines)
             yield Picture("curves", f"{words} over {declared[axis].title}", {"x": axis, "y": lines})
+
+
+def _rows(values: Values, declared: Members) -> Iterator[Picture]:
+    """Every array of rows over a list that was given, such as vibratory torques of shafts over the speeds."""
+    for name, about in declared.items():
+        axis = about.along
+        if axis is None or name not in values or about.unit is None:
+            continue
+        if not isinstance(values.get(axis), UsedInput) or not _is_curve(values, axis):
+            continue
+        if rows := _most(values[name].value, _length(values[axis])):
+            names = {"x": axis, "y": name, "rows": rows}
+            yield Picture("rows", f"{about.title} over {declared[axis].title}, by number", names)
+
+
+def _most(table: object, length: int) -> list[int]:
+    """Which rows, counted from 1, have the largest numbers, in their order; none of what is no table."""
+    if not isinstance(table, list) or not table:
+        return []
+    sizes = []
+    for row in table:
+        if not isinstance(row, list) or len(row) != length or isinstance(row[0], (list, str)):
+            return []
+        sizes.append(max((abs(number) for number in row if number is not None), default=0.0))
+    largest = sorted(range(len(sizes)), key=lambda place: -sizes[place])[:MOST_LINES]
+    return [place + 1 for place in sorted(largest)]
 
 
 def _axis(values: Values, declared: Members, name: str) -> str | None:
@@ -186,4 +213,4 @@ def _is_given(value: UsedInput | Output) -> bool:
     return isinstance(value, UsedInput) and value.source == "given"
 
 
-TABLE: tuple[Rule, ...] = (_clearance, _pressure, _star, _polar, _orbit, _campbell, _modes, _curves)
+TABLE: tuple[Rule, ...] = (_clearance, _pressure, _star, _polar, _orbit, _campbell, _modes, _curves, _rows)

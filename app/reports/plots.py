@@ -1,4 +1,4 @@
-"""Plots of a step in a report: polar load diagram, curves, orbit, Campbell diagram, accuracy."""
+"""Plots of a step in a report: polar load diagram, curves, orbit, Campbell diagram, responses, accuracy."""
 
 from __future__ import annotations
 
@@ -66,6 +66,16 @@ def _curves(picture: Picture, values: Values) -> Chart:
     return Chart(_label(x, values[x]), only, series)
 
 
+def _rows(picture: Picture, values: Values) -> Chart:
+    """Some rows of an array over a list, each by its number."""
+    x, y, rows = _name(picture, "x"), _name(picture, "y"), picture.names["rows"]
+    assert isinstance(rows, list)
+    table = values[y].value
+    assert isinstance(table, list)
+    series = [Series(f"no. {row}", _list(values[x]), table[row - 1]) for row in rows]
+    return Chart(_label(x, values[x]), _label(y, values[y]), series)
+
+
 def _polar(picture: Picture, values: Values) -> Chart:
     x, y = _name(picture, "x"), _name(picture, "y")
     return Chart(_label(x, values[x]), _label(y, values[y]), [_closed(values[x], values[y])], square=True)
@@ -118,6 +128,7 @@ KINDS: Mapping[str, Callable[[Picture, Values], Chart]] = {
     "polar": _polar,
     "orbit": _orbit,
     "campbell": _campbell,
+    "rows": _rows,
 }
 
 

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from app.reports.pictures import Picture, pictures
+from app.reports.plots import drawn
 from app.schemas.evaluations import Output, UsedInput
 from app.web.blocks import painted
 
@@ -131,3 +132,66 @@ def test_the_film_pressure_is_painted_on_a_bore_with_a_film_only(bore, relation,
     part = SimpleNamespace(name="shell", model=SimpleNamespace(film_bore=bore), fields=[field])
     shown = painted([film], [part])
     assert (shown or {}).get("model") == expected
+
+
+SPEEDS = [1000.0, 2000.0, 3000.0, 4000.0]
+
+
+def responses(table, speeds=None):
+    names = declared(speeds="rpm")
+    outputs = {"vibratory_torque": {"title": "vibratory torque", "unit": "N*m", "along": "speeds"}}
+    evaluated = answer(
+        {"vibratory_torque": computed(table, "N*m")}, {"speeds": speeds or given(SPEEDS, "rpm")}
+    )
+    return template(names, outputs), evaluated
+
+
+def test_rows_over_given_speeds_are_responses():
+    shown = pictures(*responses([[1.0, 5.0, 2.0, 1.0], [2.0, 3.0, None, 2.0]]))
+    assert kinds(shown) == ["rows"]
+    assert shown[0].for_script("torsion") == {
+        "kind": "rows", "scope": "torsion", "x": "speeds", "y": "vibratory_torque", "rows": [1, 2],
+    }  # fmt: skip
+
+
+def test_of_many_rows_the_largest_are_shown_by_their_numbers():
+    table = [[float(size)] * 4 for size in (3, 9, 1, 8, 7, -6, 5, 4)]
+    (picture,) = pictures(*responses(table))
+    assert picture.names["rows"] == [2, 4, 5, 6, 7, 8]
+
+
+def test_a_report_draws_a_line_for_each_row():
+    (plot,) = drawn(*responses([[1.0, 5.0, 2.0, 1.0], [2.0, 3.0, None, 2.0]]))
+    assert plot.title == "vibratory torque over speeds, by number"
+    assert ">no. 1<" in plot.svg
+    assert ">no. 2<" in plot.svg
+    lines = [part for part in plot.svg.split("<path ") if 'stroke-width="1.6"' in part]
+    assert [line.count("L") + line.count("M") for line in lines] == [4, 3]
+
+
+@pytest.mark.parametrize("table", [[], None, [[1.0, 2.0]], [[[1.0], [2.0], [3.0], [4.0]]], 3.0, [["a"] * 4]])
+def test_what_is_no_table_over_the_speeds_is_not_drawn(table):
+    assert "rows" not in kinds(pictures(*responses(table)))
+
+
+def test_rows_over_a_computed_axis_are_not_drawn():
+    """An engine has eight such arrays over the crank angle; its polar diagrams and films show them."""
+    assert pictures(*responses([[1.0] * 4] * 2, computed(SPEEDS, "rpm"))) == []
+
+
+def test_the_campbell_diagram_ends_at_the_last_speed():
+    names = declared(natural_frequencies="Hz", engine_orders="1")
+    evaluated = answer(
+        {
+            "natural_frequencies": computed([50.0, 90.0, 400.0], "Hz"),
+            "engine_orders": computed([0.5, 1.0], "1"),
+        },
+        {"speeds": given(SPEEDS, "rpm")},
+    )
+    shown = pictures(template(declared(speeds="rpm"), names), evaluated)
+    assert [one.names["range"] for one in shown if one.kind == "campbell"] == ["speeds"]
+    plot = next(
+        one for one in drawn(template(declared(speeds="rpm"), names), evaluated) if "Campbell" in one.title
+    )
+    assert ">4000<" in plot.svg
+    assert ">5000<" not in plot.svg

@@ -20,6 +20,12 @@ const KINDS = {
     return draw(place, lines, { showlegend: lines.length > 1, xaxis: { title: { text: named(picture.x, x) } }, yaxis: { title: { text: only } } });
   },
 
+  rows(place, picture, values) {
+    const x = values[picture.x], y = values[picture.y];
+    const lines = picture.rows.map((row) => ({ x: x.value, y: y.value[row - 1], name: `no. ${row}`, mode: "lines" }));
+    return draw(place, lines, { showlegend: true, xaxis: { title: { text: named(picture.x, x) } }, yaxis: { title: { text: named(picture.y, y) } } });
+  },
+
   polar(place, picture, values) {
     const { x, y } = { x: values[picture.x], y: values[picture.y] };
     return square(place, [closed(x.value, y.value)], [named(picture.x, x), named(picture.y, y)]);
