@@ -19,10 +19,9 @@ import time
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
+from typing import IO, TypedDict
 
 from app.brought.finding import FreeCad, missing
-from app.plain import JsonObject
 from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded, JobCancelled, MemoryExceeded
 from app.workers.lifeline import Lifeline
@@ -37,11 +36,23 @@ _GLANCE = 0.05  # [s]
 _PIECE = 2**20
 
 
+class About(TypedDict, total=False):
+    """What the process says beside the shapes; what a refusal has, and what a drawing has."""
+
+    refused: str
+    detail: str
+    names: list[str]
+    parameters: list[list[str | float]]  # object, kind, key, value, unit, label
+    parts: list[tuple[str, float]]  # name, volume [mm³]
+    program: str
+    sizes: list[int]
+
+
 @dataclass(frozen=True)
 class Answered:
     """An answer of FreeCAD: what it says, and what it drew."""
 
-    about: JsonObject
+    about: About
     drawn: Drawn
 
 
@@ -136,9 +147,9 @@ class FreeCadProcess:
             ) from None
         self._is_ready = True
 
-    def _answer(self, end: float, cancelled: threading.Event) -> tuple[JsonObject, list[bytes]]:
+    def _answer(self, end: float, cancelled: threading.Event) -> tuple[About, list[bytes]]:
         (size,) = struct.unpack("!I", self._read(4, end, cancelled))
-        about: JsonObject = json.loads(self._read(size, end, cancelled))
+        about: About = json.loads(self._read(size, end, cancelled))
         if not 0 <= sum(about["sizes"]) <= LARGEST_ANSWER:
             raise GeometryError("too_large", f"the shapes have more than {LARGEST_ANSWER // 2**20} MiB")
         return about, [self._read(one, end, cancelled) for one in about["sizes"]]
@@ -168,7 +179,7 @@ class FreeCadProcess:
             if poll.poll(1000 * min(left, _GLANCE)):
                 return
 
-    def _refusal(self, about: JsonObject) -> Exception:
+    def _refusal(self, about: About) -> Exception:
         code = about["refused"]
         if code == "memory":
             return MemoryExceeded(self._limits.memory_mb)

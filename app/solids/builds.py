@@ -14,7 +14,6 @@ from sqlalchemy.orm import Session
 
 from app.brought.programs import Programs
 from app.calculations.sources import FileSource, Source, loaded, source_of
-from app.plain import JsonObject
 from app.solids import measures, rows
 from app.solids.ages import is_fresh, renew
 from app.solids.shapes import built_by_another, shape_of
@@ -146,7 +145,7 @@ class Builds:
         parameters = measures.parameters(shape)
         units = {name: declared.meaning.unit for name, declared in shape.inputs.items()}
         dimensions = {n: {"value": value, "unit": units[n]} for n, value in build.dimensions.items()}
-        measured: JsonObject = {
+        measured: dict[str, object] = {
             "measures": build.measures,
             "dimensions": dimensions,
             "materials": build.materials,

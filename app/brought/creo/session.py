@@ -14,7 +14,7 @@ from __future__ import annotations
 import json
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path, PurePath
@@ -23,11 +23,12 @@ from uuid import uuid4
 import httpx
 
 from app.brought.creo.manifest import MM, Manifest
-from app.plain import JsonObject
 from app.workers.errors import DeadlineExceeded, JobCancelled
 from cad.brought import Description, Drawn
 from cad.errors import GeometryError, ProgramMissing
 
+Fields = Mapping[str, object]
+"""An object of JSON, whose values are checked where they are used."""
 LARGEST_STEP = 256 * 2**20
 _GLANCE = 0.05  # [s]
 
@@ -68,8 +69,8 @@ class CreoSession:
             raise unreachable("CREOSON answers, and Creo does not run")
 
     def ask(
-        self, command: str, function: str, data: JsonObject, code: str, names: tuple[str, ...] = ()
-    ) -> JsonObject:
+        self, command: str, function: str, data: Fields, code: str, names: tuple[str, ...] = ()
+    ) -> Fields:
         """Call a function of CREOSON; a refusal has this code and names these parameters.
 
         Raises
@@ -85,7 +86,7 @@ class CreoSession:
             raise GeometryError("creo_answer", f"CREOSON answers {command}: {function} by no object", names)
         return answered
 
-    def _post(self, request: JsonObject, code: str, names: tuple[str, ...]) -> JsonObject:
+    def _post(self, request: Fields, code: str, names: tuple[str, ...]) -> Fields:
         if self.cancelled.is_set():
             raise JobCancelled
         left = self.end - time.monotonic()
@@ -182,7 +183,7 @@ class CreoDrawing:
             self._turn.release()
 
 
-def _volume(properties: JsonObject, names: tuple[str, ...]) -> float:
+def _volume(properties: Fields, names: tuple[str, ...]) -> float:
     """The volume in the unit of the model, cubed."""
     volume = properties.get("volume")
     if isinstance(volume, bool) or not isinstance(volume, int | float) or not 0 < volume < 1e18:
