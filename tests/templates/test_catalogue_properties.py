@@ -31,6 +31,7 @@ EVERY = [pytest.param(cls, id=f"{cls.id}-{cls.version}") for cls in chain(BUILT_
 every_template = pytest.mark.parametrize("cls", EVERY)
 SAMPLED = {
     ("cycle_heat_balance", 1): 9,
+    ("cycle_heat_balance", 2): 9,
     ("mixed_friction", 1): 3,
     ("thermal_film", 1): 3,
     ("thrust_bearing", 1): 3,
@@ -41,6 +42,7 @@ SLOW_LEVELS = {
     ("oil_film_cycle", 1, "transient"),
     ("oil_film_cycle", 2, "supplied"),
     ("oil_film_cycle", 3, "supplied"),
+    ("cycle_heat_balance", 2, "supplied"),
 }
 """Levels of which one golden case takes seconds: that file calculates them too."""
 

@@ -19,6 +19,7 @@ from test_catalogue_properties import (
 from templates.core.catalogue import golden
 from templates.oil_film import (
     cycle_heat_balance_v1,
+    cycle_heat_balance_v2,
     mixed_friction_v1,
     oil_film_cycle_v1,
     oil_film_cycle_v2,
@@ -30,6 +31,7 @@ from templates.oil_film import (
 pytestmark = pytest.mark.slow
 VERSIONS = [
     cycle_heat_balance_v1.CycleHeatBalance,
+    cycle_heat_balance_v2.CycleHeatBalance,
     mixed_friction_v1.MixedFriction,
     thermal_film_v1.ThermalFilm,
     thrust_bearing_v1.ThrustBearing,

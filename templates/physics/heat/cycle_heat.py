@@ -35,7 +35,14 @@ from templates.physics.journals.shear_thinning import (
 )
 from templates.physics.orbits.cyclic_film import Duty, cycle_of, weights
 from templates.physics.orbits.turning import turning
-from templates.physics.supplied.fed_cycle import FedDuty, FedOrbit, fed_duty, fed_film, fed_orbit
+from templates.physics.supplied.fed_cycle import (
+    FedDuty,
+    FedOrbit,
+    fed_duty,
+    fed_film,
+    fed_orbit,
+    relieved_duty,
+)
 from templates.physics.supplied.feeding import AROUND, Feeding
 
 LEVELS = ("mobility_short", "mobility", "mobility_grooved")
@@ -102,6 +109,15 @@ class CycleBearing:
     """Supply pressure, NaN without a groove [Pa]."""
     clearance: Array
     """Radial clearance [m]."""
+    relieved: bool = False
+    """Whether the film is that of `oil_film_cycle` 3: with the supply's pressure (`relieved_duty`)."""
+
+    def fed(self, eta: Array) -> FedDuty:
+        """The duty at a viscosity [Pa s]."""
+        if not self.relieved:
+            return warmed_duty(self.duty, self.feeding, eta)
+        P = self.pressure * (2 * self.clearance / self.feeding.D) ** 2 / (eta * self.duty.Omega)
+        return relieved_duty(replace(self.duty, scale=self.duty.scale / eta), self.feeding, P)
 
 
 @dataclass(frozen=True)
@@ -137,7 +153,7 @@ class Warmed:
 def heated_film(bearing: CycleBearing, eta: Array) -> tuple[FedOrbit, Warmed]:
     """Orbit, loss, flows and shear rate at viscosities (...) [Pa s]; NaN where no orbit is found."""
     duty = bearing.duty
-    fed = warmed_duty(duty, bearing.feeding, eta)
+    fed = bearing.fed(eta)
     orbit = fed_orbit(bearing.level, fed)
     film = fed_film(bearing.level, fed, orbit)
     D, W, c, Omega = bearing.feeding.D, bearing.feeding.W, bearing.clearance, duty.Omega
@@ -149,7 +165,8 @@ def heated_film(bearing: CycleBearing, eta: Array) -> tuple[FedOrbit, Warmed]:
     gap = orbit.gap
     with np.errstate(invalid="ignore"):
         rate = (sliding / np.sqrt(gap * (2 - gap))) @ mean * D / (2 * c)
-    return orbit, Warmed(loss, side, feed_flow(bearing, orbit, eta), rate)
+    driven = 0 * side if bearing.level == "supplied" else feed_flow(bearing, orbit, eta)
+    return orbit, Warmed(loss, side, driven, rate)
 
 
 def feed_flow(bearing: CycleBearing, orbit: FedOrbit, eta: Array) -> Array:

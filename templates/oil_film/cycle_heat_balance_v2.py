@@ -1,0 +1,331 @@
+"""Heat balance of a journal bearing's film over an engine cycle: its effective viscosity and what follows.
+
+Loss and side flow of the film over the cycle, the flow that the supply pressure drives, and the temperature
+of the supply give one viscosity; the orbit and the smallest film are those of that viscosity.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from templates.core.language.template import (
+    Array,
+    Truth,
+    formula,
+    given,
+    profile,
+    require,
+    shared,
+)
+from templates.groups.fed_bearing import FedBearing
+from templates.groups.oil import Oil
+from templates.physics.heat.cycle_heat import (
+    CycleBearing,
+    CycleHeat,
+    CycleOil,
+    feed_flow_of,
+    left_by_HTHS,
+    loss_of,
+    rate_of,
+    side_flow_of,
+    temperature_of,
+    viscosity_at_150,
+    viscosity_of,
+)
+from templates.physics.heat.marched_heat import MARCHED_LEVELS, heat_of_cycle
+from templates.physics.journals.oil import by_law
+from templates.physics.numerics.arrays import spread
+from templates.physics.orbits.cyclic_film import CycleFilm, Duty
+from templates.physics.supplied.fed_cycle import FedDuty, FedOrbit, fed_film, fed_orbit
+
+BOOKER = "Booker 1965"
+CROSS = "Cross 1965"
+ISO = "ISO 7902-1:1998"
+NO_HTHS = "no HTHS viscosity is given: the oil does not thin by shear"
+ALL_OF_IT = "the side flow of level supplied is all the oil that leaves, what the supply drives with it"
+CYCLE = "crank_angle"
+UNBALANCED = (
+    "no viscosity was found at which heat and viscosity agree: give more supply pressure or clearance, "
+    "cooler or thicker oil, or less load; without side flow nothing carries the heat off. At level supplied "
+    "a film may starve: see the verdict of oil_film_cycle 3"
+)
+
+
+class CycleHeatBalance(Oil, FedBearing):
+    """Heat balance of a journal bearing's film over an engine cycle: its effective viscosity.
+
+    Loss and side flow of the film over the cycle, the flow that the supply pressure drives, and the
+    temperature of the supply give one viscosity; the orbit and the smallest film are those of it.
+
+    Limits
+    ------
+    One temperature and one viscosity for the whole film and cycle, at the mean of supply and outlet, as ISO
+    7902-1 has it for a steady load. Nothing is stored in the walls, and what they carry off is the share of
+    the loss that heat_share leaves. The film is that of oil_film_cycle 3 at the same level: massless journal,
+    rigid, aligned, laminar; see there for load sense, angles and axes.
+    Side flow is what the motion of the journal displaces from the ends. Feed flow is what the supply
+    pressure drives from the groove over its two lands, with the gap along the orbit; the film's pressure does
+    not hinder it, as in the standard. The ends of a groove that does not go around let out oil besides, and
+    holes do: both are left out. The film is taken as always full, so more oil is displaced than leaves.
+    Level supplied conserves the oil: its side flow is all that leaves by the ends, and no feed flow is added.
+    It takes three or four marches of a second each, and one point at a time. A film that starves or does not
+    settle has no balance. On the example it leaves half the oil, and the rise is half as large again.
+    Levels mobility_short and mobility do not know the groove in their film, but count its flow.
+    Shear thinning after Cross needs the HTHS viscosity of the oil (150 °C, 1e6 1/s). The shear rate is |U|/h,
+    as mean over the circle and the cycle. What endless shear leaves, by default half, and the exponent, by
+    default 1, are properties of the oil for which no general source is known. The critical rate is taken from
+    150 °C to the film's temperature by the ratio of the viscosities.
+    A dynamic_viscosity that is given is that of the film; heat and shear do not change it.
+    Densities and viscosities are those at ambient pressure.
+    No error of the model is stated: no measured cycle with all its inputs was at hand.
+
+    References
+    ----------
+    ISO 7902-1:1998, clause 6.4, for the balance.
+    Booker: Journal of Basic Engineering 87, 1965, for the mobility method.
+    Cross: Journal of Colloid Science 20, 1965, p. 417; ASTM D4683 and SAE J300 for HTHS.
+    ASTM D341 (Walther) or Vogel: Physikalische Zeitschrift 22, 1921, for the viscosity.
+    """
+
+    levels = MARCHED_LEVELS
+    default_level = "mobility"
+    most_points = {"mobility_short": 2000, "mobility": 500, "mobility_grooved": 500, "supplied": 1}
+    precision = 1e-6
+    level_precision = {"supplied": 1e-5}  # its secants end where a march repeats
+    example = {
+        "crank_angle": {"value": list(range(0, 720, 30)), "unit": "deg"},
+        "load_x": {
+            "value": [
+                -8.5, -14.4, -13.3, -9.9, -6.9, -5.0, -3.6, -2.2, -0.6, 1.1, 2.5, 3.4,
+                3.7, 3.4, 2.5, 1.1, -0.6, -2.2, -3.4, -4.0, -4.3, -4.4, -4.5, -5.6,
+            ],
+            "unit": "kN",
+        },
+        "load_y": {
+            "value": [
+                0.0, 1.9, 2.9, 3.0, 2.5, 2.1, 1.9, 1.8, 1.7, 1.4, 1.0, 0.5,
+                0.0, -0.5, -1.0, -1.4, -1.7, -1.8, -1.8, -1.6, -1.3, -0.9, -0.5, -0.2,
+            ],
+            "unit": "kN",
+        },
+        "speed": "3000 rpm",
+        "bearing_diameter": "48 mm",
+        "bearing_width": "18 mm",
+        "diametral_clearance": "0.055 mm",
+        "groove_width": "3 mm",
+        "groove_start": "-90 deg",
+        "groove_extent": "180 deg",
+        "supply_pressure": "4 bar",
+        "supply_temperature": "90 degC",
+        "hths_viscosity": "3.5 mPa*s",
+    }  # fmt: skip
+    criteria = {
+        "film_exists": {
+            "require": "minimum_film_thickness >= 0.05 um",
+            "words": "the film is not thinner than the finest surfaces are rough",
+            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
+            "warning": "film_too_thin",
+        },
+        "own_film": {
+            "require": "minimum_film_thickness >= permissible_film",
+            "words": "the smallest film of the cycle is not thinner than its user permits",
+            "limits": {"permissible_film": {"unit": "um", "words": "smallest film that its user permits"}},
+        },
+        "temperature": {
+            "require": "film_temperature <= permissible_temperature",
+            "words": "the film is no hotter than the bearing material bears",
+            "limits": {
+                "permissible_temperature": {
+                    "unit": "degC",
+                    "words": "largest temperature that the bearing material bears",
+                    "from": "bearing_material",
+                }
+            },
+        },
+        "temperature_rise": {
+            "require": "temperature_rise <= permissible_temperature_rise",
+            "words": "the oil grows no warmer on its way than its user permits",
+            "limits": {
+                "permissible_temperature_rise": {
+                    "unit": "K",
+                    "words": "largest temperature rise from supply to outlet",
+                }
+            },
+        },
+    }
+
+    T_s: Array = given("degC", "supply temperature", symbol="T_{s}", ge=-100, le=400)
+    rho_c: Array = given("kJ/(m**3*K)", "heat capacity", default="1800 kJ/(m**3*K)", gt=0, source=ISO)
+    k: Array = given("1", "heat share", default="1", ge=0, le=1)
+    eta_H: Array = given("mPa*s", "HTHS viscosity", symbol=r"\eta_\mathrm{HTHS}", name="hths_viscosity",
+                         alternative=True, gt=0)  # fmt: skip
+    r_inf: Array = given("1", "endless shear ratio", symbol=r"r_{\infty}", default="0.5", ge=0, lt=1)
+    n: Array = given("1", "Cross exponent", default="1", gt=0, le=3, source=CROSS)
+
+    @require("hths_viscosity", warning="unused_input", remedy="leave it out, or dynamic_viscosity")
+    def viscosity_follows(self) -> Truth:
+        """Shear thins the oil where its viscosity is not given."""
+        return np.isnan(self.as_given("eta")) | np.isnan(self.eta_H)
+
+    @require("groove_width", warning="unused_input", remedy="take level mobility_grooved or supplied")
+    def groove_counts(self) -> Truth:
+        """A groove counts in the film of levels mobility_grooved and supplied."""
+        return self.level in ("mobility_grooved", "supplied") or ~self.feeding.grooved
+
+    @require("sleeve_hole_length", warning="unused_input", remedy="take level supplied")
+    def sleeve_hole_counts(self) -> Truth:
+        """A hole in the sleeve feeds the film at level supplied alone."""
+        return (self.level == "supplied") | ~self.feeding.sleeve_holed
+
+    @require("pin_hole_length", warning="unused_input", remedy="take level supplied")
+    def pin_hole_counts(self) -> Truth:
+        """A hole in the pin feeds the film at level supplied alone."""
+        return (self.level == "supplied") | ~self.feeding.pin_holed
+
+    @require("supply_pressure", warning="unused_input", remedy="give groove_width, or leave it out")
+    def pressure_counts(self) -> Truth:
+        """The supply pressure drives oil from a groove; from holes at level supplied alone."""
+        return np.isnan(self.p_s) | self.feeding.grooved | (self.level == "supplied")
+
+    def ladder(self) -> tuple[str, ...]:
+        """The levels that know how the bearing is fed; level supplied only where something feeds it."""
+        cheap = ("mobility_grooved",) if np.any(self.feeding.grooved) else ("mobility_short", "mobility")
+        return (*cheap, "supplied") if np.all(self.feeding.count > 0) else cheap
+
+    def starting_level(self) -> str:
+        """The cheap level that knows the groove, if there is one."""
+        return next(level for level in ("mobility", "mobility_grooved") if level in self.ladder())
+
+    @formula("s/m**2", "load scale", symbol="s")
+    def s(self) -> Array:
+        """The load number over load and fluidity."""
+        return self.psi**2 / (self.D * self.W * self.Omega)
+
+    @shared
+    def duty(self) -> Duty:
+        """What the bearing has to do, with oil of 1 Pa s."""
+        return replace(self.motion, scale=self.s)
+
+    @shared
+    def bearing(self) -> CycleBearing:
+        """The bearing over its cycle."""
+        return CycleBearing(self.level, self.duty, self.feeding, self.p_s, self.c / 2, relieved=True)
+
+    @shared
+    def eta_given(self) -> Array:
+        """The viscosity of the film, if it is given."""
+        return self.as_given("eta")
+
+    @formula("mPa*s", "low shear viscosity hot", symbol=r"\eta_{150}")
+    def eta_150(self) -> Array:
+        """At low shear and 150 °C, the temperature of the HTHS viscosity."""
+        return viscosity_at_150(
+            self.law, self.A, self.B, self.a_V, self.b_V, self.c_V, self.eta_given, self.rho_ref,
+            self.T_ref,
+        )  # fmt: skip
+
+    @formula(
+        "1", "HTHS ratio", symbol="x", name="hths_ratio", ge=1e-6, le=1 - 1e-6, absent=NO_HTHS,
+        source=CROSS, remedy="HTHS lies between the viscosities at low and at endless shear at 150 °C",
+    )  # fmt: skip
+    def hths_ratio(self) -> Array:
+        """What shear of 1e6 1/s leaves of what it can take."""
+        return left_by_HTHS(self.eta_H, self.eta_150, self.r_inf, self.eta_given)
+
+    @shared
+    def oil(self) -> CycleOil:
+        """The oil and what it carries off."""
+        return CycleOil(
+            A=self.A, B=self.B, a=by_law(self.law, np.nan, self.a_V), b=self.b_V, offset=self.c_V,
+            eta=self.as_given("eta"), rho_ref=self.rho_ref, T_ref=self.T_ref, left=self.hths_ratio,
+            endless=self.r_inf, exponent=self.n, supply=self.T_s, heat_capacity=self.rho_c, share=self.k,
+        )  # fmt: skip
+
+    @shared
+    def heat(self) -> CycleHeat:
+        """The balance."""
+        return heat_of_cycle(self.bearing, self.oil)
+
+    @formula(
+        "mPa*s", "effective viscosity", symbol=r"\eta_{e}", gt=0, lt=1e9, remedy=UNBALANCED,
+        assumes=("b", "b_g", "inlets"),
+    )  # fmt: skip
+    def eta_e(self) -> Array:
+        """Of the whole film, at its temperature and shear rate."""
+        return viscosity_of(self.heat)
+
+    @formula("degC", "film temperature", symbol="T_{m}")
+    def T_film(self) -> Array:
+        """The mean of supply and outlet."""
+        return temperature_of(self.heat, self.eta_e)
+
+    @formula("degC", "outlet temperature", symbol="T_{ex}", source=ISO)
+    def T_ex(self) -> Array:
+        return 2 * self.T_film - self.T_s
+
+    @formula("K", "temperature rise", symbol=r"\Delta T", source=ISO)
+    def rise(self) -> Array:
+        """From supply to outlet."""
+        return self.T_ex - self.T_s
+
+    @formula("1/s", "mean shear rate", symbol=r"\dot\gamma")
+    def rate(self) -> Array:
+        """Sliding speed over gap, as mean over circle and cycle."""
+        return rate_of(self.heat, self.eta_e)
+
+    @formula("1", "shear loss", symbol=r"\delta_{\gamma}", source=CROSS)
+    def shear_loss(self) -> Array:
+        """The share of the viscosity that shear takes."""
+        return 1 - self.eta_e / self.eta
+
+    @formula("W", "power loss", symbol="P")
+    def P(self) -> Array:
+        """Mean over the cycle."""
+        return loss_of(self.heat, self.eta_e)
+
+    @formula("l/min", "side flow", symbol="Q")
+    def Q(self) -> Array:
+        """What the motion of the journal displaces; at level supplied all that leaves by the ends."""
+        return side_flow_of(self.heat, self.eta_e)
+
+    @formula("l/min", "feed flow", symbol="Q_{p}", source=ISO, absent=ALL_OF_IT)
+    def Q_p(self) -> Array:
+        """What the supply pressure drives from the groove."""
+        return feed_flow_of(self.heat, self.eta_e)
+
+    @shared
+    def fed(self) -> FedDuty:
+        """The duty at the effective viscosity."""
+        return self.bearing.fed(self.eta_e)
+
+    @shared
+    def orbit(self) -> FedOrbit:
+        """The orbit at the effective viscosity."""
+        return fed_orbit(self.level, self.fed)
+
+    @shared
+    def film(self) -> CycleFilm:
+        """Its pressure."""
+        return fed_film(self.level, self.fed, self.orbit)
+
+    @formula("1", "maximum eccentricity", symbol=r"\epsilon_{max}", lt=1, source=BOOKER)
+    def eps_max(self) -> Array:
+        return self.orbit.eps_max
+
+    @formula("um", "minimum film thickness", symbol="h_{0}", source=BOOKER)
+    def h_0(self) -> Array:
+        return self.c * (1 - self.eps_max) / 2
+
+    @formula("deg", "minimum film angle", symbol=r"\theta_{h}")
+    def theta_h(self) -> Array:
+        return self.orbit.angle
+
+    @profile("um", "film thickness", along=CYCLE, symbol="h", latex=r"\frac{c}{2}\left(1-\epsilon\right)")
+    def h(self) -> Array:
+        return spread(self.c / 2, self.orbit.gap)
+
+    @formula("MPa", "maximum pressure", symbol="p_{max}")
+    def p_max(self) -> Array:
+        return self.film.P_max * self.eta_e * self.Omega / self.psi**2

@@ -1,0 +1,86 @@
+"""The heat balance over a cycle with the film of level supplied, which conserves its oil.
+
+Its side flow is all the oil that leaves by the ends: what the journal displaces and what the supply drives,
+hindered by the film's own pressure, from the ends of grooves and from holes too. A march takes a second or
+more, so the balance begins at that of a cheap level and goes on by secants; three or four marches are enough.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.language.declare import on_paper
+from templates.physics.heat.cycle_heat import (
+    LEVELS,
+    CycleBearing,
+    CycleHeat,
+    CycleOil,
+    Warmed,
+    cycle_heat,
+    heated_film,
+    temperature,
+)
+
+MARCHED_LEVELS = (*LEVELS, "supplied")
+SETTLED, ROUNDS = 2e-3, 12
+"""What ln(viscosity) may lack, as a march repeats to 1e-3; marches at most."""
+FARTHEST = float(np.log(4))
+"""Largest step of ln(viscosity)."""
+
+
+@on_paper("solved numerically by secants of the viscosity in the heat balance over the cycle")
+def heat_of_cycle(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
+    """The viscosity at which heat and viscosity agree, at any level; at level supplied of one point."""
+    if bearing.level != "supplied":
+        return cycle_heat(bearing, oil)
+    cheap = "mobility_grooved" if np.all(bearing.feeding.grooved) else "mobility"
+    first = cycle_heat(replace(bearing, level=cheap), oil)
+    shape = np.shape(first.eta)
+    start = first.eta if np.all(np.isfinite(first.eta)) else oil.still(oil.supply) / 2
+    rounds: list[tuple[float, float]] = [(float(np.log(np.ravel(start)[0])), np.nan)]
+    while len(rounds) <= ROUNDS:
+        x = rounds[-1][0]
+        film, lack = _lack(bearing, oil, np.full(shape, np.exp(x)))
+        rounds[-1] = x, lack
+        if not np.isfinite(lack):
+            break
+        if abs(lack) < SETTLED:
+            return _balanced(oil, film, np.full(shape, np.exp(x)), lack)
+        rounds.append((following(rounds), np.nan))
+    none = np.full(shape, np.nan)
+    return CycleHeat(np.full(shape, np.inf), *(none for _ in range(6)))
+
+
+def following(rounds: list[tuple[float, float]]) -> float:
+    """The next ln(viscosity), by a secant, from those with what each lacks.
+
+    Examples
+    --------
+    >>> following([(0.0, 1.0)]), following([(0.0, 1.0), (0.5, 0.25)])
+    (0.5, 0.6666666666666666)
+    """
+    x, lack = rounds[-1]
+    step = lack / 2
+    if len(rounds) > 1:
+        before, lack_before = rounds[-2]
+        falls = (lack_before - lack) / (x - before) if x != before else 0.0
+        step = lack / falls if falls > 0 else step
+    return x + float(np.clip(step, -FARTHEST, FARTHEST))
+
+
+def _lack(bearing: CycleBearing, oil: CycleOil, eta: Array) -> tuple[Warmed, float]:
+    """The film at a viscosity, and what ln of it lacks of what its heat leaves; NaN without a film."""
+    film = heated_film(bearing, eta)[1]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        lack = np.log(oil.sheared(temperature(oil, film), film.rate) / eta)
+    return film, float(np.ravel(lack)[0])
+
+
+def _balanced(oil: CycleOil, film: Warmed, eta: Array, lack: float) -> CycleHeat:
+    unknown = np.full(np.shape(eta), np.nan)
+    values = (eta, temperature(oil, film), film.rate, film.loss, film.side_flow, unknown)
+    residual = np.full(np.shape(eta), np.expm1(lack))
+    return CycleHeat(*(np.asarray(value)[()] for value in (*values, residual)))

@@ -1,0 +1,88 @@
+"""`cycle_heat_balance` 2: level supplied, the film of `oil_film_cycle` 3. For the rest see version 1."""
+
+import numpy as np
+import pytest
+
+from templates.core.errors import InvalidInputs
+from templates.core.language.evaluate import evaluate
+from templates.oil_film.cycle_heat_balance_v1 import CycleHeatBalance as FirstVersion
+from templates.oil_film.cycle_heat_balance_v2 import CycleHeatBalance
+from templates.oil_film.oil_film_cycle_v3 import OilFilmCycle
+from templates.physics.heat.marched_heat import following
+
+FILM, ETA = "minimum_film_thickness", "effective_viscosity"
+PLAIN = {"groove_width": None, "supply_pressure": None}
+HOLE = {**PLAIN, "pin_hole_length": "4 mm", "supply_pressure": "4 bar"}
+
+
+def answer(raw=None, version=CycleHeatBalance, **options):
+    merged = {**CycleHeatBalance.example, **(raw or {})}
+    typed = {name: value for name, value in merged.items() if value is not None}
+    return evaluate(version, typed, **options)
+
+
+def outputs(raw=None, version=CycleHeatBalance, **options):
+    return {name: one.value for name, one in answer(raw, version, **options).outputs.items()}
+
+
+def of_cycle(eta, level, raw=None):
+    """What oil_film_cycle 3 answers for the same duty at a viscosity [mPa s]."""
+    merged = {**CycleHeatBalance.example, **(raw or {}), "dynamic_viscosity": f"{eta!r} mPa*s"}
+    typed = {n: v for n, v in merged.items() if v is not None and n in OilFilmCycle.inputs}
+    return {n: one.value for n, one in evaluate(OilFilmCycle, typed, level=level).outputs.items()}
+
+
+@pytest.mark.parametrize("level", ["mobility_grooved", pytest.param("supplied", marks=pytest.mark.slow)])
+def test_second_method_balance_by_hand(level):
+    """Loss and flow of oil_film_cycle 3 at the viscosity found heat the oil to the temperature found."""
+    found = outputs({"hths_viscosity": None}, level=level)
+    film = of_cycle(float(found[ETA]), level)
+    for name in (FILM, "power_loss", "side_flow", "maximum_pressure"):
+        assert found[name] == pytest.approx(film[name], rel=1e-6), name
+    assert (found["feed_flow"] is None) == (level == "supplied")
+    driven = found["feed_flow"] or 0.0
+    rise = film["power_loss"] / (1.8e6 * (film["side_flow"] + driven) / 60_000)
+    assert found["temperature_rise"] == pytest.approx(rise, rel=1e-6)
+    assert found["film_temperature"] == pytest.approx(90 + rise / 2, rel=1e-6)
+    assert found[ETA] == pytest.approx(found["dynamic_viscosity"], rel=2e-3)
+
+
+def test_analytic_bearing_without_a_groove_is_as_in_version_1():
+    two, one = outputs(PLAIN), outputs(PLAIN, FirstVersion)
+    for name in (ETA, FILM, "temperature_rise", "power_loss", "side_flow"):
+        assert two[name] == pytest.approx(one[name], rel=1e-8), name
+
+
+def test_analytic_no_heat_is_the_viscosity_of_the_supply():
+    found = outputs({"heat_share": "0", "hths_viscosity": None})
+    assert found["temperature_rise"] == pytest.approx(0, abs=1e-9)
+    assert found[ETA] == pytest.approx(found["dynamic_viscosity"], rel=1e-9)
+
+
+def test_property_inputs_that_a_level_does_not_read_are_named():
+    def unused(raw, level=None):
+        return {w.name for w in answer(raw, level=level).warnings if w.code == "unused_input"}
+
+    assert unused({}) == set()
+    assert unused({}, "mobility") == {"groove_width"}
+    assert unused(HOLE) == {"pin_hole_length", "supply_pressure"}
+
+
+def test_property_level_supplied_needs_a_supply():
+    with pytest.raises(InvalidInputs, match="pin_hole_length"):
+        answer(PLAIN, level="supplied")
+
+
+def test_analytic_secants_end_at_a_root():
+    rounds = [(0.0, 0.7 - np.expm1(0.0))]
+    for _ in range(8):
+        x = following(rounds)
+        rounds.append((x, 0.7 - np.expm1(x)))
+        if abs(rounds[-1][1]) < 1e-12:
+            break
+    assert np.exp(rounds[-1][0]) == pytest.approx(1.7, rel=1e-9)
+
+
+def test_property_a_secant_does_not_run_away():
+    assert following([(0.0, 100.0)]) == pytest.approx(np.log(4))
+    assert following([(0.0, 1.0), (0.5, 1.0)]) == pytest.approx(1.0)
