@@ -40,6 +40,11 @@ def turned_volume(points: Sequence[Point], turn: float = 360.0) -> float:
     return abs(sum(sides)) / 6 * radians(turn)
 
 
+def area(points: Sequence[Point]) -> float:
+    """Area [mm²] within a closed line."""
+    return abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise(points))) / 2
+
+
 def drill(radius: float, reach: float, z: float = 0.0) -> Solid:
     """What a hole takes away: a cylinder along +y, from the axis to beyond a reach [mm], at a level z."""
     return Solid.makeCylinder(radius, 1.1 * reach, Vector(0, 0, z), Vector(0, 1, 0))

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import hypot, isclose
+from itertools import combinations
+from math import acos, degrees, hypot, isclose
 
 from cad.drafting.measures import Measure, Sort
 from cad.drafting.views import View
@@ -17,8 +18,12 @@ _CLEAR = 1e-6  # [mm]
 def standing(bodies: Sequence[Body], section: View, end: View) -> list[Measure]:
     """Every such size that the views show."""
     seen = look_at(bodies).values()
-    beside = [measure for one in seen for measure in (*of_circles(one, end), *of_levels(one, end))]
-    return [*beside, *of_bevels(section)]
+    beside = [
+        measure
+        for one in seen
+        for measure in (*of_circles(one, end), *of_levels(one, end), *of_arms(one, end))
+    ]
+    return [*beside, *of_walls(list(seen), section), *of_bevels(section)]
 
 
 def of_circles(seen: Seen, end: View) -> Iterator[Measure]:
@@ -29,17 +34,47 @@ def of_circles(seen: Seen, end: View) -> Iterator[Measure]:
             yield Measure("diameter", 2 * hypot(right, up), "end", "circle", ((0.0, 0.0), (right, up)))
 
 
+def of_walls(parts: Sequence[Seen], section: View) -> Iterator[Measure]:
+    """From the bore of one part to the outside of another; from a bore to a circle beside it, its relief."""
+    left = section.box[0][0]
+    bores = {min(one.diameters(Z), default=0.0) / 2 for one in parts}
+    for low in sorted(bores):
+        for high in sorted({diameter / 2 for one in parts for diameter in one.diameters(Z)}):
+            if high > low + _CLEAR:
+                yield Measure("gap", high - low, "section", "up", ((left, low), (left, high)))
+        for circle in (c for one in parts for c in one.cylinders if c.along(Z) and not c.about(Z)):
+            reach = circle.point.dot(X) + circle.diameter / 2
+            if abs(circle.point.dot(Y)) < _CLEAR < reach - low:
+                yield Measure("gap", reach - low, "end", "across", ((low, 0.0), (reach, 0.0)))
+
+
+def of_arms(seen: Seen, end: View) -> Iterator[Measure]:
+    """Angles at the shaft between upright planes through it, on the side of the crown, as ends of a groove."""
+    arms = []
+    for plane in seen.planes:
+        if plane.holds(Z) and not plane.along(Y):
+            arm = plane.direction.cross(Z)
+            arms.append(end.frame.flat(arm if arm.y > 0 else -arm))
+    reach = max(seen.diameters(Z), default=0.0) / 2
+    for one, other in combinations(arms, 2):
+        angle = degrees(acos(max(-1.0, min(1.0, one[0] * other[0] + one[1] * other[1]))))
+        if angle > _CLEAR:
+            points = [(reach * x, reach * y) for x, y in (one, other)]
+            yield Measure("angle", angle, "end", "angle", ((0.0, 0.0), *points))
+
+
 def of_levels(seen: Seen, end: View) -> Iterator[Measure]:
     """From the largest cylinder about the shaft to planes beyond it, and from the shaft to each plane."""
-    radius = max(seen.diameters(Z), default=0.0) / 2
+    radii = [0.0, *(diameter / 2 for diameter in seen.diameters(Z))]
     for axis in (X, Y):
         right, up = end.frame.flat(axis)
         for level in seen.levels(axis):
             if abs(level) < _CLEAR:
                 continue
             side = level * (right + up)
-            for start in (0.0, radius if side > 0 else -radius):
-                if abs(side) > abs(start) + _CLEAR:
+            for radius in radii:
+                start = radius if side > 0 else -radius
+                if abs(side) > radius + _CLEAR:
                     ends = ((start, 0.0), (side, 0.0)) if up == 0 else ((0.0, start), (0.0, side))
                     sort: Sort = "gap" if start else "offset"
                     yield Measure(sort, abs(side - start), "end", "across" if up == 0 else "up", ends)

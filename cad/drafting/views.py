@@ -33,6 +33,7 @@ from cad.surfaces import X, Y, Z
 
 _DRAWN = 100.0  # [mm], the size at which edges are hidden: of a part of 5 m the kernel takes 25 times as long
 _TURN = 0.05  # [rad] between two points of a curve
+_LITTLE = 0.02  # of the depth on the other side: what is less is no side of its own
 _CLEAR = 1e-5  # [mm]; boxes of the kernel are good to some 1e-7
 
 
@@ -141,9 +142,10 @@ def _upright(bodies: Sequence[Body]) -> Vector:
         return sum(face.Area() for shape in placed for face in _cut(shape, normal))
 
     def parts(normal: Vector) -> bool:
-        """Whether there is material on both sides: a half shell ends in its joint."""
+        """Whether there is material on both sides: a half shell ends in its joint, or a little beyond."""
         sides = [_sides(body.shape.moved(place), normal) for body in bodies for place in body.places]
-        return min(low for low, _ in sides) < -_CLEAR and max(high for _, high in sides) > _CLEAR
+        depths = sorted((-min(low for low, _ in sides), max(high for _, high in sides)))
+        return depths[0] > max(_CLEAR, _LITTLE * depths[1])
 
     def worth(up: Vector) -> tuple[bool, int, float]:
         normal = up.cross(Z)

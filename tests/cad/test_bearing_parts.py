@@ -16,7 +16,7 @@ from cad.regenerate import as_text, regenerate
 from templates.core.errors import InvalidInputs
 from templates.core.language.spec import Choice, Derived
 
-NEW = [("thrust_washer", 2), ("flanged_bush", 1)]
+NEW = [("thrust_washer", 2), ("flanged_bush", 1), ("plain_bearing", 2)]
 NONE_BY_DEFAULT = {
     "oil_grooves": (1, 7), "pin_hole_diameter": (0.02, 0.3), "lug_width": (0.02, 0.6),
     "oil_hole_diameter": (0.02, 0.3), "oil_groove_width": (0.02, 0.4), "oil_groove_depth": (0.005, 0.1),
@@ -24,8 +24,9 @@ NONE_BY_DEFAULT = {
 }  # fmt: skip
 """Sizes of what there is none of by default, as shares of the required diameter; a count as it is."""
 LIMITS = {  # what a random set must reach: the least share of 300 that makes a solid
-    "thrust_washer": 0.3,
+    "thrust_washer": 0.15,
     "flanged_bush": 0.3,
+    "plain_bearing": 0.1,
 }
 HOSTILE_VALUES = (math.nan, math.inf, -math.inf, -1.0, -1e-3, 0.0, 1e-12, 1e-9, 1e-7, 1e-6, 1e9, 1e300)
 BAD = (*HOSTILE_VALUES[:5], 1e9, 1e300)
@@ -53,6 +54,8 @@ def sample(cls: type[CadModel], rng: np.random.Generator) -> dict[str, Any]:
             value = default * 2 ** rng.uniform(-1.5, 1.5)
         if default and declared.meaning.domain_si.ge == 0 and rng.random() < 0.2:
             value = 0.0
+        if whole or declared.meaning.unit == "deg":
+            value = min(value, declared.meaning.domain_si.le)
         chosen[name] = float(round(value)) if whole else value
     return chosen
 

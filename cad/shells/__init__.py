@@ -1,0 +1,1 @@
+"""Half shells of thin-walled plain bearings: what is drawn, its volume, and how it is read back."""

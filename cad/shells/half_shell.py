@@ -1,0 +1,260 @@
+"""One half shell of steel with its lining, drawn about z with its crown at +y, and its volumes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, degrees, pi, sin, sqrt
+
+from cadquery import Edge, Location, Shape, Solid, Vector
+from cadquery.func import cut, extrude, face, fuse, polyline, segment, wire
+from scipy.integrate import quad
+
+from cad.shells.relief import Relief
+from cad.turned import Point, area, drill, drilled_volume, outline, sheet_under_arc, turned, turned_volume
+
+_BEYOND = 10.0  # [deg] by which what cuts a groove from joint to joint passes the joints
+
+
+@dataclass(frozen=True)
+class Groove:
+    """An oil groove round the bore [mm]."""
+
+    bottom: float  # radius
+    half_width: float
+    turn: float  # [rad] about the crown
+    is_whole: bool  # from joint to joint
+
+
+@dataclass(frozen=True)
+class Tang:
+    """The locating lip at the back, beside the joint on the side +x [mm]."""
+
+    width: float
+    length: float
+    height: float
+    z: float
+
+
+@dataclass(frozen=True)
+class Flange:
+    """Collars at one end (+z) or at both [mm]."""
+
+    radius: float
+    thickness: float
+    count: int
+
+
+@dataclass(frozen=True)
+class HalfShell:
+    """What is drawn [mm]: radii about z; the joint is at y = -crush, the wall goes on straight so far."""
+
+    bore: float
+    lining: float  # radius of the back of the lining
+    outside: float
+    half_width: float
+    inner_chamfer: float
+    outer_chamfer: float
+    crush: float
+    relief: Relief | None
+    groove: Groove | None
+    hole: float
+    tang: Tang | None
+    flange: Flange | None
+
+    @property
+    def is_split(self) -> bool:
+        """Whether the groove parts the lining in two rings."""
+        return bool(self.groove and self.groove.is_whole and self.groove.bottom > self.lining)
+
+    def back_section(self) -> list[Point]:
+        """The steel back as a closed line through (r, z), without a groove."""
+        return outline(*self._back_ends())
+
+    def _back_ends(self, *groove: Point) -> list[Point]:
+        b, edge = self.half_width, max(self.bore + self.inner_chamfer - self.lining, 0.0)
+        flanges = self.flange.count if self.flange else 0
+        low, high = self._end(flanges == 2), self._end(flanges >= 1)
+        ends = [(r, -b + up) for r, up in low] + [(r, b - up) for r, up in reversed(high)]
+        inside = self.lining
+        return [
+            (inside, edge - b),
+            (inside + edge, -b),
+            *ends,
+            (inside + edge, b),
+            (inside, b - edge),
+            *groove,
+        ]
+
+    def _end(self, has_flange: bool) -> list[Point]:
+        """Corners of one end of the back, as radius and distance from that end."""
+        if has_flange and self.flange:
+            collar = self.flange
+            return [(collar.radius, 0.0), (collar.radius, collar.thickness), (self.outside, collar.thickness)]
+        return [(self.outside - self.outer_chamfer, 0.0), (self.outside, self.outer_chamfer)]
+
+    def back_joint(self) -> list[Point]:
+        """The back at its joint: its section, less a groove that goes so far."""
+        return outline(*self._back_ends(*self._notch(self.lining, self.outside)))
+
+    def lining_joint(self) -> list[Point]:
+        """The lining at its joint; if the groove parts it, that piece on the side +z."""
+        b, c, s = self.half_width, self.inner_chamfer, self.lining
+        inside = self.bore + (self.relief.depth if self.relief else 0.0)
+        up = [(s, max(self.bore + c - s, 0.0)), (min(self.bore + c, s), max(self.bore + c - s, 0.0))]
+        up.append((inside, max(self.bore + c - inside, 0.0)))
+        if c == 0:
+            up = [(s, 0.0), (inside, 0.0)]
+        high = [(r, b - down) for r, down in up]
+        if self.is_split and self.groove:
+            w = self.groove.half_width
+            return outline((inside, w), (s, w), *high)
+        low = [(r, down - b) for r, down in reversed(up)]
+        return outline(*low, *high, *self._notch(inside, s))
+
+    def _notch(self, inside: float, outside: float) -> list[Point]:
+        """Corners of a groove that goes from joint to joint, at its height above the inside."""
+        groove = self.groove
+        if groove is None or not groove.is_whole or groove.bottom <= inside or groove.bottom >= outside:
+            return []
+        w = groove.half_width
+        return [(inside, w), (groove.bottom, w), (groove.bottom, -w), (inside, -w)]
+
+    def back(self) -> Shape:
+        """The steel: the section turned, with legs and lip, less groove and hole."""
+        body = turned(self.back_section(), 0.0, 180.0)
+        if self.groove and self.groove.bottom > self.lining:
+            body = cut(body, self._ring(self.groove))
+        if self.hole > 0:
+            body = cut(body, drill(self.hole, self.outside))
+        body = self._with_legs(body, self.back_joint())
+        return fuse(body, self._lip(self.tang)) if self.tang else body
+
+    def _with_legs(self, body: Shape, joint: list[Point]) -> Shape:
+        """With the crush height below both joints."""
+        if self.crush == 0:
+            return body
+        for side in (1, -1):
+            foot = face(polyline(*(Vector(side * r, 0.0, z) for r, z in joint)))
+            body = fuse(body, extrude(foot, (0, -self.crush, 0)))
+        return body
+
+    def _lip(self, tang: Tang) -> Shape:
+        """A box that grows out of the back."""
+        foot = sqrt(self.outside**2 - tang.length**2) - 0.1 * (self.outside - self.lining)
+        return Solid.makeBox(
+            self.outside + tang.height - foot, tang.length + self.crush, tang.width,
+            Vector(foot, -self.crush, tang.z - tang.width / 2),
+        )  # fmt: skip
+
+    def _ring(self, groove: Groove) -> Shape:
+        """What the groove takes, from within the bore on."""
+        w, low = groove.half_width, 0.9 * self.bore
+        section = outline((low, -w), (groove.bottom, -w), (groove.bottom, w), (low, w))
+        turn = 180.0 + 2 * _BEYOND if groove.is_whole else degrees(groove.turn)
+        return turned(section, 90 - turn / 2, turn)
+
+    def lining_piece(self) -> Shape:
+        """The lining, or that half of it on the side +z if the groove parts it; see `lining_places`."""
+        low = self.groove.half_width if self.is_split and self.groove else -self.half_width
+        body: Shape = extrude(self._lining_face(low), (0, 0, self.half_width - low))
+        if self.inner_chamfer > 0:
+            for side in (1,) if self.is_split else (1, -1):
+                body = cut(body, self._cone(side))
+        if self.groove and not self.is_split:
+            body = cut(body, self._ring(self.groove))
+        if self.hole > 0:
+            body = cut(body, drill(self.hole, self.outside))
+        return self._with_legs(body, self.lining_joint())
+
+    def _cone(self, side: int) -> Shape:
+        """What the chamfer of the bore takes at one end, with room inside and beyond."""
+        c, b, r = self.inner_chamfer, self.half_width, self.bore
+        over, inside = 0.5 * c, 0.1 * r
+        section = outline(
+            (r - inside, side * (b - c - inside)), (r + c + over, side * (b + over)),
+            (r - inside, side * (b + over)),
+        )  # fmt: skip
+        return turned(section, -_BEYOND, 180.0 + 2 * _BEYOND)
+
+    def _lining_face(self, z: float) -> Shape:
+        """The lining across the shaft, with both reliefs."""
+        edges = [self._arc(self.lining, 0.0, pi, z)]
+        deep, inner = self.bore, [self._arc(self.bore, 0.0, pi, z)]
+        if self.relief:
+            deep, angle = self.bore + self.relief.depth, self.relief.angle
+            inner = [
+                self._arc(self.bore, angle, pi - angle, z),
+                *(self._relief_arc(self.relief, joint, sign, z) for joint, sign in ((0.0, 1), (pi, -1))),
+            ]
+        edges += [segment(Vector(s * deep, 0, z), Vector(s * self.lining, 0, z)) for s in (1, -1)]
+        return face(wire(*edges, *inner))
+
+    def _relief_arc(self, relief: Relief, joint: float, sign: int, z: float) -> Shape:
+        return Edge.makeThreePointArc(*(self._at(r, joint + sign * angle, z) for r, angle in relief.arc()))
+
+    def _arc(self, radius: float, low: float, high: float, z: float) -> Shape:
+        return Edge.makeThreePointArc(*(self._at(radius, a, z) for a in (low, (low + high) / 2, high)))
+
+    def _at(self, radius: float, angle: float, z: float) -> Vector:
+        if angle in (0.0, pi):
+            return Vector(radius if angle == 0 else -radius, 0, z)
+        return Vector(radius * cos(angle), radius * sin(angle), z)
+
+    def lining_places(self) -> tuple[Location, ...]:
+        """Where the lining is: once, or on both sides of the groove."""
+        other = Location(Vector(0, 0, 0), Vector(0, 1, 0), 180)
+        return (Location(), other) if self.is_split else (Location(),)
+
+    def back_volume(self) -> float:
+        """The turned section, legs and lip, less groove and hole [mm³]."""
+        volume = turned_volume(self.back_section(), 180.0) + 2 * area(self.back_joint()) * self.crush
+        if self.tang:
+            reach, length = self.outside + self.tang.height, self.tang.length
+            lip = reach * length - sheet_under_arc(self.outside, length) / 2
+            volume += (lip + self.tang.height * self.crush) * self.tang.width
+        taken = self._groove_between(self.lining, self.outside) + self._hole(self.lining, self.outside)
+        return volume - taken
+
+    def lining_volume(self) -> float:
+        """All of the lining, in one piece or two [mm³]."""
+        r, s = self.bore, self.lining
+        volume = (s * s - r * r) * pi * self.half_width
+        volume += 2 * area(self.lining_joint()) * self.crush * (2 if self.is_split else 1)
+        volume -= self._groove_between(r, s) + self._hole(r, s) + 2 * self._chamfer()
+        if self.relief:
+            whole = self.groove and self.groove.is_whole
+            width = 2 * self.half_width - (2 * self.groove.half_width if whole and self.groove else 0.0)
+            volume -= 2 * self.relief.area() * width - 4 * self._relief_in_chamfer(self.relief)
+        return volume
+
+    def _groove_between(self, inside: float, outside: float) -> float:
+        if self.groove is None or self.groove.bottom <= inside:
+            return 0.0
+        turn = pi if self.groove.is_whole else self.groove.turn
+        return (min(self.groove.bottom, outside) ** 2 - inside**2) * self.groove.half_width * turn
+
+    def _hole(self, inside: float, outside: float) -> float:
+        if self.groove is None or self.groove.bottom <= inside:
+            return drilled_volume(self.hole, outside, inside)
+        bottom = min(self.groove.bottom, outside)
+        return drilled_volume(self.hole, outside, inside, bottom, self.groove.half_width)
+
+    def _chamfer(self) -> float:
+        """What the chamfer of the bore takes of the lining at one end [mm³]."""
+        c, r = self.inner_chamfer, self.bore
+        if c == 0:
+            return 0.0
+        reach = min(c, self.lining - r)
+        section = outline((r, 0.0), (r, c), (r + reach, c - reach), (r + reach, 0.0))
+        return turned_volume(section, 180.0)
+
+    def _relief_in_chamfer(self, relief: Relief) -> float:
+        """What one chamfer and one relief both take [mm³]."""
+        c, r = self.inner_chamfer, self.bore
+        if c == 0:
+            return 0.0
+
+        def ring(s: float) -> float:
+            return s * relief.angle_at(s) * (c - (s - r))
+
+        return float(quad(ring, r, r + min(c, relief.depth), epsabs=0, epsrel=1e-10)[0])

@@ -1,0 +1,62 @@
+"""Joint relief: beside its joint the bore is a circle about an axis a little aside, so it opens gradually.
+
+The circle meets the joint at the bore's radius and the depth of the relief, and the bore at the relief's
+height above the joint. Its axis lies on the plane of the joint.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import acos, asin, atan2, cos, sin, sqrt
+
+from cad.turned import sheet_under_arc
+
+
+@dataclass(frozen=True)
+class Relief:
+    """Sizes [mm]: radius of the bore, height above the joint, depth at the joint."""
+
+    bore: float
+    height: float
+    depth: float
+
+    @property
+    def angle(self) -> float:
+        """From the joint to the end of the relief [rad]."""
+        return asin(self.height / self.bore)
+
+    @property
+    def axis(self) -> float:
+        """How far the axis lies from the bore's, towards the joint."""
+        fall = self.height**2 / (self.bore + sqrt(self.bore**2 - self.height**2))  # of the bore's arc
+        return self.depth * (2 * self.bore + self.depth) / (2 * (self.depth + fall))
+
+    @property
+    def radius(self) -> float:
+        """Of the circle."""
+        return self.bore + self.depth - self.axis
+
+    def arc(self) -> list[tuple[float, float]]:
+        """Beginning, middle and end of the arc, as radius and angle [rad] from the joint about the bore."""
+        foot = sqrt(self.bore**2 - self.height**2)
+        half = atan2(self.height, foot - self.axis) / 2
+        x, y = self.axis + self.radius * cos(half), self.radius * sin(half)
+        return [(self.bore + self.depth, 0.0), (sqrt(x * x + y * y), atan2(y, x)), (self.bore, self.angle)]
+
+    def area(self) -> float:
+        """What it takes of the wall across the shaft [mm²]."""
+        circle, bore = (sheet_under_arc(r, self.height) / 2 for r in (self.radius, self.bore))
+        return self.axis * self.height + circle - bore
+
+    def angle_at(self, radius: float) -> float:
+        """The angle [rad] from the joint about the bore at which the arc is at a radius."""
+        c, rho = self.axis, self.radius
+        cosine = ((radius - rho) * (radius + rho) + c * c) / (2 * radius * c)
+        return acos(min(1.0, max(-1.0, cosine)))
+
+
+def read_relief(bore: float, axis: float, radius: float) -> tuple[float, float]:
+    """Height and depth [mm] of a relief from the radius of the bore, and axis and radius of its circle."""
+    depth = axis + radius - bore
+    fall = depth * (2 * bore + depth) / (2 * axis) - depth  # inverts `Relief.axis`
+    return sqrt(fall * (2 * bore - fall)), depth
