@@ -6,6 +6,8 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from math import acos, degrees, hypot, isclose
 
+from cadquery import Vector
+
 from cad.drafting.measures import Measure, Sort
 from cad.drafting.views import View
 from cad.inspect import look_at
@@ -18,11 +20,8 @@ _CLEAR = 1e-6  # [mm]
 def standing(bodies: Sequence[Body], section: View, end: View) -> list[Measure]:
     """Every such size that the views show."""
     seen = look_at(bodies).values()
-    beside = [
-        measure
-        for one in seen
-        for measure in (*of_circles(one, end), *of_levels(one, end), *of_arms(one, end))
-    ]
+    kinds = (of_circles, of_levels, of_arms, of_uprights)
+    beside = [measure for one in seen for kind in kinds for measure in kind(one, end)]
     return [*beside, *of_walls(list(seen), section), *of_bevels(section)]
 
 
@@ -49,7 +48,7 @@ def of_walls(parts: Sequence[Seen], section: View) -> Iterator[Measure]:
 
 
 def of_arms(seen: Seen, end: View) -> Iterator[Measure]:
-    """Angles at the shaft between upright planes through it, on the side of the crown, as ends of a groove."""
+    """Angles at the shaft between planes through it, on the side of the crown, as of the ends of a groove."""
     arms = []
     for plane in seen.planes:
         if plane.holds(Z) and not plane.along(Y):
@@ -61,6 +60,22 @@ def of_arms(seen: Seen, end: View) -> Iterator[Measure]:
         if angle > _CLEAR:
             points = [(reach * x, reach * y) for x, y in (one, other)]
             yield Measure("angle", angle, "end", "angle", ((0.0, 0.0), *points))
+
+
+def of_uprights(seen: Seen, end: View) -> Iterator[Measure]:
+    """Holes along y: their diameter, their depth, and how far apart their axes are."""
+    feet = []
+    for hole in (cylinder.turned(Y) for cylinder in seen.cylinders if cylinder.along(Y)):
+        x, (low, high) = hole.point.x, hole.reach
+        left, right = (end.frame.flat(Vector(x + side * hole.diameter / 2, high, 0)) for side in (-1, 1))
+        foot = end.frame.flat(Vector(x, low, 0))
+        if end.frame.flat(Y)[1] == 1:
+            yield Measure("diameter", hole.diameter, "end", "across", (left, right))
+            yield Measure("length", high - low, "end", "up", ((right[0], foot[1]), right))
+            feet.append(foot)
+    for one, other in combinations(feet, 2):
+        if abs(one[0] - other[0]) > _CLEAR:
+            yield Measure("width", abs(one[0] - other[0]), "end", "across", (one, other))
 
 
 def of_levels(seen: Seen, end: View) -> Iterator[Measure]:

@@ -32,7 +32,7 @@ WHOLE = 3.14159  # rad; a groove of so much goes from joint to joint
 
 
 @units("m", "1", returns="1")
-def drawable(length: Array, least: Array) -> Truth:
+def drawable(length: Array, least: float) -> Truth:
     """Whether a length [m] is none, or one that the kernel can tell from none, `least` in micrometres."""
     return (length <= 0) | (length >= 1e-6 * least)
 
@@ -76,7 +76,7 @@ class PlainBearing(CadModel):
         "wall": "2.4 mm",
         "width": "24 mm",
         "shells": "upper",
-        "lining_thickness": "0.3 mm",
+        "lining_thickness": "0.6 mm",
         "oil_hole_diameter": "4 mm",
         "oil_groove_width": "5 mm",
         "oil_groove_depth": "0.8 mm",
