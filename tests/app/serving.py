@@ -18,6 +18,7 @@ import uvicorn
 from components import ON_POSTGRESQL, shared
 from forked import Forked
 from patience import GLANCE, patient, until
+from unsynced import spare_the_disk
 
 from app import main
 from app.client import Client
@@ -26,6 +27,7 @@ from app.main import create_app
 from app.server import configuration
 from app.settings import Settings
 
+spare_the_disk()
 API = "/api/v1"
 PATIENCE = patient(60.0)  # for a server to start [s]; importing the geometry kernel takes some of it
 HANG = patient(5.0)  # an answer that takes longer hangs [s]

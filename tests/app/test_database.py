@@ -14,7 +14,9 @@ import pytest
 from patience import patient, until
 from sqlalchemy import delete, event, func, select
 from sqlalchemy.exc import IntegrityError, OperationalError
+from unsynced import DURABLE
 
+from app.storage import engines
 from app.storage.database import Database
 from app.storage.errors import CommitFailed, DatabaseClosed
 from app.storage.identity import new_id, now
@@ -200,13 +202,17 @@ def test_closing_commits_what_waits(url, tmp_path):
     reopened.close()
 
 
-def test_the_writer_syncs_every_commit_and_keeps_foreign_keys(database):
+def test_the_writer_syncs_every_commit_and_keeps_foreign_keys(url, monkeypatch):
+    monkeypatch.setattr(engines, "_WRITER", DURABLE)
+    database = Database(url)
+
     def pragmas(session):
         connection = session.connection()
         names = ("journal_mode", "synchronous", "foreign_keys")
         return [connection.exec_driver_sql(f"PRAGMA {name}").scalar() for name in names]
 
     assert database.write(pragmas) == ["wal", 2, 1]  # 2 is FULL: a power cut cannot be tried here
+    database.close()
 
 
 def test_identities_grow_whatever_the_clock_says(database, monkeypatch):
