@@ -56,7 +56,9 @@ ABOUT = {
     "tests/app/test_slow_clients.py": ("app/server.py", "app/api/gate/*.py"),
     "tests/app/test_solve_design.py": ("app/designs/*.py", "templates/core/language/*.py"),
     "tests/app/test_study_heals.py": ("app/studies/*.py", "app/*maintenance/*.py"),
+    "tests/app/test_study_parts.py": ("app/studies/*.py",),
     "tests/app/test_study_solids.py": ("app/studies/*.py", "app/solids/*.py"),
+    "tests/app/test_tolerances.py": ("app/tolerances/*.py", "app/reports/*.py"),
     "tests/app/test_tolerance_analysis.py": ("app/tolerances/*.py",),
     "tests/app/test_turns.py": ("app/*jobs/*.py",),
     "tests/app/calculations/test_calculations_as_jobs.py": (

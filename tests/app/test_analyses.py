@@ -235,6 +235,7 @@ class TestFoundAgain:
         assert more["outputs"].keys() == {"stiffness", "torsional_frequency"}
         assert http.get(f"{API}/analyses/{first['id']}").json() == more
 
+    @pytest.mark.slow
     def test_respond_async(self, http):
         new = bar(22)
         answer = ask(http, new, prefer="respond-async", outputs=["stiffness"])

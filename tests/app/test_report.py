@@ -138,6 +138,7 @@ class TestContents:
             assert link.startswith("/"), link
             assert http.get(link).status_code == 200, link
 
+    @pytest.mark.slow
     def test_us_units(self, http, bearing):
         text, _ = on_paper(http, bearing, units="us")
         assert "US customary" in text

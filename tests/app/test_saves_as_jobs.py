@@ -246,6 +246,7 @@ def test_a_save_that_is_repeated_is_the_same_job(http, log):
     assert len(begun(log)) == 1
 
 
+@pytest.mark.slow
 def test_a_preview_that_takes_long_goes_on_as_a_job(http, log):
     place = f"{DESIGNS}/{saved(http)['id']}"
     before = http.get(place).json()

@@ -138,6 +138,7 @@ def test_every_faulty_cell_of_a_file_is_named_at_once():
     assert faults_of(b"clearance\n1\n", "csv") == {"row 1, column clearance": "missing_unit"}
 
 
+@pytest.mark.slow
 def test_faults_that_are_not_listed_are_counted():
     rows = "".join("x\n" for _ in range(99_999))
     with pytest.raises(InvalidInputs) as refused:

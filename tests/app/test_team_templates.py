@@ -230,6 +230,7 @@ class TestReload:
         shown = http.get(sheet).json()["steps"]["twice"]
         assert (shown["outputs"]["twice_the_length"]["value"], shown["formulas"]) == (8, [])
 
+    @pytest.mark.slow
     def test_a_running_calculation_ends_with_the_code_it_began_with(self, http, own, tmp_path, monkeypatch):
         log = tmp_path / "log"
         monkeypatch.setenv("SLEEPER_LOG", str(log))
@@ -259,6 +260,7 @@ class TestReload:
         assert answers[0] != os.getpid()
         assert process("1 ms") == -1, "a process that calculated by the old file calculates by the new one"
 
+    @pytest.mark.slow
     def test_an_edited_model_makes_another_build(self, http, own):
         parameters = {"parameters": {"size": "7 mm"}}
         build = f"{API}/models/moody/versions/1/build"

@@ -43,6 +43,7 @@ def test_a_preview_warns(http, design):
     assert set(unused(shown["warnings"])) == wanted
 
 
+@pytest.mark.slow
 def test_a_report_says_so(http, design):
     text = http.get(f"{API}/designs/{design['id']}/report.html", headers={"Prefer": "wait=60"}).text
     assert "Note on model.width: its tolerance is kept" in text

@@ -142,6 +142,7 @@ time.sleep(60)
 """
 
 
+@pytest.mark.slow
 def test_a_killed_server_leaves_no_orphans(tmp_path):
     file = tmp_path / "pids"
     command = [sys.executable, "-c", SERVER, str(Path(__file__).parent), str(file)]

@@ -143,7 +143,7 @@ class TestHealing:
 
 
 class TestOutage:
-    @pytest.mark.parametrize("fault", ["breaks", "silent"])
+    @pytest.mark.parametrize("fault", ["breaks", pytest.param("silent", marks=pytest.mark.slow)])
     def test_copies_are_served_and_the_rest_is_unavailable(self, servers, design, cutter, fault):
         one, sha = servers[0], step_of(servers[0], design)
         assert one.get(f"{API}/artifacts/{sha}").status_code == 200

@@ -122,6 +122,7 @@ def test_the_browser_makes_the_same_patch_as_the_server(watched):
         assert watched.page.evaluate(script, [typed, ["model"]]) == patch_of(design, {**typed, "was": was})
 
 
+@pytest.mark.slow
 def test_a_fault_is_a_link_to_its_field(watched, http):
     watched.open(from_example(http, "oil_film/1"))
     page = watched.page

@@ -12,6 +12,7 @@ CYCLE = "crank angle;Fx;load y\ndeg;kN;kN\n" + "".join(
 )
 
 
+@pytest.mark.slow
 def test_a_pasted_table_fills_the_curves_of_a_template(watched, tmp_path):
     page = watched.page
     watched.open("/templates/oil_film_cycle/1")
@@ -178,6 +179,7 @@ def test_a_form_that_is_wrong_says_so_and_saves_nothing(http, throw, typed):
     assert http.get(f"{API}{throw}").json()["revision"] == 1
 
 
+@pytest.mark.slow
 def test_a_refused_analysis_keeps_what_was_typed_with_the_fault_beside_it(watched, http, throw):
     page = watched.page
     watched.open(throw)

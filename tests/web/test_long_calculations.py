@@ -52,6 +52,7 @@ def test_who_types_something_else_stops_it(watched, served):
     assert eventually(lambda: served.app.state.services.calculations.running == 0)
 
 
+@pytest.mark.slow
 def test_who_leaves_the_page_stops_it(watched, served):
     watched.open(PLACE)
     progress, _ = parts(watched)

@@ -120,6 +120,7 @@ def test_a_slow_preview_can_be_cancelled(watched, served, place):
     idle(served)
 
 
+@pytest.mark.slow
 def test_who_opens_the_page_meanwhile_sees_the_progress_and_then_the_results(watched, place, http, alarm):
     saved_slowly(http, place, "60.7 s")
     watched.open(place)

@@ -86,6 +86,7 @@ def test_no_list_appears_where_no_name_may_stand(opened):
     expect(opened.locator(LIST)).to_be_hidden()
 
 
+@pytest.mark.slow
 def test_the_picker_shows_values_by_block_and_inserts_at_the_caret(opened):
     bore = field(opened, "model.inner_diameter")
     bore.fill("48 mm")
@@ -129,6 +130,7 @@ def test_values_of_the_picker_are_those_of_the_last_preview(opened):
     expect(opened.locator("[data-pick='model.low_x']")).to_contain_text(re.compile(r"−45(\.\d+)? mm"))
 
 
+@pytest.mark.slow
 def test_the_drawing_links_to_steps_and_says_the_same_as_a_list(opened):
     panel = opened.locator("[data-drives]")
     assert panel.get_attribute("open") is None

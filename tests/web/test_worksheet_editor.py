@@ -153,6 +153,7 @@ def test_somebody_elses_text_is_shown_and_nothing_is_lost(watched, http, choice)
     assert [fault for fault in watched.faults() if "412" not in str(fault)] == []
 
 
+@pytest.mark.slow
 def test_the_next_version_is_held_against_the_released_one(watched, http):
     place = stored(http, "versioned", author="One")
     api = f"/api/v1{place}"

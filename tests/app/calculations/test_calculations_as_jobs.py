@@ -36,6 +36,7 @@ def test_what_takes_long_goes_on_as_a_job(http, log):
     assert without_time(answer.json()).keys() == without_time(sleep(http).json()).keys()
 
 
+@pytest.mark.slow
 def test_the_client_follows_what_takes_long(server, log):
     with Client(server.url) as client:
         answer = client.evaluate("sleeper", 1, {"duration": "3 s"})
