@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from cad.catalogue import models
-from cad.drafting.paper import as_pdf
 from cad.errors import GeometryError
 from cad.export import derive
 from cad.model import CadModel
@@ -23,6 +22,8 @@ from templates.core.errors import TemplateError
 from templates.core.units.units import unit
 
 FOLDER = Path("docs/drawings")
+PAGE = Path("docs/drawings.md")
+_GALLERY = "All lengths of the example times 0.25, 1 and 4.\n"
 SIZES = (0.25, 1.0, 4.0)
 """Factors of all lengths of a model's example."""
 
@@ -51,7 +52,7 @@ def sized(model: type[CadModel], factor: float) -> Build:
 
 
 def main(names: list[str]) -> None:
-    """Write the drawings, and one of them as PDF."""
+    """Write the drawings, and the page that shows them."""
     FOLDER.mkdir(exist_ok=True)
     for model in latest():
         if names and f"{model.id}_v{model.version}" not in names:
@@ -66,8 +67,14 @@ def main(names: list[str]) -> None:
             svg = derive(step, "drawing.svg")
             (FOLDER / f"{name}.svg").write_bytes(svg)
             print(f"{name}.svg: {len(svg) / 1000:.0f} kB")
-            if model.id == "plain_bearing" and factor == 1:
-                (FOLDER / f"{name}.pdf").write_bytes(as_pdf(svg))
+    _write_gallery()
+
+
+def _write_gallery() -> None:
+    """The pictures at the end of the page."""
+    head, mark, _ = PAGE.read_text(encoding="utf-8").partition(_GALLERY)
+    lines = [f"![{picture.stem}](drawings/{picture.name})\n" for picture in sorted(FOLDER.glob("*.svg"))]
+    PAGE.write_text(head + mark + "\n" + "\n".join(lines), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -81,7 +81,7 @@ class Curve:
 
 def curves_of(compounds: Iterable[Any], scale: float) -> list[Curve]:
     """The edges of projections, their sizes multiplied by a scale."""
-    found = []
+    curves = []
     for compound in compounds:
         if compound is None or compound.IsNull():
             continue
@@ -89,8 +89,8 @@ def curves_of(compounds: Iterable[Any], scale: float) -> list[Curve]:
         for edge in Shape.cast(compound).Edges():
             size = BoundBox._fromTopoDS(edge.wrapped, None, False).DiagonalLength
             if size > _POINT:  # what is seen end on is a point
-                found.append(_scaled(curve_of(edge._geomAdaptor(), size), scale))
-    return found
+                curves.append(_scaled(curve_of(edge._geomAdaptor(), size), scale))
+    return curves
 
 
 def curve_of(adaptor: Any, size: float) -> Curve:

@@ -12,6 +12,7 @@ from cadquery import Vector
 from cad.drafting.curves import Point
 from cad.drafting.lettering import width_of
 from cad.drafting.page import Page
+from cad.drafting.placing import Placed
 from cad.drafting.plan import Plan
 from cad.drafting.room import Room
 from cad.drafting.symbols import arrow
@@ -53,6 +54,15 @@ def centre_lines(section: View, end: View, bodies: Sequence[Body], plan: Plan) -
     pitch, of_end = _pitched(end, plan, over)
     moved = [(_right(a, plan.beside), _right(b, plan.beside)) for a, b in (*shaft[1:], *_distinct(of_end))]
     return Centres([shaft[0], *axes, *crosses, *moved], [((plan.beside, 0.0), radius) for radius in pitch])
+
+
+def pitch_circles(placed: Sequence[Placed]) -> list[tuple[Point, float]]:
+    """Circles about the shaft on which holes lie and that a dimension gives."""
+    return [
+        ((one.right, 0.0), one.dimension.measure.value / 2)
+        for one in placed
+        if one.dimension.measure.form == "circle" and one.dimension.measure.points[0] == (0.0, 0.0)
+    ]
 
 
 def _axes(view: View, bodies: Sequence[Body], over: float) -> Iterator[Segment]:

@@ -16,7 +16,7 @@ from ezdxf.document import Drawing
 
 from cad.drafting.controls import Controls
 from cad.drafting.declared import Declared
-from cad.drafting.marks import Centres, centre_lines, cutting_line, section_label
+from cad.drafting.marks import Centres, centre_lines, cutting_line, pitch_circles, section_label
 from cad.drafting.matching import matched, references
 from cad.drafting.measures import measures
 from cad.drafting.page import Page, document_of
@@ -98,7 +98,7 @@ def _fill(
 ) -> None:
     page.view(section, 0.0)
     page.view(end, page.plan.beside)
-    page.centres(centres.lines, centres.circles)
+    page.centres(centres.lines, [*centres.circles, *pitch_circles(placed)])
     for dimension in placed:
         page.dimension(dimension)
 

@@ -79,7 +79,7 @@ class Ink:
         return (point[0] - self.left) * self.scale, SHEET[1] - (point[1] - self.low) * self.scale
 
     def of(self, entity: Any, layer: str) -> str:
-        """An entity, or what it is made of."""
+        """An entity, or its parts."""
         match entity.dxftype():
             case "DIMENSION" | "INSERT":
                 return "".join(self.of(part, layer) for part in entity.virtual_entities())

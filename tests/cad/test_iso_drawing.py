@@ -258,6 +258,6 @@ def test_curves_join_and_give_way() -> None:
         [(5.0, 0.0), (10.0, 0.0)],
     ]
     points: Sequence[tuple[float, float]] = [(cos(t / 10), sin(t / 10)) for t in range(12)]
-    found = recognised([*points]).arc
-    assert found is not None
-    assert (found.radius, found.turn) == pytest.approx((1.0, 63.025), abs=1e-2)
+    arc = recognised([*points]).arc
+    assert arc is not None
+    assert (arc.radius, arc.turn) == pytest.approx((1.0, 63.025), abs=1e-2)

@@ -91,14 +91,16 @@ class FileRequest:
         prefer = self.prefer or PATIENCE
         if wanted not in MEDIA_TYPES:
             raise NotFound(f"there is no model.{wanted[:20]}; there are {', '.join(MEDIA_TYPES)}")
-        made = PRINTED.get(wanted, wanted)
-        key, stamp, old = await run_in_threadpool(self._lookup, find, made)
+        stored_kind = PRINTED.get(wanted, wanted)
+        key, stamp, old = await run_in_threadpool(self._lookup, find, stored_kind)
         answer = await lost(old.sha256, self.healing, self.jobs, prefer) if old else None
-        if answer is None and (old is None or await run_in_threadpool(_is_outdated, self.models, key, made)):
-            answer = await self._unless_ready(key, made, prefer, has_older=bool(old))
+        if answer is None and (
+            old is None or await run_in_threadpool(_is_outdated, self.models, key, stored_kind)
+        ):
+            answer = await self._unless_ready(key, stored_kind, prefer, has_older=bool(old))
         if answer:
             return answer
-        file = await run_in_threadpool(lambda: self.models.file(key, made))
+        file = await run_in_threadpool(lambda: self.models.file(key, stored_kind))
         assert file is not None, "a job that has done its work left its file"
         return await run_in_threadpool(self._sent, file, stamp, wanted)
 
@@ -121,12 +123,12 @@ class FileRequest:
 
     def _sent(self, file: File, stamp: Stamp, kind: str) -> Response:
         """A file under its name, or 304; with its stamp, if it is of a kind that has one."""
-        name, wide_name = f"{stamp.stem}.{kind}", f"{stamp.wide_stem}.{kind}"
+        plain, wide = f"{stamp.stem}.{kind}", f"{stamp.wide_stem}.{kind}"
         headers = {
             "Design-Revision": str(stamp.revision),
             "Vary": "Accept",
             "Cache-Control": "no-cache",
-            "Content-Disposition": disposition(name, wide_name),
+            "Content-Disposition": disposition(plain, wide),
         }
         content = stamped(self.store.read(file.sha256), file.kind, stamp) if file.kind in STAMPED else None
         if content is not None and kind in PRINTED:
