@@ -9,6 +9,7 @@ from app.identity.acting import BUILT_IN, acting
 from app.storage.errors import NotFound
 from app.storage.identity import now
 from app.storage.tables import BroughtModelRow as Row
+from app.storage.upserts import insert_new
 from cad.brought import Description
 
 
@@ -41,20 +42,23 @@ def add(session: Session, id: str, described: Description, sent: str) -> int:
     for row in rows:
         if row.description == described.text:
             return row.number
-    number, who = (rows[-1].number if rows else 0) + 1, acting()
-    author, principal = (None, None) if who.id in BUILT_IN else (who.name, who.id)
-    session.add(
-        Row(
-            id=id,
-            number=number,
-            program=described.program,
-            description=described.text,
-            file_sha256=described.file,
-            sent_sha256=sent,
-            author=author,
-            author_principal=principal,
-            created=now(),
-        )
-    )
-    session.flush()
+    number = (rows[-1].number if rows else 0) + 1
+    while not insert_new(session, _row(id, number, described, sent)):
+        number += 1  # another server was quicker
     return number
+
+
+def _row(id: str, number: int, described: Description, sent: str) -> Row:
+    who = acting()
+    author, principal = (None, None) if who.id in BUILT_IN else (who.name, who.id)
+    return Row(
+        id=id,
+        number=number,
+        program=described.program,
+        description=described.text,
+        file_sha256=described.file,
+        sent_sha256=sent,
+        author=author,
+        author_principal=principal,
+        created=now(),
+    )

@@ -31,7 +31,7 @@ import time
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-UNITS = {"Length": "mm", "Angle": "deg", "": "1"}
+UNITS = {"Length": "mm", "Angle": "deg"}
 LENGTHS = ("Distance", "DistanceX", "DistanceY", "Radius", "Diameter")
 CELL = re.compile(r"[A-Z]{1,2}[1-9][0-9]*")
 MOST_PARAMETERS = 100
@@ -164,15 +164,16 @@ class Refused(Exception):
 def quantity_of(app: Any, text: str) -> Any:
     """A cell's content as a constant, or None if it is a formula or words."""
     try:
-        return app.Units.Quantity(text.lstrip("=").strip())
+        return app.Units.Quantity(text.lstrip("=").strip()) if text.strip("= ") else None
     except Exception:
         return None
 
 
 def unit_of(quantity: Any) -> str | None:
     """The unit in which a quantity is offered, or None for kinds that are not."""
-    kind = quantity.Unit.Type if str(quantity.Unit) not in ("", "Unit: ") and quantity.Unit.Type else ""
-    return UNITS.get(kind)
+    if not any(quantity.Unit.Signature):
+        return "1"
+    return UNITS.get(quantity.Unit.Type)
 
 
 def cells(app: Any, sheet: Any) -> Iterator[tuple[str, float, str]]:

@@ -25,6 +25,8 @@ for cell, alias, text in (
     ("B2", "width", "25 mm"),
     ("B3", "wall", "=bore / 10"),  # a formula: no parameter
     ("B4", "words", "steel"),
+    ("B5", "mass", "3 kg"),  # of no unit that is offered
+    ("B7", "moment", "2 kg*mm"),  # nor this one, which has no name
 ):
     sheet.set(cell, text)
     sheet.setAlias(cell, alias)

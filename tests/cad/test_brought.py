@@ -1,0 +1,100 @@
+"""Descriptions of brought models as classes, and how a parameter shows on a solid."""
+
+import pickle
+from dataclasses import replace
+
+import pytest
+from cadquery import Solid, Workplane, exporters
+
+from cad.brought import Description, Drawn, Parameter, class_of, description_of, role_of, trial_sizes
+from cad.errors import GeometryError
+from cad.regenerate import as_text, build_key, regenerate_shape
+from templates.core.catalogue.digests import content_digest
+from templates.core.errors import InvalidInputs
+
+BORE = Parameter("bore", "bore", "mm", 20.0, "Sizes.cell.bore", 0.0, 1e3, "diameter")
+RING = Description("freecad", 64 * "a", "ring.FCStd", "Ring", "FreeCAD 0.20", (BORE,))
+
+
+def ring(bore, tmp_path):
+    place = tmp_path / f"ring_{bore}.step"
+    solid = Solid.makeCylinder(20, 8).cut(Solid.makeCylinder(bore / 2, 8))
+    exporters.export(Workplane(solid), str(place))
+    return Drawn(step=place.read_bytes())
+
+
+def shape(**parameters):
+    return class_of(RING.text, "ring", 1).from_quantities(parameters)
+
+
+def test_a_description_is_read_as_it_was_written():
+    assert description_of(RING.text) == RING
+    assert RING.digest() != replace(RING, file=64 * "b").digest()
+
+
+def test_a_class_has_id_version_title_and_defaults():
+    cls = class_of(RING.text, "ring", 3)
+    assert (cls.id, cls.version, cls.title()) == ("ring", 3, "Ring")
+    assert as_text(cls.from_quantities({})) == {"bore": "20 mm"}
+    assert content_digest(cls) == RING.digest()
+
+
+def test_class_and_shape_pass_between_processes():
+    cls = class_of(RING.text, "ring", 1)
+    assert pickle.loads(pickle.dumps(cls)) is cls
+    assert as_text(pickle.loads(pickle.dumps(shape(bore="21 mm")))) == {"bore": "21 mm"}
+
+
+def test_another_file_is_another_build():
+    other = class_of(replace(RING, file=64 * "b").text, "ring", 1)
+    assert build_key(other.from_quantities({})) != build_key(shape())
+
+
+@pytest.mark.parametrize("bore", ["-1 mm", "2 m", "5 kg", "[1, 2] mm"])
+def test_a_value_out_of_bounds_is_refused(bore):
+    with pytest.raises(InvalidInputs):
+        shape(bore=bore)
+
+
+def test_what_was_drawn_is_checked_like_any_model(tmp_path):
+    one = shape(bore="21 mm")
+    one.take(ring(21, tmp_path))
+    build = regenerate_shape(one, as_text(one))
+    assert build.dimensions == {"bore": 21}
+    assert build.measures["volume"] == pytest.approx(3.141592653589793 * (20**2 - 10.5**2) * 8, rel=1e-9)
+
+
+def test_a_solid_that_does_not_follow_its_parameter_is_refused(tmp_path):
+    one = shape(bore="21 mm")
+    one.take(ring(20, tmp_path))
+    with pytest.raises(GeometryError, match="bore should be 21 mm") as caught:
+        regenerate_shape(one, as_text(one))
+    assert (caught.value.code, caught.value.parameters) == ("dimension", ("bore",))
+
+
+def test_a_shape_that_nobody_drew_is_refused():
+    with pytest.raises(GeometryError, match="has not been drawn"):
+        regenerate_shape(shape(), as_text(shape()))
+
+
+def test_a_volume_other_than_the_program_says_is_refused(tmp_path):
+    one = shape()
+    one.take(replace(ring(20, tmp_path), mass_volume=1.0))
+    with pytest.raises(GeometryError) as caught:
+        regenerate_shape(one, as_text(one))
+    assert caught.value.code == "volume"
+
+
+def test_a_size_that_follows_a_trial_is_the_role(tmp_path):
+    before, after = (trial_sizes(ring(bore, tmp_path)) for bore in (20, 20.2))
+    assert before == {"diameter": [20, 40], "distance": [8]}
+    assert role_of(20, 20.2, before, after) == "diameter"
+    assert role_of(10, 10.1, before, after) == "radius"
+    assert role_of(8, 8.08, before, after) == ""
+    assert role_of(20, 20.2, after, after) == ""
+
+
+def test_trust_names_what_is_read_back_and_what_is_not():
+    hidden = replace(BORE, name="draft", unit="deg", role="")
+    trust = replace(RING, parameters=(BORE, hidden)).trust
+    assert "read back from the solid: bore; not read back: draft" in trust

@@ -1,0 +1,77 @@
+"""What the process of FreeCAD gives up before a file is opened; tried without FreeCAD."""
+
+import json
+import os
+import platform
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cad.freecad import drawing_process
+
+pytestmark = pytest.mark.skipif(
+    sys.platform != "linux" or platform.machine() not in drawing_process.DENIED,
+    reason="the filter of calls is written for Linux on x86_64 and aarch64",
+)
+TRIED = """
+import ctypes, json, os, signal, socket, subprocess, sys, threading
+sys.path.insert(0, sys.argv[1])
+import drawing_process
+libc = ctypes.CDLL(None, use_errno=True)
+assert libc.prctl(38, 1, 0, 0, 0) == 0
+drawing_process.keep_to_files(libc, sys.argv[2])
+drawing_process.deny_calls(libc)
+def tried(call):
+    try:
+        call()
+    except BaseException as error:
+        return type(error).__name__
+    return "done"
+results = {
+    "socket": tried(lambda: socket.socket()),
+    "unix": tried(lambda: socket.socket(socket.AF_UNIX)),
+    "exec": tried(lambda: os.execv("/bin/true", ["true"])),
+    "child": tried(lambda: subprocess.run(["/bin/true"], check=True)),
+    "kill": tried(lambda: os.kill(os.getppid(), 0)),
+    "own folder": tried(lambda: open(sys.argv[2] + "/inside", "w").close()),
+    "other folder": tried(lambda: open(sys.argv[3] + "/outside", "w").close()),
+    "other file": tried(lambda: open(sys.argv[3] + "/secret").close()),
+    "library": tried(lambda: open("/usr/lib/os-release").close()),
+    "thread": tried(lambda: threading.Thread(target=int).start()),
+}
+ruled = libc.syscall(444, None, 0, 1) >= 1
+print(json.dumps([results, ruled]))
+"""
+
+
+@pytest.fixture(scope="module")
+def tried(tmp_path_factory):
+    own, other = tmp_path_factory.mktemp("own"), tmp_path_factory.mktemp("other")
+    (other / "secret").write_text("secret")
+    folder = Path(drawing_process.__file__).parent
+    command = [sys.executable, "-c", TRIED, str(folder), str(own), str(other)]
+    done = subprocess.run(
+        command, capture_output=True, text=True, timeout=60, env={"PATH": os.environ["PATH"]}
+    )
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize("what", ["socket", "unix", "exec", "child", "kill"])
+def test_network_programs_and_signals_are_refused(tried, what):
+    assert tried[0][what] == "PermissionError"
+
+
+@pytest.mark.parametrize("what", ["own folder", "library", "thread"])
+def test_what_drawing_needs_is_allowed(tried, what):
+    assert tried[0][what] == "done"
+
+
+@pytest.mark.parametrize("what", ["other folder", "other file"])
+def test_files_of_others_are_out_of_reach(tried, what):
+    results, ruled = tried
+    if not ruled:
+        pytest.skip("this kernel has no Landlock")
+    assert results[what] == "PermissionError"
