@@ -54,7 +54,8 @@ def changes(http: httpx.Client) -> list[float]:
 
     def change(bore: float) -> None:
         nonlocal design
-        design = patched(http, design, {"steps": {"film": {"inputs": {"bearing_diameter": f"{bore} mm"}}}})
+        given = {"bearing_diameter": f"{bore} mm"}
+        design = patched(http, design, {"steps": {"film": {"inputs": given}}})
         assert design["state"] == "current"
 
     return [seconds(lambda bore=bore: change(bore + 0.5)) for bore in BORES]
@@ -68,9 +69,8 @@ def main() -> None:
         serving(Settings(data=Path(folder), wait_seconds=60)) as server,
         httpx.Client(base_url=server.url, timeout=120, trust_env=False) as http,
     ):
-        print(
-            f"import: {seconds(lambda: imported(http, 'bush', content)):.2f} s, the start of processes included"
-        )
+        brought = seconds(lambda: imported(http, "bush", content))
+        print(f"import: {brought:.2f} s, the start of processes included")
         for what, measured in (("build", builds(http)), ("change of a design", changes(http))):
             median, longest = statistics.median(measured), max(measured)
             print(f"{what}: median {median:.2f} s, longest {longest:.2f} s of {len(measured)}")
