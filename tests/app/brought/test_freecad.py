@@ -1,16 +1,24 @@
 """A file of FreeCAD as a model: parameters, checks, a design driven by the oil film, and hostile files."""
 
 import io
+import shutil
+import subprocess
+import sys
 import time
 import zipfile
 from pathlib import Path
 
 import pytest
 from freecad_files import bush, ended, imported, needs_freecad, post
+from patience import until
 from serving import API, created, paper, patched, problem
 
+from app.brought.shelf import Shelf
+from app.catalogue.catalogues import Catalogues
 from app.retention.rows import referenced_files
+from cad.catalogue import models as find_models
 
+ROOT = Path(__file__).parents[3]
 pytestmark = needs_freecad
 WARM = 1.0  # s; the warm regeneration that the specification asks for
 
@@ -136,6 +144,33 @@ def test_a_macro_beside_the_document_is_left_out(http, served):
     with zipfile.ZipFile(io.BytesIO(services.store.read(described.file))) as package:
         assert not [name for name in package.namelist() if name.endswith((".FCMacro", ".py"))]
     assert built(http, model, bore="51 mm").status_code == 200
+
+
+def test_a_service_that_starts_again_has_the_model(served, model):
+    services = served.app.state.services
+    catalogues = Catalogues(services.catalogues.templates, find_models())
+    Shelf(services.database, catalogues, is_shared=False)
+    assert catalogues.models.get("bush", 1) is services.catalogues.models.get("bush", 1)
+
+
+def test_freecad_dies_with_its_server(tmp_path):
+    place = tmp_path / "endless.FCStd"
+    place.write_bytes(bush("endless"))
+    command = [sys.executable, str(Path(__file__).with_name("killed_server.py")), str(place)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT) as server:
+        pid, folder = server.stdout.readline().split()
+        until(lambda: Path(f"/proc/{pid}/cmdline").read_text().count("drawing_process"))
+        server.kill()
+        server.wait()
+    until(lambda: is_gone(pid))
+    shutil.rmtree(folder)
+
+
+def is_gone(pid):
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return True
 
 
 @pytest.mark.slow
