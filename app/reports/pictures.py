@@ -16,6 +16,7 @@ from app.schemas.templates import Schema
 
 FEWEST = 3  # points of a curve
 AXES = ("crank_angle",)  # of curves that say no other
+MEASURED_AXIS = "measured_angle"  # of the values of a measurement, which have no angle in common with others
 MOST_LINES = 6  # in one picture
 MOST_PINS = 100  # in one star: pins at one angle are looked for one by one
 
@@ -190,6 +191,8 @@ def _axis(values: Values, declared: Members, name: str) -> str | None:
     length = _length(values[name])
     along = declared[name].along
     arrays = [other for other in values if other in declared and _is_curve(values, other)]
+    if name.startswith("measured_") and MEASURED_AXIS in arrays:
+        return MEASURED_AXIS if _length(values[MEASURED_AXIS]) == length else None
     is_output = isinstance(values[name], Output)
     given = [other for other in arrays if is_output and _is_given(values[other])]
     others = given if along is None else []  # a list by cylinders is not a curve over another list

@@ -195,3 +195,24 @@ def test_the_campbell_diagram_ends_at_the_last_speed():
     )
     assert ">4000<" in plot.svg
     assert ">5000<" not in plot.svg
+
+
+def test_a_measurement_is_drawn_over_its_own_angles_and_as_measured_beside_the_calculation():
+    """Also where there are as many angles of the one as of the other."""
+    inputs = declared(crank_angle="deg", measured_angle="deg", calculated_film="um", measured_film="um")
+    outputs = {"film_as_measured": {"title": "film as measured", "unit": "um", "along": "crank_angle"}}
+    film = [3.0, 4.0, 5.0, 4.0]
+    evaluated = answer(
+        {"film_as_measured": computed(film, "um")},
+        {
+            "crank_angle": given(CYCLE, "deg"),
+            "measured_angle": given([10.0, 100.0, 190.0, 280.0], "deg"),
+            "calculated_film": given(film, "um"),
+            "measured_film": given(film, "um"),
+        },
+    )
+    shown = pictures(template(inputs, outputs), evaluated)
+    assert [(one.names["x"], one.names["y"]) for one in shown] == [
+        ("crank_angle", ["calculated_film", "film_as_measured"]),
+        ("measured_angle", ["measured_film"]),
+    ]

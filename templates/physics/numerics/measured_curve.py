@@ -1,0 +1,117 @@
+"""A measured curve beside a calculated one: measured values at calculated angles, and how far they differ.
+
+Both repeat with a cycle. Between its points, and from the last to the first, a measurement is linear. Means
+are over the calculated angles, each counting alike.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from templates.core.arrays import Array, Truth
+from templates.core.language.declare import units
+
+_NONE = np.array(np.nan)
+_SAME = 1e-9  # of a cycle
+
+
+def periodic(theta: Array, places: Array, values: Array, cycle: Array, shift: Array) -> Array:
+    """Values (…, M) at places [rad], (M,), moved by a shift [rad], read at theta [rad], (K,): (…, K)."""
+    if not np.ndim(values):
+        return _NONE
+    way, last = places - places[0], values
+    if abs(way[-1] - cycle) <= _SAME * cycle:  # the last point repeats the first
+        way, last = way[:-1], values[..., :-1]
+    way = np.append(way, cycle)
+    last = np.concatenate([last, last[..., :1]], axis=-1)
+    at = (theta - shift - places[0]) % cycle
+    left = np.clip(np.searchsorted(way, at, side="right") - 1, 0, way.size - 2)
+    share = (at - way[left]) / (way[left + 1] - way[left])
+    return np.asarray(last[..., left] * (1 - share) + last[..., left + 1] * share)
+
+
+@units("rad", returns="1")
+def rises(angles: Array) -> Truth:
+    """Whether these are one list of three angles or more that rise."""
+    return np.ndim(angles) == 1 and np.size(angles) > 2 and bool(np.all(np.diff(angles) > 0))
+
+
+@units("rad", "rad", returns="1")
+def covers(angles: Array, cycle: Array) -> Truth:
+    """Whether angles lie within one cycle and leave no gap above a quarter of it."""
+    if np.ndim(angles) != 1 or np.size(angles) < 3:
+        return True  # another rule reports it
+    gaps = np.diff(angles, append=angles[0] + cycle)
+    return bool(np.all(gaps >= -_SAME * cycle) and np.all(gaps <= cycle * (0.25 + _SAME)))
+
+
+@units("rad", "rad", "m", "rad", "rad", returns="m")
+def film_at(theta: Array, places: Array, values: Array, cycle: Array, shift: Array) -> Array:
+    """The measured film [m] at the calculated angles."""
+    return periodic(theta, places, values, cycle, shift)
+
+
+@units("m", returns="m", latex=r"\sqrt{{\overline{{{0}^2}}}}")
+def rms_film(difference: Array) -> Array:
+    """Root of the mean square of a difference [m]."""
+    return np.asarray(np.sqrt((difference**2).mean(axis=-1)))[()] if np.ndim(difference) else _NONE
+
+
+@units("m", returns="m", latex=r"\overline{{{0}}}")
+def mean_film(difference: Array) -> Array:
+    """Mean of a difference [m]."""
+    return np.asarray(difference.mean(axis=-1))[()] if np.ndim(difference) else _NONE
+
+
+@units("m", returns="m", latex=r"\max\left|{0}\right|")
+def largest_film(difference: Array) -> Array:
+    """Largest size of a difference [m]."""
+    return np.asarray(np.abs(difference).max(axis=-1))[()] if np.ndim(difference) else _NONE
+
+
+@units("rad", "rad", "rad/s", "rad", "rad", returns="rad/s")
+def speed_at(theta: Array, places: Array, values: Array, cycle: Array, shift: Array) -> Array:
+    """The measured speed [rad/s] at the calculated angles."""
+    return periodic(theta, places, values, cycle, shift)
+
+
+@units("rad/s", returns="rad/s", latex=r"\sqrt{{\overline{{{0}^2}}}}")
+def rms_speed(difference: Array) -> Array:
+    """Root of the mean square of a difference [rad/s]."""
+    return np.asarray(np.sqrt((difference**2).mean(axis=-1)))[()] if np.ndim(difference) else _NONE
+
+
+@units("rad/s", returns="rad/s", latex=r"\overline{{{0}}}")
+def mean_speed(difference: Array) -> Array:
+    """Mean of a difference [rad/s]."""
+    return np.asarray(difference.mean(axis=-1))[()] if np.ndim(difference) else _NONE
+
+
+@units("rad/s", returns="rad/s", latex=r"\max\left|{0}\right|")
+def largest_speed(difference: Array) -> Array:
+    """Largest size of a difference [rad/s]."""
+    return np.asarray(np.abs(difference).max(axis=-1))[()] if np.ndim(difference) else _NONE
+
+
+@units("rad", "rad", "1", "rad", "rad", returns="1")
+def strain_at(theta: Array, places: Array, values: Array, cycle: Array, shift: Array) -> Array:
+    """The measured strain [1] at the calculated angles."""
+    return periodic(theta, places, values, cycle, shift)
+
+
+@units("1", returns="1", latex=r"\sqrt{{\overline{{{0}^2}}}}")
+def rms_strain(difference: Array) -> Array:
+    """Root of the mean square of a difference [1]."""
+    return np.asarray(np.sqrt((difference**2).mean(axis=-1)))[()] if np.ndim(difference) else _NONE
+
+
+@units("1", returns="1", latex=r"\overline{{{0}}}")
+def mean_strain(difference: Array) -> Array:
+    """Mean of a difference [1]."""
+    return np.asarray(difference.mean(axis=-1))[()] if np.ndim(difference) else _NONE
+
+
+@units("1", returns="1", latex=r"\max\left|{0}\right|")
+def largest_strain(difference: Array) -> Array:
+    """Largest size of a difference [1]."""
+    return np.asarray(np.abs(difference).max(axis=-1))[()] if np.ndim(difference) else _NONE
