@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from cad.deflection import MESHES, deflection_of, plain_kind
 from cad.drafting.paper import as_pdf
 from cad.drafting.sheet import write_dxf
 from cad.drafting.svg import write_drawing
 from cad.drawing import write_svg
 from cad.gltf import write_glb
 from cad.header import Header, read_header
-from cad.mesh import Mesh, mesh
+from cad.mesh import Mesh, closed_mesh, mesh
 from cad.picture import write_png
 from cad.step import Body, read_step
 from cad.stl import write_stl
@@ -40,26 +41,48 @@ def derive(step: bytes, kind: str) -> bytes:
         If the bytes are not a STEP file or hold no shape.
     KeyError
         If no such kind can be derived.
+    InvalidInputs
+        If the deflection of a mesh does not suit the size of the bodies.
+    GeometryError
+        If a mesh has a gap.
     """
-    return _WRITERS[kind](read_step(step), read_header(step))
+    bodies, header = read_step(step), read_header(step)
+    if (deflection := deflection_of(kind, bodies)) is None:
+        return _WRITERS[kind](bodies, header)
+    return _MESH_WRITERS[plain_kind(kind)](bodies, header, deflection)
 
 
 Writer = Callable[[Sequence[Body], Header | None], bytes]
+MeshWriter = Callable[[Sequence[Body], Header | None, float | None], bytes]
 
 
-def _of_meshes(write: Callable[[Sequence[Mesh]], bytes]) -> Writer:
-    return lambda bodies, _header: write([mesh(body) for body in bodies])
+def _write_glb(bodies: Sequence[Body], header: Header | None, deflection: float | None = None) -> bytes:
+    return write_glb(_meshes(bodies, deflection), header.model if header else "model")
 
 
+def _write_stl(bodies: Sequence[Body], _header: Header | None, deflection: float | None = None) -> bytes:
+    return write_stl(_meshes(bodies, deflection))
+
+
+def _meshes(bodies: Sequence[Body], deflection: float | None = None) -> list[Mesh]:
+    return [closed_mesh(body, deflection) for body in bodies]
+
+
+_MESH_WRITERS: dict[str, MeshWriter] = {"glb": _write_glb, "stl": _write_stl}
 _WRITERS: dict[str, Writer] = {
-    "glb": _of_meshes(write_glb),
-    "stl": _of_meshes(write_stl),
+    "glb": _write_glb,
+    "stl": _write_stl,
     "drawing.svg": write_drawing,
     "svg": lambda bodies, _header: write_svg(bodies),
-    "png": _of_meshes(write_png),
+    "png": lambda bodies, _header: write_png([mesh(body) for body in bodies]),
     "dxf": write_dxf,
     "drawing.pdf": lambda bodies, header: as_pdf(write_drawing(bodies, header)),
 }
 
 DERIVED = tuple(_WRITERS)
 """The kinds that are derived from the STEP file."""
+
+
+def is_derived(kind: str) -> bool:
+    """Whether a kind, perhaps with a deflection, is derived from the STEP file."""
+    return kind in DERIVED or plain_kind(kind) in MESHES

@@ -20,15 +20,22 @@ _ARRAY_BUFFER, _ELEMENT_BUFFER = 34962, 34963
 _Z_UP_MM = [1e-3, 0, 0, 0, 0, 0, -1e-3, 0, 0, 1e-3, 0, 0, 0, 0, 0, 1]  # column by column
 
 
-def write_glb(meshes: Sequence[Mesh]) -> bytes:
-    """The meshes as one GLB file."""
+def write_glb(meshes: Sequence[Mesh], title: str = "model") -> bytes:
+    """The meshes as one GLB file; its root node has the title, every other the name of its body there."""
     buffers = _Buffers()
-    nodes = [_node(i, place) for i, one in enumerate(meshes) for place in one.places]
+    nodes = [
+        _node(i, place, name)
+        for i, one in enumerate(meshes)
+        for place, name in zip(one.places, one.names, strict=True)
+    ]
     content = {
         "asset": {"version": "2.0", "generator": "Crankwright"},
         "scene": 0,
         "scenes": [{"nodes": [0]}],
-        "nodes": [{"matrix": _Z_UP_MM, "children": list(range(1, len(nodes) + 1))}, *nodes],
+        "nodes": [
+            {"name": title, "matrix": _Z_UP_MM, "children": list(range(1, len(nodes) + 1))},
+            *nodes,
+        ],
         "meshes": [_mesh(one, i, buffers) for i, one in enumerate(meshes)],
         "materials": [_material(one) for one in meshes],
         **buffers.described(),
@@ -66,10 +73,10 @@ class _Buffers:
         }
 
 
-def _node(mesh: int, place: Any) -> dict[str, Any]:
+def _node(mesh: int, place: Any, name: str) -> dict[str, Any]:
     matrix = np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = rigid(place)
-    return {"mesh": mesh, "matrix": matrix.T.ravel().tolist()}
+    return {"name": name, "mesh": mesh, "matrix": matrix.T.ravel().tolist()}
 
 
 def _mesh(one: Mesh, material: int, buffers: _Buffers) -> dict[str, Any]:

@@ -1,9 +1,13 @@
-"""Triangles of the bodies in a STEP file, as arrays: what STL, GLB and pictures are made of."""
+"""Triangles of the bodies in a STEP file, as arrays: what STL, GLB and pictures are made of.
+
+A closed mesh has no gap: each edge of a triangle is that of exactly one other, the other way round, once
+points that are equal in single precision are one. No triangle of any mesh has two corners that are equal so.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from cadquery import Location, Shape
@@ -12,12 +16,16 @@ from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.TopAbs import TopAbs_Orientation
 from OCP.TopLoc import TopLoc_Location
 
-from cad.model import Colour
+from cad.errors import GeometryError
+from cad.model import Colour, names_at
 from cad.step import Body, rigid
 from templates.core.arrays import Array, Integers
 
 ANGULAR_TOLERANCE = 0.2  # [rad] between neighbouring facets; 0.1 takes five times as long
 RELATIVE_TOLERANCE = 1e-3  # of the size of the body: the greatest distance of a facet from the true surface
+_ATTEMPTS = 3
+_WIDE_ANGLE = 0.5  # [rad] between neighbouring facets where a deflection is asked for, which rules then
+_SAFETY = 0.5  # the kernel's facets lay off by up to 1.73 times of what it was asked for, on spheres
 
 
 @dataclass(frozen=True)
@@ -32,12 +40,70 @@ class Mesh:
     triangles: Integers  # (m, 3), counter-clockwise seen from outside
     faces: Integers  # (m,), the number of the face that a triangle lies on
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The name of the body at each of its places, as those of `cad.model.Part`."""
+        return names_at(self.name, len(self.places))
 
-def mesh(body: Body, angle: float = ANGULAR_TOLERANCE) -> Mesh:
-    """Triangulate one body."""
+
+def mesh(body: Body, deflection: float | None = None) -> Mesh:
+    """Triangulate one body; `deflection` [mm] is how far a facet may lie from the true surface."""
+    if deflection is None:
+        size = body.shape.BoundingBox().DiagonalLength
+        return _triangulated(body, RELATIVE_TOLERANCE * size, ANGULAR_TOLERANCE)
+    return _triangulated(body, _SAFETY * deflection, _WIDE_ANGLE)
+
+
+def closed_mesh(body: Body, deflection: float | None = None) -> Mesh:
+    """Triangulate one body without a gap, more finely than asked for where that takes it.
+
+    Raises
+    ------
+    GeometryError
+        `open_mesh`, if the kernel leaves a gap at every attempt.
+    """
+    one = mesh(body, deflection)
     size = body.shape.BoundingBox().DiagonalLength
-    BRepMesh_IncrementalMesh(body.shape.wrapped, RELATIVE_TOLERANCE * size, False, angle, False)
-    pieces = list(_face_meshes(body.shape))
+    finer = _SAFETY * deflection if deflection else RELATIVE_TOLERANCE * size
+    for attempt in range(1, _ATTEMPTS):
+        if is_closed(one):
+            return one
+        one = _triangulated(body, finer / 4**attempt, ANGULAR_TOLERANCE / 2**attempt)
+    if is_closed(one):
+        return one
+    raise GeometryError("open_mesh", f"the kernel's triangles of {body.name} leave a gap")
+
+
+def _triangulated(body: Body, linear: float, angular: float) -> Mesh:
+    """The kernel's triangles [mm, rad], without those that are none."""
+    BRepMesh_IncrementalMesh(body.shape.wrapped, linear, False, angular, False)
+    return _without_collapsed(_joined(body, list(_face_meshes(body.shape))))
+
+
+def is_closed(one: Mesh) -> bool:
+    """Whether each edge of a triangle is that of exactly one other, the other way round."""
+    corners = _welded(one)
+    edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    count = int(corners.max()) + 1
+    there, back = edges[:, 0] * count + edges[:, 1], edges[:, 1] * count + edges[:, 0]
+    return bool(np.array_equal(np.unique(there), np.sort(back)))
+
+
+def _welded(one: Mesh) -> Integers:
+    """The corners of the triangles (m, 3), where points that are equal in single precision are one."""
+    single = np.ascontiguousarray(one.points.astype(np.float32) + np.float32(0.0))  # without negative zeros
+    _, numbers = np.unique(single.view("V12").ravel(), return_inverse=True)
+    return numbers[one.triangles].astype(np.int64)
+
+
+def _without_collapsed(one: Mesh) -> Mesh:
+    """A mesh without the triangles of which corners coincide, as at the poles of a sphere."""
+    a, b, c = _welded(one).T
+    kept = (a != b) & (b != c) & (c != a)
+    return one if kept.all() else replace(one, triangles=one.triangles[kept], faces=one.faces[kept])
+
+
+def _joined(body: Body, pieces: Sequence[tuple[Array, Array, Integers]]) -> Mesh:
     starts = np.cumsum([0, *(len(points) for points, _, _ in pieces)])
     return Mesh(
         body.name,

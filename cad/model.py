@@ -58,6 +58,11 @@ def material_named(name: str, density: float) -> str:
     return f"{name} ({density:.6g} kg/m³)" if name else f"{density:.6g} kg/m³"
 
 
+def names_at(name: str, places: int) -> tuple[str, ...]:
+    """The name of a part at each of its places; the name alone if there is only one."""
+    return (name,) if places == 1 else tuple(f"{name}_{i}" for i in range(1, places + 1))
+
+
 @cache
 def _at_origin() -> tuple[Location, ...]:
     from cadquery import Location
@@ -102,9 +107,7 @@ class Part:
     @property
     def names(self) -> tuple[str, ...]:
         """The name of the part at each of its places, as `ball_1` and `ball_2`."""
-        if len(self.places) == 1:
-            return (self.name,)
-        return tuple(f"{self.name}_{i}" for i in range(1, len(self.places) + 1))
+        return names_at(self.name, len(self.places))
 
 
 @dataclass(frozen=True)

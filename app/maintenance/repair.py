@@ -33,7 +33,7 @@ from app.workers.local import LocalProcesses
 from app.worksheets.published import Published
 from cad.analysis.kinds import SURFACE
 from cad.errors import AnalysisError, GeometryError
-from cad.export import DERIVED
+from cad.export import is_derived
 from cad.regenerate import build_key
 from templates.core.errors import TemplateError
 
@@ -98,7 +98,7 @@ class Repair:
                 self._surface(row.owner)
             else:
                 self.builds.restore(row.owner, self.catalogues.models, self.runner)
-                if row.kind in DERIVED:
+                if is_derived(row.kind):
                     self.builds.derive(row.owner, row.kind, self.runner)
         except FAILURES as error:
             return str(error)

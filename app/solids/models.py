@@ -21,7 +21,7 @@ from app.storage.database import Database
 from app.storage.errors import CannotRebuild, NotFound
 from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
 from cad.errors import GeometryError
-from cad.export import DERIVED
+from cad.export import is_derived
 from cad.header import read_header
 from cad.model import CadModel
 from cad.regenerate import as_text, build_key
@@ -201,7 +201,7 @@ class ModelBuild:
         try:
             self.builds.restore(key, self.catalogues.models, context)
             for kind in kinds:
-                if kind in DERIVED:
+                if is_derived(kind):
                     self.builds.derive(key, kind, context)
         except FAILURES as error:
             raise JobFailed(error) from error

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Header, Response
+from fastapi import APIRouter, Depends, Header, Query, Response
 from fastapi.responses import FileResponse
 from sqlalchemy.orm import Session
 from starlette.concurrency import run_in_threadpool
@@ -38,6 +38,7 @@ from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import NotFound
 from app.storage.tables import RevisionModelRow
+from cad.deflection import with_deflection
 from cad.export import DRAWINGS, MEDIA_TYPES
 from cad.stamp import STAMPED, Stamp, stamped, takes_stamp
 
@@ -60,6 +61,15 @@ PRINTED = {"drawing.pdf": "drawing.svg"}
 """Kinds that are typeset of another one with its stamp: nothing can be written into a finished PDF."""
 
 Accept = Annotated[str | None, Header(description=", ".join(MEDIA_TYPES.values()))]
+Deflection = Annotated[
+    str | None,
+    Query(
+        max_length=60,
+        description="of GLB and STL, how far a facet may lie from the true surface: a length of 1/10 000 "
+        "to 1/10 of the diagonal of the largest body's box",
+        examples=["0.05 mm"],
+    ),
+]
 IfNoneMatch = Annotated[str | None, Header(description="the ETags of files that are at hand")]
 
 
@@ -78,6 +88,7 @@ class FileRequest:
     accept: str | None
     prefer: str | None
     if_none_match: str | None
+    deflection: str | None = None
 
     async def answer(self, find: Callable[[Session], RevisionModelRow], kind: str | None) -> Response:
         """The file, of the kind that the path names or the client likes best, of the model that `find` finds.
@@ -86,12 +97,16 @@ class FileRequest:
         ------
         NotFound
             If there is no such kind, or no such model.
+        InvalidInputs
+            If the deflection is no length, or the kind has no facets.
         """
         wanted = kind or _accepted(self.accept)
         prefer = self.prefer or PATIENCE
         if wanted not in MEDIA_TYPES:
             raise NotFound(f"there is no model.{wanted[:20]}; there are {', '.join(MEDIA_TYPES)}")
         stored_kind = PRINTED.get(wanted, wanted)
+        if self.deflection is not None:
+            stored_kind = with_deflection(wanted, self.deflection)
         key, stamp, old = await run_in_threadpool(self._lookup, find, stored_kind)
         answer = await lost(old.sha256, self.healing, self.jobs, prefer) if old else None
         if answer is None and (
@@ -153,10 +168,22 @@ async def file_request(
     accept: Accept = None,
     prefer: Prefer = None,
     if_none_match: IfNoneMatch = None,
+    deflection: Deflection = None,
 ) -> FileRequest:
     """The parts of a request that all routes of files have in common."""
     return FileRequest(
-        database, store, models, jobs, healing, press, settings.owner, client, accept, prefer, if_none_match
+        database,
+        store,
+        models,
+        jobs,
+        healing,
+        press,
+        settings.owner,
+        client,
+        accept,
+        prefer,
+        if_none_match,
+        deflection,
     )
 
 

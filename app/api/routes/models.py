@@ -31,6 +31,7 @@ from app.solids.questions import what_can_be_asked
 from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, NotFound
 from cad.brought import brought
+from cad.deflection import plain_kind
 from cad.export import DRAWINGS, MEDIA_TYPES
 from cad.inspect import MEASURES
 from cad.regenerate import build_key
@@ -238,4 +239,4 @@ def send_file(
     if file is None:
         raise NotFound("the build was deleted a moment ago; ask again, and it is made again")
     sent = {"ETag": f'"{file.sha256}"', **(headers or {})}
-    return StoredFile(store, file.sha256, MEDIA_TYPES[file.kind], sent, name)
+    return StoredFile(store, file.sha256, MEDIA_TYPES[plain_kind(file.kind)], sent, name)

@@ -1,0 +1,72 @@
+"""How far the facets of a mesh may lie from the true surface, as its user asks for it.
+
+A kind of file with a deflection is written `stl@0.05mm`. It is a file of its own beside `stl`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cad.step import Body
+from templates.core.errors import Fault, FaultyText, InvalidInputs
+from templates.core.units.quantity import read
+from templates.core.units.units import unit
+
+MESHES = ("glb", "stl")
+"""Kinds of files that are triangles, of which a user may choose the deflection."""
+
+FINEST, COARSEST = 1e-4, 0.1
+"""Least and largest deflection as parts of the diagonal of the largest body's box."""
+
+_AT, _UNIT = "@", "mm"
+
+
+def with_deflection(kind: str, raw: str) -> str:
+    """The kind of file with a deflection as a user typed it, such as `0.05 mm`.
+
+    Raises
+    ------
+    InvalidInputs
+        If it is no length above 0, or the kind has no facets.
+    """
+    if kind not in MESHES:
+        detail = f"only {' and '.join(MESHES)} are made of facets; leave it out for {kind}"
+        raise InvalidInputs([Fault("deflection", "not_offered", detail)])
+    try:
+        typed = read(raw, _UNIT)
+    except FaultyText as error:
+        raise InvalidInputs([error.fault("deflection")]) from None
+    if typed.tolerance is not None or not isinstance(typed.si, float) or typed.si <= 0:
+        detail = "a deflection is a single length above 0, as in 0.05 mm"
+        raise InvalidInputs([Fault("deflection", "out_of_range", detail)])
+    return f"{kind}{_AT}{unit(_UNIT).from_si(typed.si):.6g}{_UNIT}"
+
+
+def plain_kind(kind: str) -> str:
+    """The kind without its deflection."""
+    return kind.partition(_AT)[0]
+
+
+def deflection_of(kind: str, bodies: Sequence[Body]) -> float | None:
+    """The deflection [mm] of a kind of file; None where it has the usual one, a part of each body's size.
+
+    Raises
+    ------
+    InvalidInputs
+        If it is too fine or too coarse for bodies of this size.
+    """
+    _, at, text = kind.partition(_AT)
+    if not at:
+        return None
+    asked, size = float(text.removesuffix(_UNIT)), _size(bodies)
+    if not FINEST * size <= asked <= COARSEST * size:
+        between = f"give {FINEST * size:.3g} to {COARSEST * size:.3g} {_UNIT}"
+        across = f"a solid whose box measures {size:.4g} {_UNIT} across"
+        detail = f"{asked:g} {_UNIT} does not suit {across}; {between}"
+        raise InvalidInputs([Fault("deflection", "out_of_range", detail)])
+    return asked
+
+
+def _size(bodies: Sequence[Body]) -> float:
+    """The largest diagonal of a body's box [mm]: a body stands at many places without getting finer."""
+    return max(float(body.shape.BoundingBox().DiagonalLength) for body in bodies)

@@ -1,0 +1,41 @@
+"""`model.stl?deflection=…`: a mesh as fine as its user asks for, or a refusal that says what is right."""
+
+import pytest
+from serving import API, created, faults, moody, problem
+
+WAIT = {"Prefer": "wait=60"}
+
+
+@pytest.fixture(scope="module")
+def design(http):
+    return created(http, moody("23.5 mm"))
+
+
+def mesh_of(http, design, kind, **query):
+    return http.get(f"{API}/designs/{design['id']}/model.{kind}", params=query, headers=WAIT)
+
+
+@pytest.mark.parametrize("kind", ["stl", "glb"])
+def test_a_mesh_with_a_deflection_is_a_file_of_its_own(http, design, kind):
+    answer = mesh_of(http, design, kind, deflection="0.1 mm")
+    again = mesh_of(http, design, kind, deflection="100 um")
+    assert answer.status_code == 200, answer.text
+    assert f".{kind}" in answer.headers["content-disposition"]
+    assert "@" not in answer.headers["content-disposition"]
+    assert answer.headers["content-type"] == mesh_of(http, design, kind).headers["content-type"]
+    assert again.headers["etag"] == answer.headers["etag"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "raw", "code"),
+    [("stl", "0.1", "missing_unit"), ("stl", "-1 mm", "out_of_range"), ("png", "1 mm", "not_offered")],
+)
+def test_what_is_no_deflection_is_refused_by_name(http, design, kind, raw, code):
+    assert faults(mesh_of(http, design, kind, deflection=raw)) == {"deflection": code}
+
+
+@pytest.mark.parametrize("raw", ["1 nm", "3 m"])
+def test_a_deflection_beside_the_size_is_refused_with_what_suits(http, design, raw):
+    answer = mesh_of(http, design, "stl", deflection=raw)
+    problem(answer, 422, "invalid-inputs")
+    assert "give 0.00" in answer.text
