@@ -2,6 +2,7 @@
 
 import json
 import struct
+from collections import Counter
 
 import numpy as np
 import pytest
@@ -42,14 +43,22 @@ def glb(data):
     return content, triangles
 
 
+def edges(corners):
+    """How often each directed edge of triangles (m, 3, 3) is there."""
+    directed = (pair for a, b, c in corners.tolist() for pair in ((a, b), (b, c), (c, a)))
+    return Counter((tuple(one), tuple(other)) for one, other in directed)
+
+
 def gaps(corners):
-    """Edges of triangles (m, 3, 3) that do not meet one other turned round, by a second method."""
-    edges = {}
-    for a, b, c in corners.tolist():
-        for one, other in ((a, b), (b, c), (c, a)):
-            edge = tuple(one), tuple(other)
-            edges[edge] = edges.get(edge, 0) + 1
-    return [edge for edge, count in edges.items() if count != 1 or edges.get(edge[::-1]) != 1]
+    """Edges of one body that do not meet exactly one other turned round, by a second method."""
+    counted = edges(corners)
+    return [edge for edge, count in counted.items() if count != 1 or counted.get(edge[::-1]) != 1]
+
+
+def unpaired(corners):
+    """Edges of several bodies, which may touch, that are not there as often turned round."""
+    counted = edges(corners)
+    return [edge for edge, count in counted.items() if counted.get(edge[::-1]) != count]
 
 
 def degenerate(corners):
@@ -61,9 +70,11 @@ def degenerate(corners):
 
 def test_files_are_closed_without_degenerate_triangles_and_nodes_have_the_names_of_parts(example, model):
     content, meshes = glb(derive(example.step, "glb"))
-    for one in (stl(derive(example.step, "stl")), *meshes):
-        assert not gaps(one)
-        assert not degenerate(one).any()
+    whole = stl(derive(example.step, "stl"))
+    assert len(whole) == sum(len(meshes[node["mesh"]]) for node in content["nodes"][1:])
+    assert not unpaired(whole)
+    assert not any(gaps(one) for one in meshes)
+    assert not any(degenerate(one).any() for one in (whole, *meshes))
     parts = model.from_quantities(model.example).build()
     root, *nodes = content["nodes"]
     assert root["name"] == model.id
