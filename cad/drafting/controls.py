@@ -115,17 +115,16 @@ class Controls:
     def _place(self, target: Point, box_at: BoxAt, width: float) -> Point:
         """The nearest free place about a target, which is taken."""
         tries = (
-            (box_at(x, y), (x, y))
+            _beside(target, away, radians(turn), width)
             for away in range(8, 150, 4)
             for turn in range(0, 360, 20)
-            for x, y in [_beside(target, away, radians(turn), width)]
         )
-        place = self.room.first(tries)
-        if place is None and not self.is_last:
+        free = [place for place in tries if self.room.is_free(box_at(*place))]
+        if not free and not self.is_last:
             raise NoRoom
-        if place is None:
-            place = _beside(target, 8, 0.0, width)
-            self.room.add(box_at(*place))
+        clear = (place for place in free if self.room.passes([target, place]))
+        place = next(clear, free[0] if free else _beside(target, 8, 0.0, width))
+        self.room.add(box_at(*place))
         return place
 
 

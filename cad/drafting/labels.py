@@ -9,6 +9,7 @@ from cad.drafting.lettering import width_of
 from cad.drafting.matching import Dimension
 
 SMALL = 0.7  # deviations are of so many times the height of the number
+_LED = ("circle", "arc", "aligned")
 _STACK = re.compile(r"(?s)(.*)\{\\H0\.7x;\\S([^^]*)\^ ([^;]*);\}(.*)")
 
 
@@ -58,6 +59,8 @@ def label_of(dimension: Dimension) -> Label:
     if limits.upper == -limits.lower:
         return Label(f"{text}{zone} ±{_deviation(limits.upper)}", number)
     upper, lower = (_signed(end) for end in (limits.upper, limits.lower))
+    if measure.form in _LED:  # words at a leader stand on one line
+        return Label(f"{text}{zone} {upper}/{lower}", number)
     return Label(f"{text}{zone}", number, upper, lower)
 
 

@@ -83,7 +83,14 @@ def _kind(measure: Measure) -> tuple[str, str, str]:
 
 def _fitting(name: str, value: float, is_angle: bool, measures: Sequence[Measure]) -> list[Measure]:
     sorts = _sorts(name, is_angle)
-    close = [m for m in measures if m.sort in sorts and _same(m.value, value)]
+    is_length = "length" in name.split("_")  # no distance of a plane from the shaft
+    close = [
+        m
+        for m in measures
+        if m.sort in sorts
+        and _same(m.value, value)
+        and not (is_length and (m.sort, m.place) == ("offset", "end"))
+    ]
     return sorted(close, key=lambda m: (sorts.index(m.sort), m.place != "section", m.form == "circle"))
 
 

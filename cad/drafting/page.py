@@ -155,6 +155,8 @@ class Page:
         half = placed.label.width(TEXT) / 2
         middle = self.plan.paper(placed.words)[along]
         ends = sorted(end[along] for end in placed.ends)
+        if ends[0] <= middle <= ends[1]:
+            return
         place = placed.ends[0][1 - along]
         span = (ends[1], middle + half) if middle > ends[1] else (middle - half, ends[0])
         self.line([(place, at) if along else (at, place) for at in span], "DIMENSIONS")

@@ -115,7 +115,7 @@ class Placing:
         """A dimension whose line runs at a place across its lane."""
         line = tuple((place, end) if along else (end, place) for end in ends)
         words = None
-        if not ends[0] <= middle <= ends[1]:
+        if label.upper or not ends[0] <= middle <= ends[1]:
             above = GAP + label.height(TEXT) / 2
             words = self.plan.at(*((place - above, middle) if along else (middle, place + above)))
         return Placed(one, label, self.plan.at(*line[0]), words, right, (line[0], line[1]))
@@ -153,16 +153,14 @@ class Placing:
                 tries = self._across_angle(one, label, right)
             case _:
                 tries = self._around(one, label, right)
-        first: Try | None = None
-        for box, placed, lines in tries:
-            first = first or (box, placed, lines)
-            if self.room.is_free(box):
-                break
-        else:
-            assert first is not None
-            if not self.is_last:
-                raise NoRoom
-            box, placed, lines = first
+        every = list(tries)
+        free = [one for one in every if self.room.is_free(one[0])]
+        clear = (
+            one for one in free if one[1].dimension.measure.form == "angle" or self.room.passes(one[2][0])
+        )
+        if not free and not self.is_last:
+            raise NoRoom
+        box, placed, lines = next(clear, (free or every)[0])
         self.room.add(box)
         for line in lines:
             self.room.add_line(line)

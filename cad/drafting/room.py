@@ -21,12 +21,15 @@ class Room:
     def __init__(self, area: Rectangle) -> None:
         self.area = area
         self.boxes: list[Rectangle] = []
+        self.words: list[Rectangle] = []
         self._lines: list[tuple[float, float, float, float]] = []
         self._array = np.zeros((0, 4))
 
-    def add(self, box: Rectangle) -> None:
-        """Take a rectangle."""
+    def add(self, box: Rectangle, *, is_view: bool = False) -> None:
+        """Take a rectangle; lines to a part's faces cross only that of a view."""
         self.boxes.append(box)
+        if not is_view:
+            self.words.append(box)
 
     def add_line(self, points: Sequence[Point]) -> None:
         """Take what lies on a line through points."""
@@ -44,6 +47,11 @@ class Room:
     def is_free(self, box: Rectangle) -> bool:
         """Whether a rectangle lies on the area, off all others and off all lines."""
         return self.is_clear(box) and not self._is_crossed(box)
+
+    def passes(self, line: Sequence[Point]) -> bool:
+        """Whether a straight line crosses no words."""
+        piece = np.array([[*line[0], *line[-1]]])
+        return not any(crossed(piece, box).any() for box in self.words)
 
     def first(self, boxes: Iterable[tuple[Rectangle, Point]]) -> Point | None:
         """The point that belongs to the first free rectangle, which is taken."""

@@ -108,7 +108,7 @@ def _room(section: View, end: View, centres: Centres, plan: Plan) -> Room:
     left, low, right, high = AREA
     room = Room((left + 1, low + 1, right - 1, high - 1))
     for view, away in ((section, 0.0), (end, plan.beside)):
-        room.add(_on_paper(view, plan, away))
+        room.add(_on_paper(view, plan, away), is_view=True)
     for line in centres.lines:
         room.add_line([plan.paper(point) for point in line])
     return room

@@ -205,6 +205,18 @@ def test_datum_geometric_tolerances_and_texture(fitted: bytes, font: ImageFont.F
     assert overlapping(svg, font) == []
 
 
+def test_words_do_not_overlap_where_everything_is_toleranced(font: ImageFont.FreeTypeFont) -> None:
+    model = models().get("ball_bearing", 1)
+    texts = as_text(model.from_quantities(model.example))
+    for name in model.toleranced:
+        texts[name] += " +0.025/-0.013 mm"
+    step = regenerate_from_text(model.id, model.version, texts).step
+    assert overlapping(derive(step, "drawing.svg"), font) == []
+    drawing = read(derive(step, "dxf"))
+    assert labels(drawing)["ball_diameter"] == "11×%%c12 +0.025/-0.013"
+    assert not drawing.audit().errors
+
+
 def test_balls_are_not_cut_and_rings_are(example_of, font) -> None:
     build = example_of(models().get("ball_bearing", 1))
     drawing = read(derive(build.step, "dxf"))
