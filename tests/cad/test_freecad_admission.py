@@ -7,7 +7,8 @@ import zipfile
 import pytest
 
 from cad.errors import UnreadableModel
-from cad.freecad.admission import DOCUMENT, MOST_BYTES, admitted
+from cad.freecad import admission
+from cad.freecad.admission import DOCUMENT, admitted
 
 PLAIN = '<Object type="PartDesign::Body" name="Body" id="1"/>'
 
@@ -67,9 +68,11 @@ def test_declared_entities_are_refused():
     assert refusal(packed({DOCUMENT: bomb})) == "package"
 
 
-def test_a_bomb_is_refused_by_what_it_unpacks_to():
-    content = packed({"Shape.brp": bytes(MOST_BYTES + 1)})
-    assert len(content) < 2**18
+def test_a_bomb_is_refused_by_what_it_unpacks_to(monkeypatch):
+    assert admission.MOST_BYTES == 64 * 2**20
+    monkeypatch.setattr(admission, "MOST_BYTES", 2**20)
+    content = packed({"Shape.brp": bytes(2**20)})
+    assert len(content) < 2**12
     assert refusal(content) == "too_large"
 
 
