@@ -18,7 +18,7 @@ from cad.toleranced import Carried
 
 _AXES = {"x": X, "y": Y, "z": Z}
 _CLOSE = 1e-6  # [mm]: a face of this size is the parameter's
-ROUND = ("cylinders", "beside", "askew", "spheres")
+ROUND = ("cylinders", "beside", "along", "askew", "spheres")
 """The sorts of faces whose size is their diameter."""
 
 
@@ -131,7 +131,9 @@ def _is_meant(face: FaceSeen, one: Carried) -> bool:
     if one.faces == "askew":
         return not any(face.surface.along(axis) for axis in _AXES.values())
     axis = _AXES[one.where]
-    return face.surface.about(axis) == (one.faces == "cylinders") and face.surface.along(axis)
+    if one.faces != "along" and face.surface.about(axis) != (one.faces == "cylinders"):
+        return False
+    return face.surface.along(axis)
 
 
 def _at_end(faces: list[FaceSeen], one: Carried) -> Iterator[FaceSeen]:

@@ -29,6 +29,7 @@ from cad.toleranced import Carried, Faces, Form, Limits
 _TYPES: Mapping[Faces, DimensionType] = {
     "cylinders": DimensionType.XCAFDimTolObjects_DimensionType_Size_Diameter,
     "beside": DimensionType.XCAFDimTolObjects_DimensionType_Size_Diameter,
+    "along": DimensionType.XCAFDimTolObjects_DimensionType_Size_Diameter,
     "askew": DimensionType.XCAFDimTolObjects_DimensionType_Size_Diameter,
     "spheres": DimensionType.XCAFDimTolObjects_DimensionType_Size_SphericalDiameter,
     "planes": DimensionType.XCAFDimTolObjects_DimensionType_Location_LinearDistance,

@@ -11,7 +11,8 @@ A model says it in `toleranced`, by parameter, in plain words:
 
 - `cylinders`: those about that axis, of the parameter's diameter; `end`, `"low"` or `"high"`, takes only the
   first or the last along the axis, which no other dimension takes then;
-- `beside`: cylinders along that axis, but not about it; `askew`: cylinders along no axis, here `True`;
+- `beside`: cylinders along that axis, but not about it; `along`: about it or not;
+- `askew`: cylinders along no axis, here `True`;
 - `spheres`, here `True`;
 - `planes`: from one plane across that axis to another; `levels` counts these planes, `[[0, -1]]` if it does
   not say, which is from the first to the last. Each pair of numbers is a dimension of its own;
@@ -40,11 +41,11 @@ if TYPE_CHECKING:
     from cad.header import Header
     from cad.model import CadModel
 
-Faces = Literal["cylinders", "beside", "askew", "spheres", "planes", "walls", "between"]
+Faces = Literal["cylinders", "beside", "along", "askew", "spheres", "planes", "walls", "between"]
 Form = Literal["cylindricity", "perpendicularity", "parallelism"]
 FACES: tuple[Faces, ...] = get_args(Faces)
 FORMS: tuple[Form, ...] = get_args(Form)
-_BY_AXIS = ("cylinders", "beside", "planes", "walls")
+_BY_AXIS = ("cylinders", "beside", "along", "planes", "walls")
 _MORE = frozenset({"of", "end", "levels", "datum", "to"})
 _DIGITS = 9  # decimals of a limit in mm: what differs less is the same limit
 

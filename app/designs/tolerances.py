@@ -1,6 +1,7 @@
 """Tolerances in a design that nothing calculates with: those of its own parameters and of its models.
 
-Those of a step's inputs are among the warnings of the step.
+Those of a step's inputs are among the warnings of the step. Those of a model's parameters are stated in its
+STEP file where its faces carry them, and in no other way used.
 """
 
 from __future__ import annotations
@@ -8,16 +9,24 @@ from __future__ import annotations
 from app.plain import JsonObject
 from app.schemas.answers import Warning
 from templates.core.language.ledger import Notice
-from templates.core.language.tolerances import unused
+from templates.core.language.tolerances import DETAIL, unused
+
+OF_A_MODEL = (
+    "the solid is built at the value; its STEP file states the tolerance, if a face of the model carries "
+    f"this dimension; {DETAIL.partition('; ')[2]}"
+)
 
 
 def warnings(document: JsonObject) -> list[Warning]:
     """A warning for every parameter of a design's document that has `plus` or `minus`."""
     listed = list(map(_warning, unused(document["parameters"])))
     for name, model in document["models"].items():
-        listed += (_warning(notice, f"{name}.") for notice in unused(model["parameters"]))
+        listed += (
+            Warning(code=notice.code, name=f"{name}.{notice.name}", detail=OF_A_MODEL)
+            for notice in unused(model["parameters"])
+        )
     return listed
 
 
-def _warning(notice: Notice, prefix: str = "") -> Warning:
-    return Warning(code=notice.code, name=prefix + notice.name, detail=notice.detail)
+def _warning(notice: Notice) -> Warning:
+    return Warning(code=notice.code, name=notice.name, detail=notice.detail)

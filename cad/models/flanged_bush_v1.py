@@ -108,6 +108,13 @@ class FlangedBush(CadModel):
         "oil_groove_depth": "0.8 mm",
     }
     film_bore = "inner_diameter"
+    toleranced = {
+        "inner_diameter": {"of": "bush", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
+        "flange_diameter": {"of": "bush", "cylinders": "z"},
+        "flange_thickness": {"of": "bush", "planes": "z", "levels": [[0, 1]]},
+        "width": {"of": "bush", "planes": "z", "perpendicularity": 1, "to": "A"},
+        "oil_hole_diameter": {"of": "bush", "along": "y"},
+    }
 
     d: Array = given("mm", "inner diameter", symbol="d", ge=1, le=5000, also=("bearing diameter", "bore"))
 

@@ -184,6 +184,13 @@ class ThrustWasher(CadModel):
         "lug_height": "4 mm",
     }
 
+    toleranced = {
+        "inner_diameter": {"of": "washer", "cylinders": "z", "datum": "A"},
+        "outer_diameter": {"of": "washer", "cylinders": "z"},
+        "thickness": {"of": "washer", "planes": "z", "perpendicularity": 1, "to": "A"},
+        "pin_hole_diameter": {"of": "washer", "beside": "z"},
+    }
+
     d: Array = given("mm", "inner diameter", symbol="d", ge=1, le=2000, also=("bearing diameter", "bore"))
 
     @derived("mm", "outer diameter", symbol="D", ge=1, le=10000)

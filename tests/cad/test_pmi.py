@@ -23,7 +23,10 @@ from templates.core.errors import InvalidInputs
 from templates.core.units.fits import deviations
 
 QUICK = [("plain_bearing", 1)] * 6 + [("ball_bearing", 1)] * 3 + [("crank_throw", 1)]
-ALL = [("plain_bearing", 1), ("ball_bearing", 1), ("crank_throw", 1), ("crankshaft", 1), ("crankshaft", 2)]
+ALL = [
+    ("plain_bearing", 1), ("ball_bearing", 1), ("flanged_bush", 1), ("thrust_washer", 2), ("crank_throw", 1),
+    ("crankshaft", 1), ("crankshaft", 2),
+]  # fmt: skip
 ZONES = ("H6", "H7", "H8", "G7", "JS7", "P7", "h6", "g6", "f7", "js6", "k6", "p6")
 FREECAD = Path("/usr/lib/freecad-python3/lib")
 OPEN_IN_FREECAD = """

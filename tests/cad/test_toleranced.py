@@ -69,7 +69,7 @@ def test_a_released_model_may_declare_more_faces():
 def test_every_model_carries_its_diameters(model):
     declared = carried(model)
     missing = {n for n in model.inputs if n.endswith("_diameter")} - declared.keys()
-    assert missing <= {"bolt_hole_diameter", "bolt_circle_diameter"} or not declared
+    assert missing <= {"bolt_circle_diameter", "pin_circle_diameter"} or not declared
     assert {one.part for one in declared.values()} <= {
         part.name for part in model.from_quantities(model.example).build()
     }
