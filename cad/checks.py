@@ -11,6 +11,7 @@ import numpy as np
 from cad.errors import GeometryError
 from cad.inspect import Measured
 from cad.model import Box, CadModel, Dimension, Part
+from cad.overlaps import overlaps
 from cad.step import Body
 from cad.surfaces import Seen
 
@@ -55,6 +56,19 @@ def check_box(model: CadModel, measured: Box) -> None:
     if not all(isclose(a, b, rel_tol=1e-9, abs_tol=_BOX_TOLERANCE) for a, b in pairs):
         detail = f"{model.id} should fill the box {_box(wanted)}; it fills {_box(measured)}"
         raise GeometryError("bounding_box", detail, model.inputs)
+
+
+def check_overlaps(model: CadModel, bodies: Sequence[Body]) -> None:
+    """No two parts that are mated take the same space.
+
+    Raises
+    ------
+    GeometryError
+        `interference`, naming the parts.
+    """
+    if model.keeps_apart and (interfering := list(overlaps(bodies))):
+        detail = f"parts of {model.id} interfere: {'; '.join(map(str, interfering))}"
+        raise GeometryError("interference", detail, model.inputs)
 
 
 def check_dimensions(model: CadModel, seen: Mapping[str, Seen]) -> dict[str, Dimension]:

@@ -12,8 +12,8 @@ class GeometryError(Exception):
     """The kernel made no solid, or not the one that was requested.
 
     `code` is one of `not_finite`, `not_one_solid`, `invalid_solid`, `bounding_box`, `volume`, `dimension`,
-    `tolerance`, `open_mesh`, `kernel`; `parameters` are the API names of the parameters concerned. It
-    survives pickling, because it is raised in a worker process.
+    `tolerance`, `interference`, `open_mesh`, `kernel`; `parameters` are the API names of the parameters
+    concerned. It survives pickling, because it is raised in a worker process.
     """
 
     def __init__(self, code: str, detail: str, parameters: Iterable[str] = ()) -> None:

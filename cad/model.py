@@ -131,6 +131,9 @@ class CadModel(Template):
         super().__init_subclass__()
         carried(cls)
 
+    keeps_apart: ClassVar[bool] = False
+    """Whether its parts are mated as in a machine, so that no two may overlap."""
+
     def build(self) -> tuple[Part, ...]:
         """The parts, drawn from the parameters alone."""
         raise NotImplementedError

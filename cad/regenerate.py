@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from cad.catalogue import models
-from cad.checks import check_bodies, check_box, check_dimensions
+from cad.checks import check_bodies, check_box, check_dimensions, check_overlaps
 from cad.errors import GeometryError
 from cad.header import Header
 from cad.inspect import bounding_box, look_at, measure, summarise
@@ -188,6 +188,7 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
         box = bounding_box(bodies)
     check_bodies(model, parts, bodies, measured)
     check_box(model, box)
+    check_overlaps(model, bodies)
     dimensions = check_dimensions(model, look_at(bodies))
     if annotations is not None:
         check_statements(parts, bodies, annotations, read_statements(step))

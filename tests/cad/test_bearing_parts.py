@@ -16,7 +16,13 @@ from cad.regenerate import as_text, regenerate
 from templates.core.errors import InvalidInputs
 from templates.core.language.spec import Choice, Derived
 
-NEW = [("thrust_washer", 2), ("flanged_bush", 1), ("plain_bearing", 2)]
+NEW = [
+    ("thrust_washer", 2),
+    ("flanged_bush", 1),
+    ("plain_bearing", 2),
+    ("bearing_housing", 1),
+    ("bearing_assembly", 1),
+]
 NONE_BY_DEFAULT = {
     "oil_grooves": (1, 7), "pin_hole_diameter": (0.02, 0.3), "lug_width": (0.02, 0.6),
     "oil_hole_diameter": (0.02, 0.3), "oil_groove_width": (0.02, 0.4), "oil_groove_depth": (0.005, 0.1),
@@ -27,6 +33,8 @@ LIMITS = {  # what a random set must reach: the least share of 300 that makes a 
     "thrust_washer": 0.15,
     "flanged_bush": 0.3,
     "plain_bearing": 0.1,
+    "bearing_housing": 0.15,
+    "bearing_assembly": 0.15,
 }
 HOSTILE_VALUES = (math.nan, math.inf, -math.inf, -1.0, -1e-3, 0.0, 1e-12, 1e-9, 1e-7, 1e-6, 1e9, 1e300)
 BAD = (*HOSTILE_VALUES[:5], 1e9, 1e300)
