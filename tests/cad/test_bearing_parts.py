@@ -33,8 +33,8 @@ LIMITS = {  # what a random set must reach: the least share of 300 that makes a 
     "thrust_washer": 0.15,
     "flanged_bush": 0.3,
     "plain_bearing": 0.1,
-    "bearing_housing": 0.15,
-    "bearing_assembly": 0.15,
+    "bearing_housing": 0.1,
+    "bearing_assembly": 0.1,
 }
 HOSTILE_VALUES = (math.nan, math.inf, -math.inf, -1.0, -1e-3, 0.0, 1e-12, 1e-9, 1e-7, 1e-6, 1e9, 1e300)
 BAD = (*HOSTILE_VALUES[:5], 1e9, 1e300)
