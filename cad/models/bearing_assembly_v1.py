@@ -11,12 +11,18 @@ from cad.model import BRIGHT_STEEL, BRONZE, STEEL, Box, CadModel, Part, mm
 from cad.shells.half_shell import HalfShell
 from cad.shells.housing import Housing
 from cad.surfaces import Seen, X, Y, Z
-from templates.core.language.template import Array, Truth, derived, formula, given, require
+from templates.core.language.template import Array, Truth, derived, formula, given, require, units
 
 IRON = (0.42, 0.44, 0.47)
 IRON_DENSITY = 7200.0  # kg/m³, grey cast iron (EN 1561: 7.10 to 7.30 g/cm³)
 SAME = 1e-11  # relative; sizes are written with twelve digits
 LINING_DENSITY = 3110.0  # kg/m³, of AlSn20Cu: mixture of its elements by mass
+
+
+@units("m", returns="1")
+def is_a_gap(length: Array) -> Truth:
+    """Whether a length [m] is one that the kernel can tell from none: 0.1 µm."""
+    return length >= 1e-7
 
 
 class BearingAssembly(CadModel):
@@ -118,7 +124,7 @@ class BearingAssembly(CadModel):
     @require("diametral_clearance", "journal_diameter", remedy="make the clearance smaller, or 0 for none")
     def clearance_is_small(self) -> Truth:
         """The clearance is at most 5 % of the journal, and 0 or at least 0.1 µm."""
-        return (self.C <= 0.05 * self.d) & ((self.C <= 0) | (self.C >= 1e-7))
+        return (self.C <= 0.05 * self.d) & ((self.C <= 0) | is_a_gap(self.C))
 
     @require("housing_bore", "journal_diameter", "diametral_clearance", "wall",
              remedy="make the housing bore larger or the wall thinner")  # fmt: skip
@@ -130,7 +136,7 @@ class BearingAssembly(CadModel):
     def shells_lie_in_the_housing(self) -> Truth:
         """The play of the shells in the housing is at most half a wall; 0, or at least 0.1 µm."""
         play = self.D_h - self.D
-        return (play <= 0.5 * self.t) & ((play <= SAME * self.D) | (play >= 1e-7))
+        return (play <= 0.5 * self.t) & ((play <= SAME * self.D) | is_a_gap(play))
 
     @require("lining_thickness", "wall", remedy="make the lining thinner or the wall thicker")
     def back_is_steel(self) -> Truth:
@@ -145,7 +151,7 @@ class BearingAssembly(CadModel):
     @require("crush_height", "journal_diameter", remedy="make the crush height smaller, or 0 for none")
     def crush_is_small(self) -> Truth:
         """The crush height is at most 1 % of the journal's diameter, and 0 or at least 1 µm."""
-        return (self.a <= 0.01 * self.d) & ((self.a <= 0) | (self.a >= 1e-6))
+        return (self.a <= 0.01 * self.d) & ((self.a <= 0) | is_a_gap(self.a / 10))
 
     @require("crush_height", "diametral_clearance", remedy="leave play for the journal, or draw no crush")
     def journal_stands_free(self) -> Truth:
