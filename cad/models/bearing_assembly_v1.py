@@ -56,7 +56,7 @@ class BearingAssembly(CadModel):
         "wall": "2.4 mm",
         "width": "22 mm",
         "lining_thickness": "0.6 mm",
-        "crush_height": "0.04 mm",
+        "crush_height": "0 mm",
         "housing_bore": "52.875 mm",
         "housing_breadth": "100 mm",
         "block_height": "65 mm",
