@@ -206,7 +206,7 @@ class PlainBearing(CadModel):
         """Oil hole and chamfers of the bore take at most 90 % of the width."""
         return self.d_h + 2 * self.c_i <= 0.9 * self.B
 
-    @require("oil_hole_diameter", "outer_chamfer", "flange_thickness", "width",
+    @require("oil_hole_diameter", "outer_chamfer", "flange_thickness", "flange_diameter", "width",
              remedy="make the hole smaller or the shell wider")  # fmt: skip
     def hole_within_seat(self) -> Truth:
         """The oil hole keeps off the chamfers of the back and off flanges."""
@@ -287,7 +287,13 @@ class PlainBearing(CadModel):
         """A chamfer of the bore is at least 10 % deeper than the joint relief."""
         return (self.c_i <= 0) | (self.c_i >= 1.1 * self.d_r)
 
-    @require("outer_chamfer", "width", "flange_thickness", remedy="make the chamfers or flanges smaller")
+    @require(
+        "outer_chamfer",
+        "width",
+        "flange_thickness",
+        "flange_diameter",
+        remedy="make the chamfers or flanges smaller",
+    )
     def seat_is_left(self) -> Truth:
         """Chamfers and flanges leave at least 30 % of the width to the seat in the housing."""
         return self.B_s - 2 * self.c_o >= 0.3 * self.B
@@ -297,7 +303,7 @@ class PlainBearing(CadModel):
         """A flange is at least 2 % larger than the outside of the shell, and at most twice as large."""
         return (self.D_f <= 0) | ((self.D_f >= 1.02 * self.D) & (self.D_f <= 2 * self.D))
 
-    @require("flange_thickness", "inner_chamfer", "lining_thickness",
+    @require("flange_thickness", "flange_diameter", "inner_chamfer", "lining_thickness",
              remedy="make the flange thicker or the chamfer smaller")  # fmt: skip
     def flange_holds_chamfer(self) -> Truth:
         """A flange is thicker than what the chamfer of the bore takes."""
@@ -309,7 +315,7 @@ class PlainBearing(CadModel):
         R = self.D / 2
         return (self.w_t <= 0) | (self.l_t <= np.sqrt(2 * R * 0.7 * self.t_s * (1 - 0.35 * self.t_s / R)))
 
-    @require("tang_width", "width", "outer_chamfer", "flange_thickness",
+    @require("tang_width", "width", "outer_chamfer", "flange_thickness", "flange_diameter",
              remedy="make the tang narrower")  # fmt: skip
     def tang_within_seat(self) -> Truth:
         """The tang keeps off the chamfers of the back and off flanges, by 2 % of the width."""
