@@ -48,6 +48,10 @@ CHEAP = ("mobility_short", "mobility", "mobility_grooved")
 OUTPUTS = ("minimum_film_thickness", "maximum_eccentricity", "film_thickness", "eccentricity_x",
            "eccentricity_y", "power_loss", "side_flow")  # fmt: skip
 Line = dict[str, Any]
+Bands = frozenset[tuple[int, int]]
+EVERY_BAND: Bands = frozenset(
+    (row, column) for row in range(len(LOADS) - 1) for column in range(len(WIDTHS) - 1)
+)
 
 
 def drawn(seed: int, kind: str, number: int = 0) -> Iterator[tuple[int, RandomDuty]]:
@@ -193,27 +197,27 @@ def band(S: float, b: float) -> tuple[int, int]:
     return min(max(int(row), 0), len(LOADS) - 2), min(max(int(column), 0), len(WIDTHS) - 2)
 
 
-def march(seed: int, kinds: list[str], most: int) -> None:
-    """March so many duties in every band, with the other seed so many in all."""
+def march(seed: int, kinds: list[str], most: int, bands: Bands = EVERY_BAND) -> None:
+    """March so many duties in every one of the bands, with the other seed so many in all."""
     own = [line for line in kept() if line["seed"] == seed]
     done = {(line["kind"], line["number"]) for line in own}
     for kind in kinds:
-        for number, duty in wanted(seed, kind, most):
+        for number, duty in wanted(seed, kind, most, bands):
             if (kind, number) not in done:
                 line = compared(kind, number, seed, duty)
                 with KEPT.open("a", encoding="utf-8") as file:
                     file.write(json.dumps(line, separators=(",", ":")) + "\n")
 
 
-def wanted(seed: int, kind: str, most: int) -> Iterator[tuple[int, RandomDuty]]:
-    """The first so many duties of each band; with the other seed of all bands together."""
+def wanted(seed: int, kind: str, most: int, bands: Bands = EVERY_BAND) -> Iterator[tuple[int, RandomDuty]]:
+    """The first so many duties of each of the bands; with the other seed of all bands together."""
     counts: Counter[tuple[int, int]] = Counter()
     for number, duty in drawn(seed, kind):
         place = band(float(np.hypot(*duty.load.S).max()), duty.ratio)
-        if seed == SEED and counts[place] >= most:
+        if seed == SEED and (place not in bands or counts[place] >= most):
             continue
         counts[place] += 1
         yield number, duty
-        filled = counts.total() if seed != SEED else min(counts.values()) if len(counts) == BANDS else 0
+        filled = counts.total() if seed != SEED else min(counts[place] for place in bands)
         if filled >= most:
             return

@@ -25,7 +25,14 @@ FED = (
     "level supplied needs to know how oil comes in: give groove_width, sleeve_hole_length or pin_hole_length "
     "in mm, and supply_pressure in bar"
 )
-BACK = "let it rest in the frame, turn whole times a cycle, or give a groove of 360 deg"
+SLEEVE_BACK = (
+    "give speeds in rpm with which it rests in the frame or turns by whole turns in a cycle, or a "
+    "groove_extent of 360 deg and no hole in the sleeve"
+)
+WIDTHS = (
+    "give bearing_width and bearing_diameter in mm in such a ratio; level mobility_short takes 0.01 … 100"
+)
+PIN_BACK = "give speeds in rpm with which it turns by whole turns in the frame in a cycle"
 
 
 class FedBearing(Template):
@@ -52,7 +59,7 @@ class FedBearing(Template):
     phi_J: Array = given("deg", "pin hole angle", symbol=r"\varphi_{J}", default="0 deg", ge=-360, le=360)
     p_s: Array = given("bar", "supply pressure", alternative=True, gt=0)
 
-    @derived("rpm", "crank speed", symbol=r"\Omega", gt=0, remedy="give it where the journal does not turn")
+    @derived("rpm", "crank speed", symbol=r"\Omega", gt=0, remedy="give it in rpm where the journal rests")
     def Omega(self) -> Array:
         """Speed of the crank; the mean of the journal unless it is given."""
         return mean_speed(self.omega_J)
@@ -67,12 +74,12 @@ class FedBearing(Template):
         """Extent of the hole along the circumference; as its length unless it is given."""
         return 1 * self.l_J
 
-    @require("crank_angle", remedy="12 to 3600 angles, the last point not repeated, no gap in between")
+    @require("crank_angle", remedy="give 12 to 3600 angles in deg, without the first again at the end")
     def one_cycle(self) -> Truth:
         """The crank angles rise and cover one cycle of 360° or 720° once."""
         return bool(np.isfinite(self.period))
 
-    @require("diametral_clearance", "bearing_diameter", remedy="give the clearance as bore minus journal")
+    @require("diametral_clearance", "bearing_diameter", remedy="give bore less journal diameter, in mm")
     def clearance_within_bearing(self) -> Truth:
         """The diametral clearance is smaller than the bearing diameter."""
         return self.c < self.D
@@ -80,7 +87,7 @@ class FedBearing(Template):
     @require("groove_width", "bearing_width", remedy="give the groove's width in mm, across the bearing")
     def groove_within_bearing(self) -> Truth:
         """The groove takes at most 95 % of the bearing's width."""
-        return within_bearing(self.W_g, self.W, self.W_g, self.D)
+        return within_bearing(self.W_g, self.W, 0 * self.W_g, self.D)
 
     @require("sleeve_hole_length", "sleeve_hole_arc", "bearing_width", remedy="give both in mm")
     def sleeve_hole_within_bearing(self) -> Truth:
@@ -97,12 +104,12 @@ class FedBearing(Template):
         """The supply pressure is known where a groove or a hole feeds oil."""
         return np.isfinite(self.p_s) | (self.feeding.count == 0)
 
-    @require("sleeve_speed", "frame_speed", remedy=BACK)
+    @require("sleeve_speed", "frame_speed", remedy=SLEEVE_BACK)
     def sleeve_comes_back(self) -> Truth:
         """A sleeve with a hole or a groove that ends is back at its place in the frame after the cycle."""
         return is_back(self.motion, self.omega_B, self.feeding.sleeve_holed | self.feeding.partial())
 
-    @require("speed", "crank_speed", "frame_speed", remedy=BACK)
+    @require("speed", "crank_speed", "frame_speed", remedy=PIN_BACK)
     def journal_comes_back(self) -> Truth:
         """A journal with a hole is back at its place in the frame after the cycle."""
         return is_back(self.motion, self.omega_J, self.feeding.pin_holed)
@@ -123,7 +130,7 @@ class FedBearing(Template):
         return self.c / self.D
 
     @formula(
-        "1", "width ratio", ge=0.02, le=10, remedy="level mobility_short takes 0.01 … 100",
+        "1", "width ratio", ge=0.02, le=10, remedy=WIDTHS,
         per_level={"mobility_short": limits(0.01, 100, published=(None, 0.25))},
     )  # fmt: skip
     def b(self) -> Array:
@@ -138,7 +145,8 @@ class FedBearing(Template):
             self.l_B, self.a_B, self.phi_B, self.l_J, self.a_J, self.phi_J,
         )  # fmt: skip
 
-    @formula("1", "inlets", remedy=FED, per_level={"supplied": limits(ge=1)})
+    @formula("1", "inlets", symbol="n_{F}", remedy=FED, per_level={"supplied": limits(ge=1)},
+             latex=r"\text{number of groove, hole in the sleeve and hole in the pin}")  # fmt: skip
     def inlets(self) -> Array:
         """How many of groove, sleeve hole and pin hole there are."""
         return self.feeding.count

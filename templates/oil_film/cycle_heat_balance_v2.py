@@ -41,9 +41,15 @@ from templates.physics.orbits.cyclic_film import CycleFilm, Duty
 from templates.physics.supplied.fed_cycle import FedDuty, FedOrbit, fed_film, fed_orbit
 
 BOOKER = "Booker 1965"
+ORBIT = "Booker 1965; supplied: Woloszynski et al. 2015"
 CROSS = "Cross 1965"
+LAWS = "ASTM D341; Vogel 1921"
 ISO = "ISO 7902-1:1998"
 NO_HTHS = "no HTHS viscosity is given: the oil does not thin by shear"
+BETWEEN = (
+    "give an hths_viscosity in mPa*s below that at low shear and 150 °C, see low_shear_viscosity_hot, and "
+    "above endless_shear_ratio times that"
+)
 ALL_OF_IT = "the side flow of level supplied is all the oil that leaves, what the supply drives with it"
 CYCLE = "crank_angle"
 UNBALANCED = (
@@ -71,12 +77,15 @@ class CycleHeatBalance(Oil, FedBearing):
     holes do: both are left out. The film is taken as always full, so more oil is displaced than leaves.
     Level supplied conserves the oil: its side flow is all that leaves by the ends, and no feed flow is added.
     It takes three or four marches of a second each, and one point at a time. A film that starves or does not
-    settle has no balance. On the example it leaves half the oil, and the rise is half as large again.
+    settle has no balance. On the example half as much oil leaves, and the rise is half as large again.
     Levels mobility_short and mobility do not know the groove in their film, but count its flow.
     Shear thinning after Cross needs the HTHS viscosity of the oil (150 °C, 1e6 1/s). The shear rate is |U|/h,
     as mean over the circle and the cycle. What endless shear leaves, by default half, and the exponent, by
-    default 1, are properties of the oil for which no general source is known. The critical rate is taken from
-    150 °C to the film's temperature by the ratio of the viscosities.
+    default 1, are properties of the oil, for which there is no general source. The critical rate is taken
+    from 150 °C to the film's temperature by the ratio of the viscosities at low shear, as where time and
+    temperature superpose.
+    Power loss and mean shear rate have the formulas of a full film; level supplied takes the shear of the oil
+    that is there in the loss, and leaves the rate as it is.
     A dynamic_viscosity that is given is that of the film; heat and shear do not change it.
     Densities and viscosities are those at ambient pressure.
     No error of the model is stated: no measured cycle with all its inputs was at hand.
@@ -85,6 +94,7 @@ class CycleHeatBalance(Oil, FedBearing):
     ----------
     ISO 7902-1:1998, clause 6.4, for the balance.
     Booker: Journal of Basic Engineering 87, 1965, for the mobility method.
+    Woloszynski, Podsiadlo, Stachowiak: Tribology Letters 58:18, 2015, for mass-conserving cavitation.
     Cross: Journal of Colloid Science 20, 1965, p. 417; ASTM D4683 and SAE J300 for HTHS.
     ASTM D341 (Walther) or Vogel: Physikalische Zeitschrift 22, 1921, for the viscosity.
     """
@@ -218,7 +228,8 @@ class CycleHeatBalance(Oil, FedBearing):
         """The viscosity of the film, if it is given."""
         return self.as_given("eta")
 
-    @formula("mPa*s", "low shear viscosity hot", symbol=r"\eta_{150}")
+    @formula("mPa*s", "low shear viscosity hot", symbol=r"\eta_{150}", source=LAWS,
+             latex=r"\eta\left(150\,\mathrm{°C}\right)")  # fmt: skip
     def eta_150(self) -> Array:
         """At low shear and 150 °C, the temperature of the HTHS viscosity."""
         return viscosity_at_150(
@@ -228,7 +239,7 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @formula(
         "1", "HTHS ratio", symbol="x", name="hths_ratio", ge=1e-6, le=1 - 1e-6, absent=NO_HTHS,
-        source=CROSS, remedy="HTHS lies between the viscosities at low and at endless shear at 150 °C",
+        source=CROSS, remedy=BETWEEN,
     )  # fmt: skip
     def hths_ratio(self) -> Array:
         """What shear of 1e6 1/s leaves of what it can take."""
@@ -249,20 +260,24 @@ class CycleHeatBalance(Oil, FedBearing):
         return heat_of_cycle(self.bearing, self.oil)
 
     @formula(
-        "mPa*s", "effective viscosity", symbol=r"\eta_{e}", gt=0, lt=1e9, remedy=UNBALANCED,
+        "mPa*s", "effective viscosity", symbol=r"\eta_{e}", gt=0, lt=1e9, remedy=UNBALANCED, source=CROSS,
         assumes=("b", "b_g", "inlets"),
+        latex=r"r_{\infty}\,\eta+\frac{\left(1-r_{\infty}\right)\eta}{1+\frac{1-x}{x}\left(\frac{\dot\gamma\,\eta}"
+        r"{10^{6}\,\mathrm{s^{-1}}\,\eta_{150}}\right)^{n}}",
     )  # fmt: skip
     def eta_e(self) -> Array:
-        """Of the whole film, at its temperature and shear rate."""
+        """Of the whole film, at its temperature and shear rate; without an HTHS viscosity it is η."""
         return viscosity_of(self.heat)
 
-    @formula("degC", "film temperature", symbol="T_{m}")
+    @formula("degC", "film temperature", symbol="T_{m}", source=ISO,
+             latex=r"T_{s}+\frac{k\,P}{2\,\rho_{c}\left(Q+Q_{p}\right)}")  # fmt: skip
     def T_film(self) -> Array:
-        """The mean of supply and outlet."""
+        """The mean of supply and outlet, by the heat that the oil carries off; supplied: without Q_p."""
         return temperature_of(self.heat, self.eta_e)
 
     @formula("degC", "outlet temperature", symbol="T_{ex}", source=ISO)
     def T_ex(self) -> Array:
+        """Where the oil leaves."""
         return 2 * self.T_film - self.T_s
 
     @formula("K", "temperature rise", symbol=r"\Delta T", source=ISO)
@@ -270,7 +285,9 @@ class CycleHeatBalance(Oil, FedBearing):
         """From supply to outlet."""
         return self.T_ex - self.T_s
 
-    @formula("1/s", "mean shear rate", symbol=r"\dot\gamma")
+    @formula("1/s", "mean shear rate", symbol=r"\dot\gamma",
+             latex=r"\frac{1}{T}\int_{T}\frac{D\left|\omega_{J}-\omega_{B}\right|}{"
+             r"c\,\sqrt{1-\epsilon^{2}}}d\theta")  # fmt: skip
     def rate(self) -> Array:
         """Sliding speed over gap, as mean over circle and cycle."""
         return rate_of(self.heat, self.eta_e)
@@ -280,19 +297,26 @@ class CycleHeatBalance(Oil, FedBearing):
         """The share of the viscosity that shear takes."""
         return 1 - self.eta_e / self.eta
 
-    @formula("W", "power loss", symbol="P")
+    @formula("W", "power loss", symbol="P",
+             latex=r"\frac{1}{T}\int_{T}\left(\frac{\pi\,\eta_{e}\,W\,D^{3}\left(\omega_{J}-\omega_{B}\right)^{2}}{"
+             r"2\,c\,\sqrt{1-\epsilon^{2}}}+\vec{F}\cdot\vec{v}\right)d\theta")  # fmt: skip
     def P(self) -> Array:
-        """Mean over the cycle."""
+        """Mean over the cycle; v is the centre's velocity, seen from axes that turn at the mean speed."""
         return loss_of(self.heat, self.eta_e)
 
-    @formula("l/min", "side flow", symbol="Q")
+    @formula("l/min", "side flow", symbol="Q", latex=r"\frac{W\,D\,c\,\Omega}{2}\,\bar{q}")
     def Q(self) -> Array:
-        """What the motion of the journal displaces; at level supplied all that leaves by the ends."""
+        """What the motion of the journal displaces; at level supplied all that leaves by the ends.
+
+        With a bar it is that of the dimensionless film, as mean over the cycle.
+        """
         return side_flow_of(self.heat, self.eta_e)
 
-    @formula("l/min", "feed flow", symbol="Q_{p}", source=ISO, absent=ALL_OF_IT)
+    @formula("l/min", "feed flow", symbol="Q_{p}", source=ISO, absent=ALL_OF_IT,
+             latex=r"\frac{p_{s}\,D}{6\,\eta_{e}\left(W-B_{g}\right)}\,\frac{1}{T}\int_{T}\int_{\Delta\varphi_{g}}"
+             r"h^{3}\,d\varphi\,d\theta")  # fmt: skip
     def Q_p(self) -> Array:
-        """What the supply pressure drives from the groove."""
+        """What the supply pressure drives from the groove over its lands, with the gap along the groove."""
         return feed_flow_of(self.heat, self.eta_e)
 
     @shared
@@ -310,22 +334,28 @@ class CycleHeatBalance(Oil, FedBearing):
         """Its pressure."""
         return fed_film(self.level, self.fed, self.orbit)
 
-    @formula("1", "maximum eccentricity", symbol=r"\epsilon_{max}", lt=1, source=BOOKER)
+    @formula("1", "maximum eccentricity", symbol=r"\epsilon_{max}", lt=1, source=ORBIT)
     def eps_max(self) -> Array:
+        """Relative; between the angles too."""
         return self.orbit.eps_max
 
-    @formula("um", "minimum film thickness", symbol="h_{0}", source=BOOKER)
+    @formula("um", "minimum film thickness", symbol="h_{0}")
     def h_0(self) -> Array:
+        """The smallest of the cycle, between the angles too."""
         return self.c * (1 - self.eps_max) / 2
 
     @formula("deg", "minimum film angle", symbol=r"\theta_{h}")
     def theta_h(self) -> Array:
+        """Crank angle of the smallest film."""
         return self.orbit.angle
 
     @profile("um", "film thickness", along=CYCLE, symbol="h", latex=r"\frac{c}{2}\left(1-\epsilon\right)")
     def h(self) -> Array:
+        """The smallest around the bearing, at each crank angle."""
         return spread(self.c / 2, self.orbit.gap)
 
-    @formula("MPa", "maximum pressure", symbol="p_{max}")
+    @formula("MPa", "maximum pressure", symbol="p_{max}",
+             latex=r"\frac{\eta_{e}\,\Omega}{\psi^{2}}\,\max\bar p\left(\theta\right)")  # fmt: skip
     def p_max(self) -> Array:
+        """The largest of the cycle, at its angles; with a bar, of the dimensionless film."""
         return self.film.P_max * self.eta_e * self.Omega / self.psi**2

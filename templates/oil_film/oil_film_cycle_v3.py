@@ -34,17 +34,21 @@ from templates.physics.supplied.fed_cycle import (
 from templates.physics.supplied.feeding import feed_under_load, supply_kind
 
 BOOKER = "Booker 1965"
+ORBIT = "Booker 1965; supplied: Woloszynski et al. 2015"
+ISO = "ISO 7902-1:1998"
 STARVED = (
     "no film repeats, see verdict and verdict_reason. Starved: the oil's inlet stays under the load, see "
-    "feed_under_load, and the film thins from cycle to cycle: move groove or hole. Unsettled: no orbit found"
+    "feed_under_load, and the film thins from cycle to cycle: move the groove or the hole. Unsettled: no "
+    "orbit was found"
 )
 UNBORNE = (
-    "no orbit that repeats bears this with a film that can be told: the load may turn at the mean speed of "
-    "journal and sleeve, or be too large"
+    "no orbit that repeats bears this load with a film thicker than 2e-6 of the clearance: give less load in "
+    "kN, or more dynamic_viscosity in mPa*s, speed in rpm or bearing_width in mm; no film bears a load that "
+    "turns at the mean speed of journal and sleeve"
 )
-UNTOLD = (
-    "below, the load does not say where the journal runs (without any load it runs anywhere); above, no film "
-    "is left"
+OUTSIDE = (
+    "below, the load does not hold the journal in an orbit: give more load in kN or a larger "
+    "diametral_clearance in mm; above, no film is left: give less load, or more dynamic_viscosity in mPa*s"
 )
 MARCHED_ONLY = "level supplied alone follows the oil; a starved film has no flow that repeats"
 UNKNOWN_STEP = "no film repeats, or the gap changes too much from ring to ring to read an error from it"
@@ -79,25 +83,31 @@ class OilFilmCycle(FedBearing):
     Level mobility: the finite bearing's mobility, B/D 0.02 … 10. Both take the film as always full of oil and
     know no groove; they overstate the film of a half-grooved bearing about twofold.
     Level mobility_grooved, the default where a groove is given: where the load passes the groove, two lands
-    bear, as a blend over the 90° around the load. What the supply pressure bears at rest, in the groove and
-    evenly falling over its lands, is taken from the load. Always full of oil; holes do not count.
+    bear. The mobility is (1 − s) M(b) + s M(b (1 − g)/2)/(1 − g), where g is the groove's share of the width,
+    and s the share of the 90° about the load's direction that the groove covers.
+    What the supply pressure bears at rest is taken from the load: p_s B D/2 · (1 + g)/2 · sin(extent/2), out
+    of the groove's middle. In the groove the pressure is p_s, and over its lands it falls evenly.
+    Both formulas are this template's own, and exact for a groove all around; on other grooves they were
+    compared with level supplied. Always full of oil; holes do not count.
     Level supplied: conserves the oil, which enters by groove and holes alone. One point at a time, seconds.
     Where every hole is under the load for more than 60 % of the cycle it goes on, on finer meshes: there the
-    film hangs on what enters at the edges of the holes.
+    film depends on what enters at the edges of the holes.
     Its verdict is repeating, wandering (numerical_error is how far, 3 % at most), or starved or unsettled,
     which have no film.
     Boundary conditions differ between the levels and from those of oil_film 2: see boundary_condition.
     Largest pressure, loss and flow follow from the film under the load along the orbit. Power loss is the
-    shear of the oil by the difference of journal and sleeve speed, and the work of the load on the film.
+    shear of the oil by the difference of journal and sleeve speed, and the work of the load on the film. Its
+    formula is that of a full film; level supplied takes the shear of the oil that is there.
     Side flow is what the motion of the journal displaces from the ends; at level supplied also what the
     supply pressure drives.
     Rigid and isoviscous: criteria with warnings say where the pressure deforms steel by the clearance, or
     makes the oil 22 000 times as thick, and where the film is below 0.05 µm.
     A load number below 1e-4 is refused: with a mean speed of half the crank's, a journal in a four-stroke
-    engine may then whirl as it likes.
-    Two errors are told apart. numerical_error, an output, bounds the error of the smallest film by the step,
-    from three rings. At level supplied it is the change from cycle to cycle; where holes are under the load
-    for more than 60 % of the cycle, three times the change from the last but one mesh is added.
+    engine may then whirl in an orbit of any size.
+    Two errors are stated. numerical_error, an output, bounds the error of the smallest film by the step, from
+    orbits on three rings of crank angles. At level supplied it is the change from cycle to cycle; where holes
+    are under the load for more than 60 % of the cycle, three times the change from the last but one mesh is
+    added.
     The error in the answer is that of the model: how far the level may be from level supplied, a one-sided
     bound from random duties of the same kind of supply. It is null where fewer than 59 duties support it,
     where no or several inlets are given, and for pressures.
@@ -105,6 +115,7 @@ class OilFilmCycle(FedBearing):
     References
     ----------
     Booker: Journal of Basic Engineering 87, 1965, p. 537; Journal of Lubrication Technology 93, 1971, p. 168.
+    ISO 7902-1:1998 for the load number, there the Sommerfeld number.
     Campbell, Love, Martin, Rafique: Proc. Inst. Mech. Eng. 182 (3A), 1967, p. 51, bearings for engines.
     Woloszynski, Podsiadlo, Stachowiak: Tribology Letters 58:18, 2015, for mass-conserving cavitation.
     """
@@ -181,7 +192,7 @@ class OilFilmCycle(FedBearing):
         "hole_leaves_the_load": {
             "require": "feed_under_load <= 0.6",
             "words": "the oil's only inlet is not under the load for most of the cycle",
-            "source": "98 marched duties: of those below 60 %, every film with oil repeats, see the docs",
+            "source": "300 marched duties: no hole starved that was under the load for less, see the docs",
             "warning": "feed_under_load",
         },
     }
@@ -241,14 +252,17 @@ class OilFilmCycle(FedBearing):
 
     @formula("1/N", "load scale", symbol="s")
     def s(self) -> Array:
+        """The load number over the load."""
         return self.psi**2 / (self.D * self.W * self.eta * self.Omega)
 
-    @formula("1", "load number", symbol=r"S_{max}", ge=1e-4, le=1e6, remedy=UNTOLD, source=BOOKER)
+    @formula("1", "load number", symbol=r"S_{max}", ge=1e-4, le=1e6, remedy=OUTSIDE, source=ISO)
     def S_max(self) -> Array:
+        """That of the largest load, with the speed of the crank."""
         return self.F_max * self.s
 
     @formula("1", "relative supply pressure", symbol=r"\bar p_{s}", absent="no supply pressure is given")
     def P_s(self) -> Array:
+        """Over the specific load at which the load number is 1."""
         return self.p_s * self.psi**2 / (self.eta * self.Omega)
 
     @shared
@@ -256,8 +270,10 @@ class OilFilmCycle(FedBearing):
         """What the bearing has to do."""
         return replace(self.motion, scale=self.s)
 
-    @formula("1", "feed under load", absent=NO_FEED)
+    @formula("1", "feed under load", symbol=r"\tau_{F}", absent=NO_FEED,
+             latex=r"\text{share of the cycle in which all inlets lie within 60° of the load}")  # fmt: skip
     def under_load(self) -> Array:
+        """Of the whole cycle; a groove or slot longer than 120° is never under the load."""
         return feed_under_load(self.motion, self.feeding)
 
     @shared
@@ -272,9 +288,10 @@ class OilFilmCycle(FedBearing):
 
     @formula(
         "1", "maximum eccentricity", symbol=r"\epsilon_{max}", lt=1, absent=STARVED, remedy=UNBORNE,
-        assumes=("b", "b_g", "inlets", "S_max"),
+        source=ORBIT, assumes=("b", "b_g", "inlets", "S_max"),
     )  # fmt: skip
     def eps_max(self) -> Array:
+        """Relative; between the angles too."""
         return self.any_orbit.eps_max
 
     @shared
@@ -289,6 +306,7 @@ class OilFilmCycle(FedBearing):
 
     @text("boundary condition")
     def boundary(self) -> str:
+        """What the level takes for the pressure at the film's borders."""
         return self.boundary_of_level
 
     @shared
@@ -296,68 +314,90 @@ class OilFilmCycle(FedBearing):
         """What the level takes for the pressure at the film's borders."""
         return BOUNDARY_RELIEVED[self.level]
 
-    @formula("um", "minimum film thickness", symbol=r"h_{0}", source=BOOKER, absent=STARVED)
+    @formula("um", "minimum film thickness", symbol=r"h_{0}", absent=STARVED)
     def h_0(self) -> Array:
+        """The smallest of the cycle, between the angles too."""
         return self.c * (1 - self.eps_max) / 2
 
     @formula("deg", "minimum film angle", symbol=r"\theta_{h}", absent=STARVED)
     def theta_h(self) -> Array:
+        """Crank angle of the smallest film."""
         return self.orbit.angle
 
     @profile("um", "film thickness", along=CYCLE, symbol="h", absent=STARVED,
              latex=r"\frac{c}{2}\left(1-\epsilon\right)")  # fmt: skip
     def h(self) -> Array:
+        """The smallest around the bearing, at each crank angle."""
         return spread(self.c / 2, self.orbit.gap)
 
-    @profile("1", "eccentricity x", along=CYCLE, symbol=r"\epsilon_{x}", source=BOOKER, absent=STARVED)
+    @profile("1", "eccentricity x", along=CYCLE, symbol=r"\epsilon_{x}", source=ORBIT, absent=STARVED)
     def eps_x(self) -> Array:
+        """Of the journal's centre, over the radial clearance, along the axis x of the frame."""
         return self.orbit.eps_x
 
-    @profile("1", "eccentricity y", along=CYCLE, symbol=r"\epsilon_{y}", source=BOOKER, absent=STARVED)
+    @profile("1", "eccentricity y", along=CYCLE, symbol=r"\epsilon_{y}", source=ORBIT, absent=STARVED)
     def eps_y(self) -> Array:
+        """Likewise along the axis y."""
         return self.orbit.eps_y
 
     @profile("MPa", "peak pressure", along=CYCLE, symbol=r"\hat{p}", absent=STARVED,
-             latex=r"\frac{\eta\,\Omega}{\psi^{2}}\,P\left(\theta\right)")  # fmt: skip
+             latex=r"\frac{\eta\,\Omega}{\psi^{2}}\,\bar p\left(\theta\right)")  # fmt: skip
     def p(self) -> Array:
+        """The largest in the film at each crank angle; with a bar, of the dimensionless film."""
         return spread(self.eta * self.Omega / self.psi**2, self.film.P)
 
-    @formula("MPa", "maximum pressure", symbol=r"p_{max}", absent=STARVED)
+    @formula("MPa", "maximum pressure", symbol=r"p_{max}", absent=STARVED,
+             latex=r"\max\hat{p}\left(\theta\right)")  # fmt: skip
     def p_max(self) -> Array:
+        """The largest of the cycle, at its angles."""
         return self.film.P_max * self.eta * self.Omega / self.psi**2
 
     @formula("deg", "maximum pressure angle", symbol=r"\theta_{p}", absent=STARVED)
     def theta_p(self) -> Array:
+        """Crank angle of the largest pressure."""
         return self.film.P_angle
 
-    @formula("W", "power loss", symbol="P", absent=STARVED)
+    @formula("W", "power loss", symbol="P", absent=STARVED,
+             latex=r"\frac{1}{T}\int_{T}\left(\frac{\pi\,\eta\,W\,D^{3}\left(\omega_{J}-\omega_{B}\right)^{2}}{"
+             r"2\,c\,\sqrt{1-\epsilon^{2}}}+\vec{F}\cdot\vec{v}\right)d\theta")  # fmt: skip
     def P(self) -> Array:
+        """Mean over the cycle; v is the centre's velocity, seen from axes that turn at the mean speed."""
         return self.film.loss * self.W * self.D**2 * self.eta * self.Omega**2 / (2 * self.psi)
 
-    @formula("l/min", "side flow", symbol="Q", absent=STARVED)
+    @formula("l/min", "side flow", symbol="Q", absent=STARVED,
+             latex=r"\frac{W\,D\,c\,\Omega}{2}\,\bar{q}")  # fmt: skip
     def Q(self) -> Array:
+        """From both ends, mean over the cycle; with a bar, of the dimensionless film."""
         return self.film.side_flow * self.W * self.D * self.c * self.Omega / 2
 
-    @formula("1", "numerical error", symbol=r"\delta_{n}", absent=UNKNOWN_STEP)
+    @formula("1", "numerical error", symbol=r"\delta_{n}", absent=UNKNOWN_STEP,
+             latex=r"\text{from three rings of angles; supplied: last cycles and meshes}")  # fmt: skip
     def numerical_error(self) -> Array:
+        """Of the smallest film, relative; without the error of the model."""
         return self.orbit.numerical_error
 
     @text("verdict", absent=MARCHED_ONLY)
     def verdict(self) -> str:
+        """How the march ended."""
         return self.any_orbit.verdict
 
     @text("verdict reason", absent="a film repeats, or the level does not follow the oil")
     def why(self) -> str:
+        """Why the orbit does not repeat."""
         return self.any_orbit.reason
 
     @formula("1", "cycles run", symbol="n_{c}", absent=MARCHED_ONLY)
     def cycles(self) -> Array:
+        """On all meshes."""
         return self.any_orbit.cycles
 
     @formula("1", "mass balance", symbol=r"\delta_{m}", absent=MARCHED_ONLY)
     def mass_balance(self) -> Array:
+        """Oil fed less oil lost and stored in the last cycle, over the oil lost."""
         return self.any_orbit.mass_balance
 
-    @formula("l/min", "supply flow", symbol="Q_{s}", absent=MARCHED_ONLY)
+    @formula("l/min", "supply flow", symbol="Q_{s}", absent=MARCHED_ONLY,
+             latex=r"\frac{W\,D\,c\,\Omega}{2}\,\bar{q}_{s}")  # fmt: skip
     def Q_s(self) -> Array:
+        """What groove and holes feed, mean over the cycle."""
         return self.any_orbit.feed * self.W * self.D * self.c * self.Omega / 2

@@ -5,8 +5,8 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from benchmarks.film_cycle_duties import MARCH, drawn, fed, kept
-from benchmarks.film_cycle_ensemble import bound, rounded_up
+from benchmarks.film_cycle_duties import MARCH, band, drawn, fed, kept, wanted
+from benchmarks.film_cycle_ensemble import admitted, bound, rounded_up
 from benchmarks.supplied_duties import SUPPLIES
 from benchmarks.supplied_orbits import DUTIES, sampled
 
@@ -34,6 +34,30 @@ class TestBounds:
     )
     def test_example_rounded_up_to_two_digits(self, value, stated):
         assert rounded_up(value) == pytest.approx(stated, rel=1e-12)
+
+
+def test_example_a_bound_that_holds_too_seldom_with_the_other_seed_is_withdrawn():
+    stated = {
+        "half_groove": {"mobility": {"film": [[0.5, None]], "loss": [[0.2, 0.3]], "flow": [[0.1, 0.1]]}}
+    }
+    held = {"half_groove": {"mobility": {"film": [93, 100], "loss": [92, 100]}}}
+    left = admitted(stated, held)["half_groove"]["mobility"]
+    assert left["film"] == [[0.5, None]]
+    assert left["loss"] == [[None, None], [None, None]]
+    assert left["flow"] == [[0.1, 0.1]]
+
+
+def test_example_one_band_alone_has_the_same_duties_as_in_all_bands():
+    def numbers(*bands):
+        return [number for number, _ in wanted(1, "full_groove", 3, *bands)]
+
+    inside = [
+        number
+        for number, duty in wanted(1, "full_groove", 3)
+        if band(float(np.hypot(*duty.load.S).max()), duty.ratio) == (0, 1)
+    ]
+    assert numbers(frozenset({(0, 1)})) == inside
+    assert len(inside) == 3
 
 
 def test_property_the_sample_has_each_supply_with_each_kind_of_load_alike():

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
@@ -45,6 +46,29 @@ def test_second_method_balance_by_hand(level):
     assert found["temperature_rise"] == pytest.approx(rise, rel=1e-6)
     assert found["film_temperature"] == pytest.approx(90 + rise / 2, rel=1e-6)
     assert found[ETA] == pytest.approx(found["dynamic_viscosity"], rel=2e-3)
+
+
+def test_second_method_formulas_on_paper_give_the_answer():
+    """Shear rate, Cross's law and feed flow as the report writes them, from values that the answer has."""
+    found = outputs(level="mobility_grooved")
+    film = of_cycle(float(found[ETA]), "mobility_grooved")
+    D, W, groove, c = 48e-3, 18e-3, 3e-3, 0.055e-3
+    gap = np.asarray(found["film_thickness"]) * 1e-6 / (c / 2)
+    sliding = 3000 * np.pi / 30
+    rate = (D * sliding / (c * np.sqrt(gap * (2 - gap)))).mean()
+    assert found["mean_shear_rate"] == pytest.approx(rate, rel=1e-6)
+    eta, x = found["dynamic_viscosity"], found["hths_ratio"]
+    thinned = 1 + (1 - x) / x * rate * eta / (1e6 * found["low_shear_viscosity_hot"])
+    assert found[ETA] == pytest.approx(0.5 * eta + 0.5 * eta / thinned, rel=1e-6)
+    phi = np.linspace(-np.pi / 2, np.pi / 2, 2001)[:, None]
+    h = c / 2 * (1 - film["eccentricity_x"] * np.cos(phi) - film["eccentricity_y"] * np.sin(phi))
+    driven = 4e5 * D / (6 * found[ETA] * 1e-3 * (W - groove)) * trapezoid(h**3, phi, axis=0).mean()
+    assert found["feed_flow"] == pytest.approx(driven * 60_000, rel=1e-5)
+
+
+def test_property_viscosity_that_no_shear_leaves_names_input_unit_and_what_is_right():
+    with pytest.raises(InvalidInputs, match=r"give an hths_viscosity in mPa\*s below that at low shear"):
+        answer({"hths_viscosity": "30 mPa*s"})
 
 
 def test_analytic_bearing_without_a_groove_is_as_in_version_1():

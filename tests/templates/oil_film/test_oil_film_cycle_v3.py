@@ -9,6 +9,7 @@ import pytest
 from scipy.integrate import quad
 
 from benchmarks.supplied_duties import random_duty
+from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.oil_film.oil_film_cycle_v2 import OilFilmCycle as SecondVersion
 from templates.oil_film.oil_film_cycle_v3 import OilFilmCycle
@@ -106,6 +107,49 @@ class TestLift:
             alone = outputs(raw | {"supply_pressure": f"{bar} bar"})
             for name in FILM:
                 assert many[name][k] == pytest.approx(alone[name], rel=1e-9), name
+
+
+def test_second_method_power_loss_as_the_report_writes_it():
+    """Shear of a full film, and the load's work on the centre seen from axes that turn at half the speed."""
+    angle = np.arange(360) * 2 * np.pi / 360
+    x, y = 2 + 3 * np.exp(6 * (np.cos(angle - 0.4) - 1)) + 0.5 * np.cos(2 * angle), np.sin(angle)
+    curves = {"load_x": si(x * SCALE, "N"), "load_y": si(y * SCALE, "N")}
+    film = outputs(
+        inputs(0.0, 0.0) | curves | {"crank_angle": si(np.degrees(angle), "deg")}, level="mobility"
+    )
+    eps = np.asarray(film["eccentricity_x"]) + 1j * np.asarray(film["eccentricity_y"])
+    slope = (np.roll(eps, -1) - np.roll(eps, 1)) / (2 * angle[1])
+    v = PSI * D / 2 * OMEGA * (slope - 0.5j * eps)
+    shear = np.pi * ETA * RATIO * D * D**3 * OMEGA**2 / (2 * PSI * D * np.sqrt(1 - np.abs(eps) ** 2))
+    work = ((x + 1j * y) * SCALE * v.conj()).real
+    assert abs(work.mean()) > 0.05 * shear.mean()
+    assert film["power_loss"] == pytest.approx((shear + work).mean(), rel=1e-3)
+
+
+class TestRefusals:
+    @pytest.mark.parametrize(
+        ("changes", "name", "words"),
+        [
+            ({"sleeve_speed": si(0.3 * OMEGA, "rad/s")}, "sleeve_speed", "groove_extent of 360 deg"),
+            ({**PIN, "crank_speed": si(0.7 * OMEGA, "rad/s")}, "crank_speed", "speeds in rpm"),
+            ({"bearing_diameter": "0.05 mm"}, "diametral_clearance", "journal diameter, in mm"),
+            (
+                {"load_x": si(np.zeros(COUNT), "N"), "load_y": si(np.zeros(COUNT), "N")},
+                "load_number",
+                "in kN",
+            ),
+        ],
+    )
+    def test_property_refusals_name_input_unit_and_what_is_right(self, changes, name, words):
+        with pytest.raises(InvalidInputs) as refused:
+            evaluate(OilFilmCycle, inputs(X, Y, **HALF) | changes)
+        details = {name: fault.detail for fault in refused.value.faults for name in fault.names}
+        assert words in details[name]
+
+    def test_property_load_that_no_film_bears_is_refused_with_what_to_change(self):
+        turning = inputs(4 * np.cos(ANGLE), 4 * np.sin(ANGLE), crank_speed=si(OMEGA / 2, "rad/s"))
+        with pytest.raises(InvalidInputs, match="mean speed of journal and sleeve"):
+            evaluate(OilFilmCycle, turning)
 
 
 class TestWarnings:
