@@ -20,9 +20,10 @@ bound: it is not below the 95 % quantile of the error with a confidence of 95 %.
 the first that is; of 93 it is the second largest, so that one may starve. How many are marched does not
 depend on what they show: 60 in every band, then 93. A bound is rounded up. One that holds for fewer than 93
 of 100 duties with the other seed is withdrawn: null in all bands. An error is relative to the answer of the
-level, of a curve to its largest value; what the marched orbit itself lacks of repeating is added. A duty that starves has an infinite error. Pressures have no bound: that of level supplied is not converged
-where a starved film ends in an impact. Angles have none: of two films nearly alike, now one, now the other is
-the smallest.
+level, of a curve to its largest value; what the marched orbit itself lacks of repeating is added. A duty
+that starves has an infinite error. Pressures have no bound: that of level supplied is not converged where a
+starved film ends in an impact. Angles have none: of two films nearly alike, now one, now the other is the
+smallest.
 """
 
 import json
