@@ -40,6 +40,8 @@ Sizes = Mapping[str, list[float]]
 """Diameters and distances [mm] of a solid."""
 MOST_PLANES = 300
 """Of a part whose distances between planes are compared, pair by pair."""
+LONGEST_NAME = 100
+"""Of a part, in letters."""
 
 _DRAWN, _PARTS = "as drawn", "parts as drawn"  # no names that a declaration can have
 
@@ -137,7 +139,7 @@ class BroughtModel(CadModel):
             drawn: Drawn | None = vars(self).get(_DRAWN)
             if drawn is None:
                 raise GeometryError("kernel", f"{self.id} has not been drawn by its program", self.inputs)
-            parts = tuple(parts_of_step(drawn.step) if drawn.step else map(_part, drawn.parts))
+            parts = tuple(parts_of(drawn))
             if not parts:
                 raise GeometryError("not_one_solid", f"{self.id} has no solid", self.inputs)
             _require_stated_volume(self, parts, drawn.mass_volume)
@@ -271,12 +273,21 @@ def trial_sizes(drawn: Drawn) -> dict[str, list[float]]:
     """The sizes of what a program drew; runs in a process with the kernel."""
     from cad.surfaces import look
 
-    parts = parts_of_step(drawn.step) if drawn.step else map(_part, drawn.parts)
-    return sizes_of(look(part.solid) for part in parts)
+    return sizes_of(look(part.solid) for part in parts_of(drawn))
+
+
+def parts_of(drawn: Drawn) -> Iterator[Part]:
+    """What a program drew, as parts with names of their own; raises as `parts_of_step` does."""
+    if drawn.step:
+        yield from parts_of_step(drawn.step)
+        return
+    names = _Names()
+    for one in drawn.parts:
+        yield _part(names.unique(one.name), one)
 
 
 def parts_of_step(step: bytes) -> Iterator[Part]:
-    """The solids of a STEP file as parts: several solids of one product get numbers.
+    """The solids of a STEP file as parts: those of equal names get numbers.
 
     Raises
     ------
@@ -287,24 +298,22 @@ def parts_of_step(step: bytes) -> Iterator[Part]:
     """
     from cad.step import read_step
 
-    names = dict[str, int]()
+    names = _Names()
     for body in read_step(step):
         for solid in body.shape.Solids():
-            yield _measured(_unique(body.name, names), solid, body.colour, places=body.places)
+            yield _measured(names.unique(body.name), solid, body.colour, places=body.places)
 
 
-def _part(drawn: DrawnPart) -> Part:
+def _part(name: str, drawn: DrawnPart) -> Part:
     from cadquery import Shape
 
     shape = Shape.importBrep(io.BytesIO(drawn.brep))
     solids = shape.Solids()
     if len(solids) != 1:
-        raise GeometryError("not_one_solid", f"{drawn.name} should be one solid; it is {len(solids)}")
-    part = _measured(drawn.name, solids[0], STEEL)
+        raise GeometryError("not_one_solid", f"{name} should be one solid; it is {len(solids)}")
+    part = _measured(name, solids[0], STEEL)
     if drawn.volume is not None and not isclose(part.volume, drawn.volume, rel_tol=VOLUME_TOLERANCE):
-        detail = (
-            f"{drawn.name} has {part.volume:.9g} mm³; the program that drew it says {drawn.volume:.9g} mm³"
-        )
+        detail = f"{name} has {part.volume:.9g} mm³; the program that drew it says {drawn.volume:.9g} mm³"
         raise GeometryError("volume", detail)
     return part
 
@@ -334,9 +343,23 @@ def _require_stated_volume(model: CadModel, parts: Iterable[Part], stated: float
         raise GeometryError("volume", detail, model.inputs)
 
 
-def _unique(name: str, names: dict[str, int]) -> str:
-    names[name] = names.get(name, 0) + 1
-    return name if names[name] == 1 else f"{name}_{names[name]}"
+class _Names:
+    """Names of parts as STEP files keep them, each once: printable, without quotes, not empty, not long."""
+
+    def __init__(self) -> None:
+        self._taken, self._numbers = set[str](), dict[str, int]()
+
+    def unique(self, name: str) -> str:
+        """The name that is closest to this one, with a number behind it if another part has that."""
+        signs = (sign if sign.isprintable() and sign not in "'\"\\" else " " for sign in name[:LONGEST_NAME])
+        plain = unique = " ".join("".join(signs).split()) or "part"
+        number = self._numbers.get(plain, 1)
+        while unique in self._taken:
+            number += 1
+            unique = f"{plain}_{number}"
+        self._numbers[plain] = number
+        self._taken.add(unique)
+        return unique
 
 
 def _attribute(name: str) -> str:

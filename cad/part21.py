@@ -13,6 +13,7 @@ _BLANK, _WORD = re.compile(r"\s+"), re.compile(r"[A-Za-z0-9_]+")
 _ESCAPED = re.compile(r"''|\\\\|\\X(2|4)\\((?:[0-9A-F]{4})*)\\X0\\")
 _ENDING = re.compile(r"'(?=\s*[,)])")
 _QUOTE = "\\X2\\0027\\X0\\"
+_BEYOND_ASCII = re.compile(r"[^\x00-\x7f]+")
 _NOT_PLAIN = re.compile(r"[^ -~\U00010000-\U0010ffff]+|[\U00010000-\U0010ffff]+")
 
 
@@ -29,6 +30,13 @@ def quoted(text: str) -> str:
 def _escaped(signs: re.Match[str]) -> str:
     form, encoding = ("X2", "utf-16-be") if signs[0][0] < "\U00010000" else ("X4", "utf-32-be")
     return f"\\{form}\\{signs[0].encode(encoding).hex().upper()}\\X0\\"
+
+
+def in_ascii(text: str) -> str:
+    r"""A text of Open CASCADE, whose letters are bytes of UTF-8: what is not ASCII as `\X2\…\X0\`."""
+    return _BEYOND_ASCII.sub(
+        lambda run: _NOT_PLAIN.sub(_escaped, run[0].encode("latin-1").decode("utf-8", "replace")), text
+    )
 
 
 def plain(string: str) -> str:

@@ -16,7 +16,7 @@ from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 
 from cad.model import Part
-from cad.part21 import quoted
+from cad.part21 import plain, quoted
 
 VALIDATION = "geometric validation property"
 MATERIAL = "material property"
@@ -106,7 +106,7 @@ def _products(data: str) -> dict[str, _Product]:
         elif g[6]:
             formations[g[6]] = g[7]
         elif g[8]:
-            products[g[8]] = g[10]
+            products[g[8]] = plain(f"'{g[10]}'")
         else:
             contexts[g[11]] = g[12]
     return {

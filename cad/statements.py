@@ -28,10 +28,15 @@ UNITS = {
 MOST_MORE = 10
 """Statements of a kind beyond those expected that a comparison lists."""
 
+LONGEST, MOST = 2**16, 50_000
+"""Characters of an entity that is taken apart, and how many entities are. A file of ours has far less: longer
+ones, and those after so many, are left out."""
+
+_DEEPEST = 10  # datums of a geometric tolerance at each step of its references
 _PIECE = re.compile(rb"'[^']*'|;|[^';]+|'")
-_START = re.compile(r"\s*#(\d{1,18})\s*=\s*(\(?)\s*([A-Z_0-9]+)")
+_START = re.compile(r"\s*#(\d{1,18})\s*=\s*(?:(\()\s*)?([A-Z_0-9]+)")
 _TOKEN = re.compile(
-    r"#(\d{1,18})|('(?:[^']|'')*')|([A-Z][A-Z_0-9]*)|([-+]?\d{1,40}\.\d{0,40}(?:E[-+]?\d{1,4})?)"
+    r"#(\d{1,18})|('(?:[^']|'')*')|([A-Z][A-Z_0-9]*)|((?<!\d)[-+]?\d{1,40}\.\d{0,40}(?:E[-+]?\d{1,4})?)"
 )
 _TOLERANCES = {
     "CYLINDRICITY_TOLERANCE": "cylindricity",
@@ -50,6 +55,7 @@ _SORTS = frozenset(
     }
 )  # fmt: skip
 _POINT = "'centre point'"
+_PROPERTIES = ("volume", "surface area", "centroid", "density", "material name")
 
 
 @dataclass(frozen=True)
@@ -126,12 +132,17 @@ def _entities(step: bytes) -> dict[int, _Entity]:
     """The entities of the sorts that are needed, by their number."""
     entities: dict[int, _Entity] = {}
     for statement in _split(step):
-        start = _START.match(statement)
+        start = _START.match(statement) if len(statement) <= LONGEST else None
         if start is None:
             continue
         sort = start[3]
         if start[2] or sort in _SORTS or (sort == "CARTESIAN_POINT" and _POINT in statement):
-            entities[int(start[1])] = _taken_apart(statement[start.end(1) :])
+            entity = _taken_apart(statement[start.end(1) :])
+            if start[2] and _SORTS.isdisjoint(entity.sorts):
+                continue
+            entities[int(start[1])] = entity
+            if len(entities) == MOST:
+                break
     return entities
 
 
@@ -140,7 +151,8 @@ def _split(step: bytes) -> Iterator[str]:
     pieces: list[bytes] = []
     for match in _PIECE.finditer(step):
         if match[0] == b";":
-            yield b"".join(pieces).decode("latin-1")
+            if pieces:
+                yield b"".join(pieces).decode("latin-1")
             pieces = []
         else:
             pieces.append(match[0])
@@ -199,9 +211,11 @@ class _Reader:
             if kind is None or not entity.texts:
                 continue
             width = self._number(entity.refs[:1])
-            systems = filter(None, (self._follow([ref]) for ref in entity.refs[2:]))
-            parts = filter(None, (self._follow([ref]) for system in systems for ref in system.refs))
-            datums = [letters[ref] for part in parts for ref in part.refs if ref in letters]
+            systems = filter(None, (self._follow([ref]) for ref in entity.refs[2 : 2 + _DEEPEST]))
+            parts = filter(
+                None, (self._follow([ref]) for system in systems for ref in system.refs[:_DEEPEST])
+            )
+            datums = [letters[ref] for part in parts for ref in part.refs[:_DEEPEST] if ref in letters]
             yield Statement(kind, entity.texts[0], (*(() if width is None else (width,)), *datums))
 
     def _properties(self) -> Iterator[Statement]:
@@ -210,14 +224,21 @@ class _Reader:
         general = {n for n, e in self._of["GENERAL_PROPERTY"] if ATTRIBUTE in e.texts}
         links = self._of["GENERAL_PROPERTY_ASSOCIATION"]
         attributed = {e.refs[1] for _, e in links if len(e.refs) == 2 and e.refs[0] in general}
+        taken = set[int]()
         for number, entity in self._of["PROPERTY_DEFINITION"]:
-            representation = self._follow([shown.get(number, -1)])
-            if representation is None or entity.sorts[0] != "PROPERTY_DEFINITION":
+            place = shown.get(number, -1)
+            representation = self._follow([place])
+            if representation is None or entity.sorts[0] != "PROPERTY_DEFINITION" or place in taken:
                 continue
+            taken.add(place)  # a representation is of one property: each of its items is read once
             items = [item for ref in representation.refs[:-1] if (item := self._follow([ref]))]
             if number in attributed:
                 yield from (Statement("attribute", i.texts[0], i.texts[1:]) for i in items if i.texts)
-            elif len(entity.texts) > 1 and entity.texts[0] in (VALIDATION, MATERIAL):
+            elif (
+                len(entity.texts) > 1
+                and entity.texts[0] in (VALIDATION, MATERIAL)
+                and entity.texts[1] in _PROPERTIES
+            ):
                 kind = "material" if entity.texts[1] == "material name" else entity.texts[1]
                 values = (i.texts[:1] if kind == "material" else i.numbers for i in items)
                 yield Statement(kind, self._part(entity), next(values, ()))

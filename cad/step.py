@@ -134,7 +134,7 @@ def _placed(solid: Shape, place: Location) -> Shape:
 
 
 def _named(label: TDF_Label, name: str) -> TDF_Label:
-    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name))
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name, True))  # as UTF-8
     return label
 
 

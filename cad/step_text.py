@@ -14,6 +14,7 @@ from itertools import count
 
 from cad.header import Header, write_header
 from cad.model import Colour
+from cad.part21 import in_ascii
 from cad.properties import PartProperties, entities
 
 SCHEMA = "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }"
@@ -39,7 +40,7 @@ def finished(
     `names` are the parameters of its dimensions and then of its geometric tolerances, in the order of the
     file; `properties` are those of its parts.
     """
-    data = text[text.index("ENDSEC;") + len("ENDSEC;") :]
+    data = in_ascii(text[text.index("ENDSEC;") + len("ENDSEC;") :])
     number = count(1)
     data = _USAGE.sub(lambda usage: f"{usage[1]}{next(number)}'", data)
     body, end, rest = data.rpartition("ENDSEC;")

@@ -1,14 +1,28 @@
 """Descriptions of brought models as classes, and how a parameter shows on a solid."""
 
+import io
 import pickle
 from dataclasses import replace
 
 import pytest
 from cadquery import Solid, Workplane, exporters
 
-from cad.brought import Description, Drawn, Parameter, class_of, description_of, role_of, trial_sizes
+from cad.brought import (
+    Description,
+    Drawn,
+    DrawnPart,
+    Parameter,
+    class_of,
+    description_of,
+    parts_of,
+    role_of,
+    trial_sizes,
+)
 from cad.errors import GeometryError
+from cad.header import Header
+from cad.model import Part
 from cad.regenerate import as_text, build_key, regenerate_shape
+from cad.step import read_step, write_step
 from templates.core.catalogue.digests import content_digest
 from templates.core.errors import InvalidInputs
 
@@ -98,3 +112,51 @@ def test_trust_names_what_is_read_back_and_what_is_not():
     hidden = replace(BORE, name="draft", unit="deg", role="")
     trust = replace(RING, parameters=(BORE, hidden)).trust
     assert "read back from the solid: bore; not read back: draft" in trust
+
+
+def assembly(*names):
+    parts = [Part(name, Solid.makeBox(1, 2, 3 + n), 2.0 * (3 + n)) for n, name in enumerate(names)]
+    return write_step(parts, Header("bought", 1, {}, 64 * "0"))
+
+
+def fixed(step):
+    one = class_of(
+        Description("step", 64 * "c", "bought.stp", "Bought", "STEP").text, "bought", 1
+    ).from_quantities({})
+    one.take(Drawn(step=step))
+    return one
+
+
+@pytest.mark.parametrize(
+    ("names", "parts"),
+    [
+        (["Körper"], ["Körper"]),
+        (["軸受", "🔩"], ["軸受", "🔩"]),
+        (["bolt", "bolt", "bolt_2"], ["bolt", "bolt_2", "bolt_2_2"]),
+        (["  lead", "1/2\" it's", "a\\b", "new\nline"], ["lead", "1/2 it s", "a b", "new line"]),
+        (["a" * 300], ["a" * 100]),
+    ],
+)
+def test_a_part_is_built_whatever_its_file_calls_it(names, parts):
+    one = fixed(assembly(*names))
+    assert [part.name for part in one.build()] == parts
+    build = regenerate_shape(one, {})
+    assert list(build.materials) == parts
+    assert build.step.isascii()
+    assert [body.name for body in read_step(build.step)] == parts
+
+
+def test_a_part_without_a_name_has_one():
+    step = assembly("nameless").replace(b"'nameless'", b"''")
+    (part,) = fixed(step).build()
+    assert part.name
+    assert regenerate_shape(fixed(step), {}).materials.keys() == {part.name}
+
+
+def test_solids_that_freecad_calls_alike_get_numbers():
+    brep = io.BytesIO()
+    Solid.makeBox(1, 2, 3).exportBrep(brep)
+    drawn = Drawn(
+        tuple(DrawnPart(name, brep.getvalue(), 6.0) for name in ("Körper", "Körper", "Körper 1", ""))
+    )
+    assert [part.name for part in parts_of(drawn)] == ["Körper", "Körper_2", "Körper 1", "part"]
