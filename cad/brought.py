@@ -26,6 +26,7 @@ from typing import Any, ClassVar, Literal
 
 from cad.errors import GeometryError
 from cad.model import STEEL, Box, CadModel, Colour, Dimension, Part
+from cad.part_names import PartNames
 from templates.core.catalogue.loading import BROUGHT
 from templates.core.language.declare import given
 
@@ -40,8 +41,6 @@ Sizes = Mapping[str, list[float]]
 """Diameters and distances [mm] of a solid."""
 MOST_PLANES = 300
 """Of a part whose distances between planes are compared, pair by pair."""
-LONGEST_NAME = 100
-"""Of a part, in letters."""
 
 _DRAWN, _PARTS = "as drawn", "parts as drawn"  # no names that a declaration can have
 
@@ -281,7 +280,7 @@ def parts_of(drawn: Drawn) -> Iterator[Part]:
     if drawn.step:
         yield from parts_of_step(drawn.step)
         return
-    names = _Names()
+    names = PartNames()
     for one in drawn.parts:
         yield _part(names.unique(one.name), one)
 
@@ -298,7 +297,7 @@ def parts_of_step(step: bytes) -> Iterator[Part]:
     """
     from cad.step import read_step
 
-    names = _Names()
+    names = PartNames()
     for body in read_step(step):
         for solid in body.shape.Solids():
             yield _measured(names.unique(body.name), solid, body.colour, places=body.places)
@@ -341,25 +340,6 @@ def _require_stated_volume(model: CadModel, parts: Iterable[Part], stated: float
     if stated is not None and not isclose(measured, stated, rel_tol=VOLUME_TOLERANCE):
         detail = f"the STEP file holds {measured:.9g} mm³; the program that drew it says {stated:.9g} mm³"
         raise GeometryError("volume", detail, model.inputs)
-
-
-class _Names:
-    """Names of parts as STEP files keep them, each once: printable, without quotes, not empty, not long."""
-
-    def __init__(self) -> None:
-        self._taken, self._numbers = set[str](), dict[str, int]()
-
-    def unique(self, name: str) -> str:
-        """The name that is closest to this one, with a number behind it if another part has that."""
-        signs = (sign if sign.isprintable() and sign not in "'\"\\" else " " for sign in name[:LONGEST_NAME])
-        plain = unique = " ".join("".join(signs).split()) or "part"
-        number = self._numbers.get(plain, 1)
-        while unique in self._taken:
-            number += 1
-            unique = f"{plain}_{number}"
-        self._numbers[plain] = number
-        self._taken.add(unique)
-        return unique
 
 
 def _attribute(name: str) -> str:

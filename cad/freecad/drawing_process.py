@@ -11,7 +11,8 @@ behind its length, and an answer is followed by the shapes whose sizes it lists.
     both with "file", "seconds"           the path of the file, and the processor time it may take
 
 Each request opens the file again: the same values give the same solids, whatever was drawn before. Before the
-first one the process gives up the network, other programs, signals to others, and files outside its folder.
+first one the process gives up the network, other programs and processes, signals to others, and files outside
+its folder.
 """
 
 import ctypes
@@ -40,17 +41,25 @@ LARGEST_FILE = 256 * 2**20
 
 DENIED = {
     # socket connect bind listen execve execveat ptrace process_vm_readv process_vm_writev kill tkill
-    # io_uring_setup mount unshare setns bpf perf_event_open pidfd_open, then fork and vfork if there are any
+    # io_uring_setup mount unshare setns bpf perf_event_open pidfd_open, then rt_sigqueueinfo
+    # rt_tgsigqueueinfo pidfd_send_signal setpriority ioprio_set setsid setpgid truncate fchmod fchmodat
+    # fchmodat2 fchown fchownat, then fork vfork chmod chown lchown if there are any
     "x86_64": (
         0xC000003E, 317,
-        (41, 42, 49, 50, 59, 322, 101, 310, 311, 62, 200, 425, 165, 272, 308, 321, 298, 434, 57, 58),
+        (41, 42, 49, 50, 59, 322, 101, 310, 311, 62, 200, 425, 165, 272, 308, 321, 298, 434,
+         129, 297, 424, 141, 251, 112, 109, 76, 91, 268, 452, 93, 260, 57, 58, 90, 92, 94),
     ),
     "aarch64": (
         0xC00000B7, 277,
-        (198, 203, 200, 201, 221, 281, 117, 270, 271, 129, 130, 425, 40, 97, 268, 280, 241, 434),
+        (198, 203, 200, 201, 221, 281, 117, 270, 271, 129, 130, 425, 40, 97, 268, 280, 241, 434,
+         138, 240, 424, 140, 30, 157, 154, 45, 52, 53, 452, 55, 54),
     ),
 }  # fmt: skip
 """By machine: its number in audit records, that of the call `seccomp`, and the calls that are refused."""
+
+OWN = {"x86_64": (234, 302, 56), "aarch64": (131, 261, 220)}
+"""tgkill, prlimit64 and clone: this process may signal and limit itself alone, and start threads alone."""
+CLONE3, CLONE_THREAD = 435, 0x10000
 
 
 def hang_on(reader: int) -> None:
@@ -88,12 +97,18 @@ def deny_calls(libc: ctypes.CDLL) -> None:
     Raises OSError where it cannot: then nothing is opened.
     """
     audited, seccomp, denied = DENIED[platform.machine()]
-    load, equal, at_least, answer = 0x20, 0x15, 0x35, 0x06
-    refused, killed, allowed = 0x00050000 | 1, 0x80000000, 0x7FFF0000
+    signal_one, limit_one, clone = OWN[platform.machine()]
+    load, equal, at_least, has, answer, first = 0x20, 0x15, 0x35, 0x45, 0x06, 16
+    refused, missing, killed, allowed = 0x00050000 | 1, 0x00050000 | 38, 0x80000000, 0x7FFF0000
     lines = [(load, 0, 0, 4), (equal, 1, 0, audited), (answer, 0, 0, killed), (load, 0, 0, 0)]
     lines += [(at_least, 0, 1, 0x40000000), (answer, 0, 0, refused)]  # the numbers of x32
     for number in denied:
         lines += [(equal, 0, 1, number), (answer, 0, 0, refused)]
+    lines += [(equal, 0, 1, CLONE3), (answer, 0, 0, missing)]  # its flags are out of reach: clone stands in
+    firsts = ((signal_one, equal, os.getpid()), (limit_one, equal, 0), (clone, has, CLONE_THREAD))
+    for number, test, wanted in firsts:  # by the lower half of the first argument
+        lines += [(equal, 0, 4, number), (load, 0, 0, first), (test, 0, 1, wanted)]
+        lines += [(answer, 0, 0, allowed), (answer, 0, 0, refused)]
     lines.append((answer, 0, 0, allowed))
     program = (Filter * len(lines))(*(Filter(*line) for line in lines))
     all_threads = 1
@@ -114,22 +129,34 @@ class Beneath(ctypes.Structure):
     _fields_ = [("access", ctypes.c_uint64), ("folder", ctypes.c_int32)]
 
 
+READABLE = (
+    "/usr", "/lib", "/lib64", "/opt", "/sys", "/proc/self", "/etc/fonts", "/etc/ld.so.cache",
+    "/etc/localtime", "/etc/passwd", "/dev/null", "/dev/zero", "/dev/random", "/dev/urandom",
+)  # fmt: skip
+"""Programs and what they need of the system; not the settings and the processes of others."""
+
+
 def keep_to_files(libc: ctypes.CDLL, writable: str) -> None:
-    """Let this process read the system's files and write to one folder, where the kernel can rule it."""
-    create, add, restrict, everything, reading = 444, 445, 446, (1 << 13) - 1, 0b1101
-    ruled = libc.syscall(create, ctypes.byref(Handled(everything)), ctypes.sizeof(Handled), 0)
-    if ruled < 0:
+    """Let this process read the system's files and write to one folder, where the kernel can rule it.
+
+    Raises OSError if the kernel has the means and refuses.
+    """
+    create, add, restrict, reading, of_a_file = 444, 445, 446, 0b1101, 0b101
+    rules = libc.syscall(create, None, 0, 1)
+    if rules < 1:
         return  # a kernel without Landlock; the other walls stand
-    places = dict.fromkeys(("/usr", "/lib", "/lib64", "/etc", "/proc", "/sys", "/opt", "/dev"), reading)
-    places.update({writable: everything})
-    for place, access in places.items():
+    everything = (1 << {1: 13, 2: 14}.get(rules, 15)) - 1  # later kernels rule links and shortening too
+    ruled = libc.syscall(create, ctypes.byref(Handled(everything)), ctypes.sizeof(Handled), 0)
+    places = {place: reading if os.path.isdir(place) else of_a_file for place in READABLE}
+    for place, access in {**places, writable: everything}.items():
         try:
             folder = os.open(place, os.O_PATH)
         except OSError:
             continue
         libc.syscall(add, ruled, 1, ctypes.byref(Beneath(access, folder)), 0)
         os.close(folder)
-    libc.syscall(restrict, ruled, 0)
+    if libc.syscall(restrict, ruled, 0) != 0:
+        raise OSError(ctypes.get_errno(), "the kernel does not rule files")
     os.close(ruled)
 
 
