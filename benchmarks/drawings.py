@@ -23,7 +23,7 @@ from templates.core.units.units import unit
 
 FOLDER = Path("docs/drawings")
 PAGE = Path("docs/drawings.md")
-_GALLERY = "All lengths of the example times 0.25, 1 and 4.\n"
+_GALLERY = "All lengths of the example times 0.25, 1 and 4, drawn by `python -m benchmarks.drawings`.\n"
 SIZES = (0.25, 1.0, 4.0)
 """Factors of all lengths of a model's example."""
 

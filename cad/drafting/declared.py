@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from cad.catalogue import models
-from cad.drafting.title import roughness
+from cad.drafting.title import TEXTURE, roughness
 from cad.header import Header
 from cad.model import CadModel
 from cad.toleranced import Limits, carried, limits_in
@@ -37,7 +37,7 @@ class Declared:
     datums
         Letters of datums by parameter, of those to which a tolerance refers.
     textures
-        Greatest roughness Ra [µm] by parameter.
+        Greatest roughness Ra [µm] by parameter, where it is less than that of all other faces.
     """
 
     is_shaft: bool = False
@@ -64,9 +64,11 @@ class Declared:
             controls,
             {name: one.datum for name, one in carriers.items() if one.datum in used - {""}},
             {
-                name: roughness(limits[name].width)
+                name: height
                 for name, one in carriers.items()
-                if name in limits and one.faces in _FACES
+                if name in limits
+                and one.faces in _FACES
+                and (height := roughness(limits[name].width)) < TEXTURE
             },
         )
 

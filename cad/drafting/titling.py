@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 from cad.drafting.lettering import clipped, width_of
@@ -15,6 +16,7 @@ from cad.stamp import MARK
 _ROW = 6.0  # from one row of the table to the next, if they have room [mm on paper]
 _LETTERS = 3.0
 _NAMES = 58.0  # width of the names in the table [mm on paper]
+_BOTH_WAYS = re.compile(r"^(\S+ \S+ )\+(\S+)/-\2(?= )")  # equal deviations: ±0.1 mm
 _MOST_LINES = 3  # of one value in the table
 
 
@@ -93,7 +95,7 @@ def table(page: Page, parameters: Mapping[str, str], unseen: Sequence[str]) -> N
     rows = [
         (name.replace("_", " ") + (" *" if name in unseen else "") if number == 0 else "", line)
         for name, text in parameters.items()
-        for number, line in enumerate(_wrapped(text, COLUMN - _NAMES - 6))
+        for number, line in enumerate(_wrapped(_BOTH_WAYS.sub(r"\1±\2", text), COLUMN - _NAMES - 6))
     ]
     room = top - (EDGE + HEIGHT) - 3.0
     row = min(_ROW, room / max(len(rows), 1))

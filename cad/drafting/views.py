@@ -1,8 +1,9 @@
 """The two views of a drawing: a section along the shaft (z), and the end seen along it; all in millimetres.
 
-Of the two planes through the shaft that is cut which holds the axes of more cylinders: an oil hole, a pin. In
-the section z points right; beside it, in first-angle projection, stands the view from the left. Balls and
-shafts are not cut lengthwise (ISO 128-3): they are drawn whole, a shaft with its hidden lines.
+Of the two planes through the shaft that is cut which is no joint, and then the one that holds the axes of
+more cylinders: an oil hole, a pin. In the section z points right; beside it, in first-angle projection,
+stands the view from the left. Balls, shafts and round bars are not cut lengthwise (ISO 128-3): they are drawn
+whole, a shaft with its hidden lines.
 """
 
 from __future__ import annotations
@@ -27,9 +28,8 @@ from cad.drafting.curves import (
     recognised,
     rounded,
 )
-from cad.inspect import look_at
 from cad.step import Body
-from cad.surfaces import X, Y, Z
+from cad.surfaces import Surface, X, Y, Z, faces_of, look
 
 _DRAWN = 100.0  # [mm], the size at which edges are hidden: of a part of 5 m the kernel takes 25 times as long
 _TURN = 0.05  # [rad] between two points of a curve
@@ -107,7 +107,7 @@ def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View
     up = _upright(bodies)
     section, end = Frame(Z, up), Frame(Z.cross(up), up)
     placed = [
-        _Placed(part, body.shape.moved(place), is_shaft or _is_ball(body.shape))
+        _Placed(part, body.shape.moved(place), is_shaft or _is_ball(body.shape) or _is_bar(body.shape))
         for part, body in enumerate(bodies)
         for place in body.places
     ]
@@ -127,10 +127,22 @@ def _is_ball(shape: Shape) -> bool:
     return all(face.geomType() == "SPHERE" for face in shape.Faces())
 
 
+def _is_bar(shape: Shape) -> bool:
+    """Whether a shape is a full cylinder about the shaft, as the journal of an assembly."""
+    faces = faces_of(shape)
+    return sorted(face.kind for face in faces) == ["cylinder", "plane", "plane"] and any(
+        face.kind == "cylinder" and face.surface.about(Z) for face in faces
+    )
+
+
 def _upright(bodies: Sequence[Body]) -> Vector:
     """The axis across the shaft whose plane with the shaft is cut."""
-    seen = look_at(bodies).values()
-    cylinders = [c for one in seen for c in one.cylinders if not c.about(Z)]
+    seen = [look(body.shape.moved(place)) for body in bodies for place in body.places]
+    cylinders = [c for one in seen for c in one.cylinders if not _surrounds(c)]
+    planes = [plane for one in seen for plane in one.planes]
+
+    def is_joint(normal: Vector) -> bool:
+        return any(p.along(normal) and abs(p.point.dot(normal)) < _CLEAR for p in planes)
 
     def held(normal: Vector) -> int:
         return sum(
@@ -147,11 +159,16 @@ def _upright(bodies: Sequence[Body]) -> Vector:
         depths = sorted((-min(low for low, _ in sides), max(high for _, high in sides)))
         return depths[0] > max(_CLEAR, _LITTLE * depths[1])
 
-    def worth(up: Vector) -> tuple[bool, int, float]:
+    def worth(up: Vector) -> tuple[bool, bool, int, float]:
         normal = up.cross(Z)
-        return parts(normal), held(normal), round(area(normal), 6)
+        return parts(normal), not is_joint(normal), held(normal), round(area(normal), 6)
 
     return max((Y, X), key=worth)
+
+
+def _surrounds(cylinder: Surface) -> bool:
+    """Whether the shaft's axis lies within: in a bore, or in the relief beside the joint of a shell."""
+    return cylinder.along(Z) and cylinder.point.cross(Z).Length < cylinder.diameter / 2
 
 
 def _sides(shape: Shape, normal: Vector) -> tuple[float, float]:
