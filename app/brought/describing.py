@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import isfinite
 
 from app.brought.creo.manifest import read
 from app.brought.naming import parameter_name
@@ -93,6 +94,8 @@ def _parameters(listed: list[list[str | float]]) -> list[Parameter]:
     for thing, kind, key, value, unit, label in listed:
         name = parameter_name(str(key), str(label), parameters)
         number, most = float(value), _BOUNDS[str(unit)]
+        if not isfinite(number):
+            raise UnreadableModel("not_finite", f"{thing}.{key} is {number} {unit}: give it a finite number")
         parameters[name] = Parameter(
             name=name,
             words=name.replace("_", " "),

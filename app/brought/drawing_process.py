@@ -32,6 +32,8 @@ from cad.freecad import drawing_process
 STARTING = 60.0
 """How long FreeCAD may take to be there [s]; it takes 3 s."""
 LARGEST_ANSWER = 512 * 2**20
+_ENDING = 1.0
+"""How long a process may take to end that answers no more [s]."""
 _GLANCE = 0.05  # [s]
 _PIECE = 2**20
 
@@ -149,8 +151,14 @@ class FreeCadProcess:
 
     def _answer(self, end: float, cancelled: threading.Event) -> tuple[About, list[bytes]]:
         (size,) = struct.unpack("!I", self._read(4, end, cancelled))
-        about: About = json.loads(self._read(size, end, cancelled))
-        if not 0 <= sum(about["sizes"]) <= LARGEST_ANSWER:
+        try:
+            about: About = json.loads(self._read(size, end, cancelled))
+            are_sizes = all(type(one) is int and one >= 0 for one in about["sizes"])
+        except (ValueError, TypeError, LookupError, RecursionError):
+            are_sizes = False
+        if not are_sizes:
+            raise EOFError
+        if sum(about["sizes"]) > LARGEST_ANSWER:
             raise GeometryError("too_large", f"the shapes have more than {LARGEST_ANSWER // 2**20} MiB")
         return about, [self._read(one, end, cancelled) for one in about["sizes"]]
 
@@ -186,7 +194,12 @@ class FreeCadProcess:
         return GeometryError(code, about["detail"], about["names"])
 
     def _crash(self) -> Exception:
-        code = self._process.wait()
+        try:
+            code = self._process.wait(_ENDING)
+        except subprocess.TimeoutExpired:  # it is killed, as is every process that gave no sound answer
+            return GeometryError(
+                "program_answer", "FreeCAD gave no answer that can be read: try other values"
+            )
         if code == -signal.SIGXCPU:
             return DeadlineExceeded(self._limits.deadline)
         how = f"signal {-code}" if code < 0 else f"exit code {code}"

@@ -44,6 +44,11 @@ _DAMAGES = (
     NotImplementedError,
 )  # fmt: skip
 """What `zipfile` raises for bytes that are not ZIP, or no longer one."""
+_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+_DIRECTORY, _LARGE_DIRECTORY = (
+    b"PK\x05\x06",
+    b"PK\x06\x07",
+)  # where their ends are, in a ZIP and in a large one
 
 
 def admitted(content: bytes) -> bytes:
@@ -72,8 +77,12 @@ def _unpacked(content: bytes) -> Iterator[tuple[str, bytes]]:
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as package:
             for part in package.infolist():
-                if part.is_dir() or part.filename.endswith((".py", ".FCMacro")):
+                if not part.filename or part.is_dir() or part.filename.endswith((".py", ".FCMacro")):
                     continue
+                if part.compress_type not in _METHODS:
+                    raise UnreadableModel(
+                        "package", f"it is packed in a way that FreeCAD does not use: {AGAIN}"
+                    )
                 with package.open(part) as opened:
                     read = opened.read(left + 1)
                 left -= len(read)
@@ -87,9 +96,13 @@ def _unpacked(content: bytes) -> Iterator[tuple[str, bytes]]:
 
 def _check_directory(content: bytes) -> None:
     """Refuse a crowded directory before `zipfile` makes an object of every entry."""
-    place = content.rfind(b"PK\x05\x06", max(0, len(content) - 2**16 - 22))
+    place = content.rfind(_DIRECTORY, max(0, len(content) - 2**16 - 22))
     if place < 0 or len(content) < place + 22:
         raise UnreadableModel("package", f"it is not a whole ZIP package (its directory is missing): {AGAIN}")
+    if content.startswith(_LARGE_DIRECTORY, max(0, place - 20)):
+        raise UnreadableModel(
+            "package", f"it is a package of the form ZIP64, which says its size twice: {AGAIN}"
+        )
     entries, size = struct.unpack("<HI", content[place + 10 : place + 16])
     if entries > MOST_PARTS or size > MOST_PARTS * 400:
         raise UnreadableModel("too_large", f"it has {entries} parts; a model has at most {MOST_PARTS}")
@@ -116,7 +129,10 @@ class _Document:
         if len(text) > LONGEST_DOCUMENT:
             what = f"its {DOCUMENT} has more than {LONGEST_DOCUMENT // 2**20} MiB"
             raise UnreadableModel("too_large", f"{what}: split the model")
+        if b"\0" in text[:4] or text[:2] in (b"\xff\xfe", b"\xfe\xff"):
+            raise self._of_another_encoding()
         parser = expat.ParserCreate()
+        parser.XmlDeclHandler = self._check_encoding
         parser.StartDoctypeDeclHandler = self._refuse_declarations
         parser.StartElementHandler = self._begin
         parser.EndElementHandler = self._end
@@ -125,6 +141,14 @@ class _Document:
         except expat.ExpatError as error:
             raise UnreadableModel("package", f"its {DOCUMENT} is damaged ({error}): {AGAIN}") from None
         return self.named
+
+    def _check_encoding(self, version: str, encoding: str | None, standalone: int) -> None:
+        """Refuse what FreeCAD might read as other elements than these: it writes UTF-8."""
+        if encoding is not None and encoding.lower() != "utf-8":
+            raise self._of_another_encoding()
+
+    def _of_another_encoding(self) -> UnreadableModel:
+        return UnreadableModel("package", f"its {DOCUMENT} is not in UTF-8, as FreeCAD writes it: {AGAIN}")
 
     def _refuse_declarations(self, *_: object) -> None:
         raise UnreadableModel("package", f"its {DOCUMENT} declares entities: {AGAIN}")

@@ -98,3 +98,48 @@ def test_a_package_without_a_document_is_refused():
     with zipfile.ZipFile(out, "w") as package:
         package.writestr("word/document.xml", "<x/>")
     assert refusal(out.getvalue()) == "not_freecad"
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
+@pytest.mark.parametrize("place", [None, 44, 60, 100])
+def test_a_package_of_another_method_is_refused_damaged_or_not(method, place):
+    content = bytearray(packed(method=method))
+    if place is not None:
+        content[place] ^= 0x55
+    assert refusal(bytes(content)) == "package"
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-7", "cp1252", "unicode_escape", "hex", "idna", "none"])
+def test_a_document_in_another_encoding_is_refused(encoding):
+    text = document().decode().replace("?>", f' encoding="{encoding}"?>', 1)
+    assert refusal(packed({DOCUMENT: text})) == "package"
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be"])
+def test_a_document_in_utf_16_is_refused(encoding):
+    assert refusal(packed({DOCUMENT: f"<Document>{PLAIN}</Document>".encode(encoding)})) == "package"
+
+
+def test_a_document_that_says_utf_8_is_taken():
+    text = document().decode().replace("?>", ' encoding="UTF-8"?>', 1)
+    assert admitted(packed({DOCUMENT: text}))
+
+
+def test_a_part_without_a_name_is_left_out():
+    nameless = bytearray(packed({"x": b"nameless"}, zipfile.ZIP_STORED))
+    first, second = nameless.index(b"xnameless"), nameless.rindex(b"x")
+    nameless[second - 46 + 28] = nameless[first - 4] = 0  # the lengths of its name, in both places
+    for place in (second, first):
+        del nameless[place]
+    end = nameless.rindex(b"PK\x05\x06")
+    size, start = nameless[end + 12], nameless[end + 16]
+    nameless[end + 12], nameless[end + 16] = size - 1, start - 1
+    with zipfile.ZipFile(io.BytesIO(admitted(bytes(nameless)))) as package:
+        assert package.namelist() == [DOCUMENT]
+
+
+def test_a_directory_that_says_its_size_twice_is_refused():
+    content = packed()
+    end = content.rindex(b"PK\x05\x06")
+    locator = b"PK\x06\x07" + bytes(16)
+    assert refusal(content[:end] + locator + content[end:]) == "package"

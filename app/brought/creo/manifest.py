@@ -13,6 +13,8 @@ from cad.errors import UnreadableModel
 LONGEST = 2**18
 """Of a manifest [bytes]."""
 _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+_LINE = r"^[^\x00-\x1f\x7f]*$"
+_TITLE = r"^[^\x00-\x1f\x7f]*[^\x00-\x1f\x7f .][^\x00-\x1f\x7f]*$"
 MM: dict[str, float] = {"mm": 1.0, "inch": 25.4}
 
 
@@ -22,9 +24,15 @@ class Driven(Bounded):
     model_config = _STRICT
 
     name: str = Field(max_length=60, pattern=r"^[a-z][a-z0-9]*(_[a-z0-9]+)*$", description="in relations")
-    words: str = Field("", max_length=100, description="what it is; the name if nothing is said")
-    dimension: str | None = Field(None, min_length=1, max_length=80, description="its symbol in Creo: `D`")
-    parameter: str | None = Field(None, min_length=1, max_length=80, description="its name in Creo: `SCALE`")
+    words: str = Field(
+        "", max_length=100, pattern=_LINE, description="what it is; the name if nothing is said"
+    )
+    dimension: str | None = Field(
+        None, min_length=1, max_length=80, pattern=_LINE, description="its symbol in Creo: `D`"
+    )
+    parameter: str | None = Field(
+        None, min_length=1, max_length=80, pattern=_LINE, description="its name in Creo: `SCALE`"
+    )
     unit: Literal["mm", "inch", "deg", "1"] = Field(description="in which Creo has it")
     value: float = Field(description="in the model as it is stored")
     low: float = Field(description="the least value that is sent to Creo")
@@ -55,7 +63,7 @@ class Driven(Bounded):
         kind, key = ("dimension", self.dimension) if self.dimension else ("parameter", self.parameter)
         return Parameter(
             name=self.name,
-            words=self.words or self.name.replace("_", " "),
+            words=self.words.strip() or self.name.replace("_", " "),
             unit=self.unit,
             value=self.value,
             source=f"{kind}.{key}",
@@ -71,7 +79,7 @@ class Manifest(Bounded):
     model_config = _STRICT
 
     program: Literal["creo"]
-    title: str = Field(min_length=1, max_length=100)
+    title: str = Field(max_length=100, pattern=_TITLE)
     file: str = Field(
         pattern=r"^[A-Za-z0-9_-]{1,80}\.(prt|asm)$", description="the model in Creo: `bearing.prt`"
     )

@@ -134,6 +134,10 @@ def test_who_waits_for_a_session_may_give_up(replay):
     [
         ({"file": "../secret.prt"}, "file"),
         ({"parameters": []}, "parameters"),
+        ({"title": " ... "}, "title"),
+        ({"title": "two\nlines"}, "title"),
+        ({"parameters": [{**MANIFEST["parameters"][0], "words": "two\nlines"}]}, "parameters.0.words"),
+        ({"parameters": [{**MANIFEST["parameters"][0], "dimension": "D\0"}]}, "parameters.0.dimension"),
         ({"url": "http://elsewhere"}, "url"),
         ({"parameters": [{**MANIFEST["parameters"][0], "value": 5.0}]}, "not from 10 to 200"),
         ({"parameters": [{**MANIFEST["parameters"][0], "parameter": "X"}]}, "either the dimension"),
