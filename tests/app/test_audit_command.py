@@ -95,12 +95,9 @@ def no_header(content):
 
 
 def noise(content):
+    """The schema is at the front and empty tables follow; the rows of the audit come last."""
     half = len(content) // 2
-    return (
-        content[:half]
-        + bytes(byte ^ 0x5A for byte in content[half : half + 40_000])
-        + content[half + 40_000 :]
-    )
+    return content[:half] + bytes(byte ^ 0x5A for byte in content[half:])
 
 
 @pytest.mark.parametrize("command", ["verify", "list"])

@@ -8,7 +8,7 @@ WAIT = {"Prefer": "wait=60"}
 
 @pytest.fixture(scope="module")
 def design(http):
-    return created(http, moody("23.5 mm"))
+    return created(http, moody("23.7 mm"))
 
 
 def mesh_of(http, design, kind, **query):
@@ -39,3 +39,7 @@ def test_a_deflection_beside_the_size_is_refused_with_what_suits(http, design, r
     answer = mesh_of(http, design, "stl", deflection=raw)
     problem(answer, 422, "invalid-inputs")
     assert "give 0.00" in answer.text
+
+
+def test_an_unknown_design_is_reported_before_a_wrong_deflection(http):
+    problem(http.get(f"{API}/designs/none/model.stl", params={"deflection": "much"}), 404, "not-found")

@@ -104,10 +104,7 @@ class FileRequest:
         prefer = self.prefer or PATIENCE
         if wanted not in MEDIA_TYPES:
             raise NotFound(f"there is no model.{wanted[:20]}; there are {', '.join(MEDIA_TYPES)}")
-        stored_kind = PRINTED.get(wanted, wanted)
-        if self.deflection is not None:
-            stored_kind = with_deflection(wanted, self.deflection)
-        key, stamp, old = await run_in_threadpool(self._lookup, find, stored_kind)
+        key, stored_kind, stamp, old = await run_in_threadpool(self._lookup, find, wanted)
         answer = await lost(old.sha256, self.healing, self.jobs, prefer) if old else None
         if answer is None and (
             old is None or await run_in_threadpool(_is_outdated, self.models, key, stored_kind)
@@ -120,13 +117,21 @@ class FileRequest:
         return await run_in_threadpool(self._sent, file, stamp, wanted)
 
     def _lookup(
-        self, find: Callable[[Session], RevisionModelRow], kind: str
-    ) -> tuple[str, Stamp, File | None]:
+        self, find: Callable[[Session], RevisionModelRow], wanted: str
+    ) -> tuple[str, str, Stamp, File | None]:
+        """The key of the model's build, the kind of file that is stored, its stamp, and an older file."""
         with self.database.read() as session:
             model = find(session)
+            kind = self._stored_kind(wanted)
             is_drawing = kind in DRAWINGS
             stamp = stamps.signed(session, model, self.owner) if is_drawing else stamps.stamp(session, model)
-            return model.build_key or "", stamp, views.file(session, model, kind)
+            return model.build_key or "", kind, stamp, views.file(session, model, kind)
+
+    def _stored_kind(self, wanted: str) -> str:
+        """The kind of file that is stored for one that is wanted."""
+        if self.deflection is not None:
+            return with_deflection(wanted, self.deflection)
+        return PRINTED.get(wanted, wanted)
 
     async def _unless_ready(self, key: str, kind: str, prefer: str, *, has_older: bool) -> Response | None:
         """None once a file is made; 202 if the client does not wait so long, or why it cannot be made."""
