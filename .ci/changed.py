@@ -21,17 +21,33 @@ ROOT = Path(__file__).parents[1]
 HTTP = ("app/*routes*.py", "app/*schemas*.py", "app/*api/*.py", "app/api/problems.py", "app/*guard.py")
 WEB = ("app/*web/*.py", "app/*presentation/*.py", "app/web/*.js", "app/web/*.css", "app/web/*.html")
 ABOUT = {
+    "tests/app/brought/test_freecad.py": (
+        *("app/brought/*.py", "cad/brought.py", "cad/freecad/*.py"),
+        *("app/api/routes/brought_models.py", "app/*workers/*.py"),
+    ),
+    "tests/app/test_analysis_lists.py": (
+        *("app/solids/*.py", "app/designs/*.py", "cad/analysis/*.py", "cad/cranks/*.py"),
+        "app/api/routes/analyses.py",
+    ),
     "tests/app/test_analysis_tables.py": ("app/solids/*.py", "app/designs/*.py", "cad/analysis/*.py"),
     "tests/app/test_analyses.py": ("app/solids/*.py", "app/api/routes/analyses.py", "cad/analysis/*.py"),
     "tests/app/test_analyses_designs.py": ("app/solids/*.py", "app/designs/*.py", "cad/analysis/*.py"),
     "tests/app/test_client.py": ("app/*client/*.py", "app/reports/*.py", "app/schemas/*.py"),
     "tests/app/test_conditional_designs_http.py": ("app/designs/*.py", "app/reports/*.py"),
+    "tests/app/test_crank_gallery.py": (
+        *("app/solids/*.py", "app/studies/*.py", "app/web/gallery*.py", "cad/analysis/*.py"),
+        *("templates/stiffness/*.py", "templates/physics/fatigue/*.py", "cad/models/crank_throw_v1.py"),
+    ),
     "tests/app/test_crash.py": (
         *("app/*jobs/*.py", "app/*storage/*.py", "app/*designs/*.py", "app/*workers/*.py"),
         "app/*idempotency*.py",
     ),
+    "tests/app/test_attack.py": ("app/api/gate/*.py", "app/identity/*.py", "app/api/routes/*.py"),
     "tests/app/test_backup.py": ("app/*maintenance/*.py", "app/*storage/*.py"),
     "tests/app/test_damage.py": ("app/solids/*.py", "app/*storage/*.py"),
+    "tests/app/test_damper_study.py": (
+        *("app/studies/*.py", "templates/stiffness/forced_torsion_v1.py", "templates/physics/torsion/*.py"),
+    ),
     "tests/app/test_demo.py": (
         "app/demo*.py",
         "app/cli.py",
@@ -41,8 +57,13 @@ ABOUT = {
     ),
     "tests/app/test_designs_http.py": ("app/*jobs/*.py", "app/*workers/*.py"),
     "tests/app/test_embedded_start.py": ("app/*.py", "pyproject.toml"),
+    "tests/app/test_engine_gallery.py": (
+        *("app/web/gallery*.py", "app/designs/*.py", "templates/bearing_load/*.py"),
+        *("templates/physics/engine/*.py", "cad/cranks/*.py", "cad/models/crankshaft_v2.py"),
+    ),
     "tests/app/test_events_resumed.py": ("app/*event*.py", "app/api/resuming.py"),
     "tests/app/test_list_parameters.py": ("app/designs/*.py", "app/web/*.py", "cad/lists.py"),
+    "tests/app/test_orphans.py": ("app/*workers/*.py",),
     "tests/app/test_other_makers.py": ("app/solids/*.py", "app/*storage/*.py"),
     "tests/app/test_problems_hostile.py": HTTP,
     "tests/app/test_readiness.py": ("app/api/readiness.py", "app/*workers/*.py"),
@@ -55,12 +76,15 @@ ABOUT = {
     ),
     "tests/app/test_slow_clients.py": ("app/server.py", "app/api/gate/*.py"),
     "tests/app/test_solve_design.py": ("app/designs/*.py", "templates/core/language/*.py"),
+    "tests/app/test_studies.py": ("app/studies/*.py", "app/schemas/*.py"),
     "tests/app/test_study_heals.py": ("app/studies/*.py", "app/*maintenance/*.py"),
+    "tests/app/test_study_kills.py": ("app/studies/*.py", "app/*jobs/*.py", "app/*workers/*.py"),
     "tests/app/test_study_parts.py": ("app/studies/*.py",),
     "tests/app/test_study_solids.py": ("app/studies/*.py", "app/solids/*.py"),
     "tests/app/test_tolerances.py": ("app/tolerances/*.py", "app/reports/*.py"),
     "tests/app/test_tolerance_analysis.py": ("app/tolerances/*.py",),
     "tests/app/test_turns.py": ("app/*jobs/*.py",),
+    "tests/app/test_variants_jobs.py": ("app/designs/*.py", "app/*jobs/*.py", "app/solids/*.py"),
     "tests/app/calculations/test_calculations_as_jobs.py": (
         "app/*jobs/*.py",
         "app/*workers/*.py",

@@ -13,10 +13,21 @@ SERVED = "served"  # every test that needs the server of tests/app/conftest.py
 TEAM = "team"  # every test that needs PostgreSQL, an S3 server or Dask, of which one worker has each
 PAGES = "pages"  # every test that needs the server or the browser of tests/web/conftest.py
 
-TOGETHER = {"tests/test_lanes.py": "tests/test_mutation.py"}
-"""Files in the group of another: these two read the imports of all our files, once."""
+MODELS = "models"  # the files that go through every model, whose example and files are made once
 
-LONGEST = (PAGES, SERVED, TEAM, "tests/templates/test_catalogue_properties.py")
+TOGETHER = {
+    "tests/test_lanes.py": "tests/test_mutation.py",  # both read the imports of all our files
+    "tests/cad/test_cad_catalogue_properties.py": MODELS,
+    "tests/cad/test_dxf.py": MODELS,
+    "tests/cad/test_export.py": MODELS,
+    "tests/cad/test_iso_drawing.py": MODELS,
+    "tests/cad/test_meshes.py": MODELS,
+    "tests/cad/test_pmi.py": MODELS,
+    "tests/cad/test_step.py": MODELS,
+}
+"""Files that share a worker with others."""
+
+LONGEST = (PAGES, SERVED, TEAM, MODELS, "tests/templates/test_catalogue_properties.py")
 """Groups that begin first, the longest in front."""
 
 

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import patience
 import pytest
-from lanes import PAGES, SERVED, group_of, rank
+from lanes import MODELS, PAGES, SERVED, TOGETHER, group_of, rank
 from patience import until
 
 from benchmarks.mutation.related import changed
@@ -31,10 +31,15 @@ def item(file, *fixtures):
         (item("tests/app/test_jobs.py"), "tests/app/test_jobs.py"),
         (item("tests/physics/test_oil.py"), "tests/physics/test_oil.py"),
         (item("tests/test_lanes.py"), "tests/test_mutation.py"),
+        (item("tests/cad/test_dxf.py"), MODELS),
     ],
 )
 def test_tests_of_one_server_or_one_file_share_a_worker(test, group):
     assert group_of(test) == group
+
+
+def test_files_that_share_a_worker_exist():
+    assert [file for file in TOGETHER if not (ROOT / file).exists()] == []
 
 
 @pytest.mark.skipif("PYTEST_XDIST_WORKER" not in os.environ, reason="needs pytest-xdist: pytest -n 2")

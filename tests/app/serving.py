@@ -17,6 +17,7 @@ import pytest
 import uvicorn
 from components import ON_POSTGRESQL, shared
 from forked import Forked
+from one_context import share_one_context
 from patience import GLANCE, patient, until
 from unsynced import spare_the_disk
 
@@ -28,6 +29,7 @@ from app.server import configuration
 from app.settings import Settings
 
 spare_the_disk()
+share_one_context()
 API = "/api/v1"
 PATIENCE = patient(60.0)  # for a server to start [s]; importing the geometry kernel takes some of it
 HANG = patient(5.0)  # an answer that takes longer hangs [s]

@@ -11,15 +11,28 @@ from cad.regenerate import Build, regenerate
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """A test that asks for `model` runs for every model found: a new file is covered when it is there.
 
-    A file of tests may name in `SLOW_MODELS` those that belong to the slow lane.
+    Some belong to the slow lane: those in `SLOW_MODELS` of the file, or of `@slow_for` at the test.
     """
     if "model" in metafunc.fixturenames:
-        slow = getattr(metafunc.module, "SLOW_MODELS", {})
+        slow = {*getattr(metafunc.module, "SLOW_MODELS", ()), *getattr(metafunc.function, "slow_for", ())}
+        marks = {True: pytest.mark.slow, False: ()}
         result = [
-            pytest.param(cls, id=f"{cls.id}_v{cls.version}", marks=slow.get((cls.id, cls.version), ()))
+            pytest.param(cls, id=f"{cls.id}_v{cls.version}", marks=marks[(cls.id, cls.version) in slow])
             for cls in models()
         ]
         metafunc.parametrize("model", result, scope="session")
+
+
+class Derived(dict[str, bytes]):
+    """Files of one STEP file, each made when it is first asked for."""
+
+    def __init__(self, step: bytes) -> None:
+        super().__init__()
+        self.step = step
+
+    def __missing__(self, kind: str) -> bytes:
+        self[kind] = derive(self.step, kind)
+        return self[kind]
 
 
 @pytest.fixture(scope="session")
@@ -42,12 +55,18 @@ def example(model: type[CadModel], example_of: Callable[[type[CadModel]], Build]
 
 
 @pytest.fixture(scope="session")
-def dxf(example: Build) -> bytes:
-    """The drawing of this model's example."""
-    return derive(example.step, "dxf")
+def files(example: Build) -> Derived:
+    """The files of this model's example."""
+    return Derived(example.step)
 
 
 @pytest.fixture(scope="session")
-def svg(example: Build) -> bytes:
+def dxf(files: Derived) -> bytes:
+    """The drawing of this model's example."""
+    return files["dxf"]
+
+
+@pytest.fixture(scope="session")
+def svg(files: Derived) -> bytes:
     """The same as a picture."""
-    return derive(example.step, "drawing.svg")
+    return files["drawing.svg"]

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from netgen.occ import OCCGeometry
+from slow_models import LARGE, slow_for
 
 from cad.catalogue import models
 from cad.checks import check_box
@@ -88,9 +89,13 @@ def test_model_is_made_again_from_the_text_in_its_file(model: type[CadModel], ex
 
 
 @pytest.fixture(scope="session")
-def elsewhere() -> dict[str, str]:
-    """The hashes of all models' examples, built in another process."""
-    classes = list(models())
+def elsewhere(request: pytest.FixtureRequest) -> dict[str, str]:
+    """The hashes of the examples of all models that the next test takes, built in another process."""
+    name = test_bytes_are_the_same_in_another_process.__name__
+    chosen = {
+        i.callspec.params["model"] for i in request.session.items if getattr(i, "originalname", "") == name
+    }
+    classes = [cls for cls in models() if cls in chosen]
     examples = (cls.from_quantities(cls.example).inputs_si() for cls in classes)
     given = [{name: np.asarray(value).tolist() for name, value in one.items()} for one in examples]
     builds = [[cls.id, cls.version, one] for cls, one in zip(classes, given, strict=True)]
@@ -99,12 +104,14 @@ def elsewhere() -> dict[str, str]:
     return dict(zip((f"{cls.id}_v{cls.version}" for cls in classes), done.stdout.split(), strict=True))
 
 
+@slow_for(*LARGE)
 def test_bytes_are_the_same_in_another_process(
     model: type[CadModel], example: Build, elsewhere: dict[str, str]
 ) -> None:
     assert elsewhere[f"{model.id}_v{model.version}"] == hashlib.sha256(example.step).hexdigest()
 
 
+@slow_for(*LARGE, ("crank_throw", 1), ("plain_bearing", 2))
 def test_bytes_are_the_same_each_time(model: type[CadModel], example: Build) -> None:
     # Six times: the order of three colours was once that of memory addresses, so two equal files were luck.
     for _ in range(6):
@@ -128,6 +135,7 @@ def test_hostile_numbers_are_refused_by_name(model: type[CadModel], example: Bui
         assert name in {fault.name for fault in refused.value.faults}
 
 
+@slow_for(*LARGE, ("plain_bearing", 2))
 def test_required_parameter_may_have_any_size_in_range(model: type[CadModel]) -> None:
     for share in (0.0, 0.25, 0.5, 0.75, 1.0):
         required = {n: _between(d, share) for n, d in model.inputs.items() if d.required}
@@ -184,6 +192,7 @@ def parameters(draw: st.DrawFn, cls: type[CadModel]) -> dict[str, Value]:
 QUICK = settings(max_examples=15, suppress_health_check=list(HealthCheck))
 
 
+@slow_for(*LARGE, ("plain_bearing", 1), ("plain_bearing", 2))  # test_bearing_parts.py has random ones
 @QUICK
 @given(data=st.data())
 def test_any_parameters_give_a_checked_solid_or_are_refused(

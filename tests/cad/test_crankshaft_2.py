@@ -264,6 +264,7 @@ def test_turned_pin_is_where_it_should_be() -> None:
     assert measures["high_x"] == pytest.approx(40 + 43 * cos(pi / 6), abs=1e-5)
 
 
+@pytest.mark.slow
 def test_four_throws_take_less_than_two_seconds_of_the_processor() -> None:
     """Drawn, written, read again, measured and checked; the better of two, as the machine has other work."""
     radii = {"value": [70, 0, 0, 70, 70, 0, 0, 70], "unit": "mm"}

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from ezdxf.document import Drawing
 from ezdxf.entitydb import EntityDB
+from slow_models import LARGE, slow_for
 
 from cad.drafting.hatching import hatch
 from cad.drafting.matching import matched
@@ -23,8 +24,7 @@ from cad.step import read_step
 from templates.core.units.units import unit
 
 SHOWN = 0.9  # of the lengths and angles of an example
-SLOW_MODELS = {("crankshaft", 2): pytest.mark.slow}
-"""Its files take seconds each; crankshaft 1 and crank_throw 1, in the quick lane, have the same shapes."""
+SLOW_MODELS = LARGE
 
 
 @pytest.fixture
@@ -183,6 +183,7 @@ def test_hatch_stays_within_its_outline() -> None:
         assert abs((b[1] - a[1]) - (b[0] - a[0])) < 1e-9  # at 45°
 
 
+@slow_for(("crank_throw", 1))
 @pytest.mark.parametrize("backwards", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_the_order_of_sets_does_not_show(
     example: Build, dxf: bytes, monkeypatch: pytest.MonkeyPatch, backwards: bool

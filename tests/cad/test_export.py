@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from PIL import Image
+from slow_models import LARGE
 
 from cad.export import DERIVED, MEDIA_TYPES, derive
 from cad.inspect import measure
@@ -14,17 +15,19 @@ from cad.regenerate import Build
 from cad.step import read_step
 
 STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-SLOW_MODELS = {("crankshaft", 2): pytest.mark.slow}
-"""Its files take seconds each; crankshaft 1 and crank_throw 1, in the quick lane, have the same shapes."""
+SLOW_MODELS = LARGE
+PRINTED = "drawing.pdf"  # typeset of the picture of a drawing
 
 
-@pytest.fixture(scope="session")
-def files(example: Build) -> dict[str, bytes]:
-    return {kind: derive(example.step, kind) for kind in DERIVED}
+def test_every_kind_has_a_media_type_and_can_be_had(files: dict[str, bytes]) -> None:
+    assert set(MEDIA_TYPES) == {"step", *DERIVED}
+    for kind in set(DERIVED) - {PRINTED}:
+        assert len(files[kind]) > 100, kind
 
 
-def test_every_kind_has_a_media_type(files: dict[str, bytes]) -> None:
-    assert set(MEDIA_TYPES) == {"step", *files}
+@pytest.mark.slow  # in the quick lane test_iso_drawing.py reads the PDF of one model
+def test_every_drawing_can_be_had_as_pdf(files: dict[str, bytes]) -> None:
+    assert files[PRINTED].startswith(b"%PDF-")
 
 
 def test_unknown_kind_is_refused(example: Build) -> None:

@@ -6,6 +6,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from slow_models import LARGE, slow_for
 
 from cad.catalogue import models
 from cad.deflection import COARSEST, FINEST, deflection_of, plain_kind, with_deflection
@@ -13,7 +14,6 @@ from cad.errors import GeometryError
 from cad.export import derive, is_derived
 from cad.inspect import measure
 from cad.mesh import closed_mesh, is_closed, mesh
-from cad.regenerate import as_text, regenerate_class
 from cad.step import read_step
 from templates.core.errors import InvalidInputs
 
@@ -68,9 +68,10 @@ def degenerate(corners):
     return np.linalg.norm(np.cross(b - a, c - a), axis=1) <= 1e-5 * longest**2
 
 
-def test_files_are_closed_without_degenerate_triangles_and_nodes_have_the_names_of_parts(example, model):
-    content, meshes = glb(derive(example.step, "glb"))
-    whole = stl(derive(example.step, "stl"))
+@slow_for(*LARGE)
+def test_files_are_closed_without_degenerate_triangles_and_nodes_have_the_names_of_parts(files, model):
+    content, meshes = glb(files["glb"])
+    whole = stl(files["stl"])
     assert len(whole) == sum(len(meshes[node["mesh"]]) for node in content["nodes"][1:])
     assert not unpaired(whole)
     assert not any(gaps(one) for one in meshes)
@@ -86,8 +87,8 @@ BALL = models().get("ball_bearing", 1)
 
 
 @pytest.fixture(scope="module")
-def bearing():
-    return regenerate_class(BALL, as_text(BALL.from_quantities(BALL.example)))
+def bearing(example_of):
+    return example_of(BALL)
 
 
 @pytest.mark.parametrize("deflection", [5.0, 0.5, 0.05, 0.02])

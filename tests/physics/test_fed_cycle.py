@@ -80,6 +80,7 @@ def test_property_rows_of_a_mesh_are_numbered_once(around):
     assert apart.max() <= 2
 
 
+@pytest.mark.slow  # test_supplied_orbit.py has the same of other grooves in the quick lane
 def test_analytic_constant_load_is_the_static_film_with_the_same_groove():
     """oil_film 2 counts the angle of a groove from the load; here the load points along x."""
     groove = {"groove_width": "10 mm", "groove_start": "90 deg", "groove_extent": "180 deg"}

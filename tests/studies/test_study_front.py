@@ -19,6 +19,7 @@ def objectives(front):
     return np.array([one.confirmed[: min(count, 2)] for one in front.places])
 
 
+@pytest.mark.slow  # the corrected front, below, is compared with its closed form too
 def test_the_front_of_zdt1_is_within_a_hundredth():
     """Zitzler, Deb and Thiele 2000: f2 = 1 - sqrt f1, in 30 variables."""
     variables = tuple(Interval(f"x{number}", 0.0, 1.0) for number in range(30))

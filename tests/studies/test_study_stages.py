@@ -53,7 +53,8 @@ def plain(outcome):
     return outcome.state, [place.tobytes() for place in outcome.places], trade, outcome.notes
 
 
-def test_an_interrupted_front_repeats_no_finished_generation(monkeypatch):
+@pytest.mark.parametrize("times", [1, pytest.param(3, marks=pytest.mark.slow)])
+def test_an_interrupted_front_repeats_no_finished_generation(monkeypatch, times):
     monkeypatch.setattr(searching, "pareto_front", partial(pareto_front, effort=SMALL))
     monkeypatch.setattr(searching, "SLICE_SECONDS", 0.2)
     asked, search = planned_search(minimise=[LOSS], maximise=[FILM])
@@ -65,7 +66,7 @@ def test_an_interrupted_front_repeats_no_finished_generation(monkeypatch):
     assert len(repeated) >= SMALL.generations
     assert sum(repeated) <= len(undisturbed)  # the one of each slice that was not finished
     moments = random.Random(14)
-    for _ in range(3):
+    for _ in range(times):
         chunks, watch.begun, watch.ends_at = [], [], moments.randint(2, total)
         with pytest.raises(Interrupted):
             searched_on(asked, search, chunks)

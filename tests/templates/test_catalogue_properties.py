@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 import jsonschema_rs
 import numpy as np
 import pytest
+from newest import older_slow
 from seeds import seeded
 
 import templates
@@ -29,6 +30,7 @@ GOLDEN = Path(__file__).parents[1] / "golden"
 BUILT_IN = find([Path(templates.__file__).parent], Template)
 EVERY = [pytest.param(cls, id=f"{cls.id}-{cls.version}") for cls in chain(BUILT_IN, models())]
 every_template = pytest.mark.parametrize("cls", EVERY)
+newest_templates = pytest.mark.parametrize("cls", older_slow(chain(BUILT_IN, models())))
 SAMPLED = {
     ("cycle_heat_balance", 1): 9,
     ("cycle_heat_balance", 2): 9,
@@ -238,16 +240,16 @@ def check_case(cls, case, precision):
 class TestArrays:
     """One point and many are the same calculation; a point that means nothing harms no other."""
 
-    @every_template
+    @newest_templates
     def test_property_array_is_pointwise(self, cls):
         inputs = around_example(cls, np.random.default_rng(1), 9)
         assert_pointwise(cls, inputs, range(9))
 
-    @every_template
+    @newest_templates
     def test_property_bad_point_harms_no_neighbour(self, cls):
         assert_harmless(cls, some(cls, bounded_givens(cls)))
 
-    @every_template
+    @newest_templates
     def test_property_extremes_are_finite_or_refused(self, cls):
         count = 100 if (cls.id, cls.version) in SAMPLED else 300
         assert_finite_or_refused(cls, extremes(cls, np.random.default_rng(3), count), count)
@@ -260,7 +262,7 @@ class TestArrays:
         for _ in range(count // at_once):
             assert_finite_or_refused(cls, extremes(cls, random, at_once), at_once)
 
-    @every_template
+    @newest_templates
     @pytest.mark.parametrize("count", [80, pytest.param(400, marks=pytest.mark.slow)])
     def test_property_extremes_agree_with_single_points(self, cls, count):
         inputs = extremes(cls, np.random.default_rng(4), count)

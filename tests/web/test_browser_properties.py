@@ -37,8 +37,8 @@ def kinds(paths):
 
 @pytest.fixture
 def some(kinds):
-    """The list of templates, a design, and a template: between them they load nearly every script."""
-    return [kinds[0], kinds[2], kinds[5]]
+    """The list of templates and a design; with the template of the test of plots nearly every script."""
+    return [kinds[0], kinds[2]]
 
 
 SCROLL = """async () => {

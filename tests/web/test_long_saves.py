@@ -79,6 +79,7 @@ def test_a_slow_save_can_be_cancelled(watched, served, place):
     assert watched.faults() == []
 
 
+@pytest.mark.slow  # as a slow save does, which is in the quick lane
 def test_a_slow_preview_says_how_far_it_is_and_shows_its_results(watched, place, alarm):
     watched.open(place)
     progress, duration = parts(watched)

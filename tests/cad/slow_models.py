@@ -1,0 +1,25 @@
+"""Which models belong to the slow lane, in a whole file or in one test.
+
+A file names them in `SLOW_MODELS`, a test by `@slow_for(...)`; tests/cad/conftest.py reads both.
+"""
+
+from collections.abc import Callable
+from typing import TypeVar
+
+Test = TypeVar("Test", bound=Callable[..., object])
+Model = tuple[str, int]  # id, version
+
+SHAFTS = (("crankshaft", 1), ("crankshaft", 2))
+LARGE = (*SHAFTS, ("bearing_assembly", 1))
+"""To build, mesh or draw one takes as long as all others together. What they consist of, throws, shells and
+housings, are models of their own, in the quick lane."""
+
+
+def slow_for(*models: Model) -> Callable[[Test], Test]:
+    """Put a test of these models into the slow lane."""
+
+    def mark(test: Test) -> Test:
+        test.slow_for = models  # type: ignore[attr-defined]
+        return test
+
+    return mark
