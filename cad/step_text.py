@@ -1,8 +1,8 @@
 """The text of a STEP file, the same for the same parts: what the kernel's writer leaves to chance is set.
 
 Three things in its text tell of the process that wrote it: the time in the header, a counter of assembly
-usages that never restarts, and the order of colours, which is that of memory addresses. So the header and the
-colours are written here, and usages are counted from 1.
+usages that never restarts, whose digits move the line breaks, and the order of colours, which is that of
+memory addresses. So the header and the colours are written here, and usages are counted from 1.
 """
 
 from __future__ import annotations
@@ -20,7 +20,9 @@ from cad.properties import PartProperties, entities
 SCHEMA = "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }"
 KERNEL = f"CadQuery {version('cadquery')}, Open CASCADE {version('cadquery-ocp')}"
 
-_USAGE = re.compile(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\(')\d+'")
+_USAGE = re.compile(r"^(#\d+ = NEXT_ASSEMBLY_USAGE_OCCURRENCE\()'\d+',((?:'[^']*'|[^';])*);", re.MULTILINE)
+_TOKEN = re.compile(r"'(?:[^']|'')*',?|[^',)]+,?|\)")
+_WIDEST = 72  # a line of the kernel's writer [characters]
 _NAMELESS = re.compile(r"(SHAPE_DIMENSION_REPRESENTATION\(|CYLINDRICITY_TOLERANCE\(|GEOMETRIC_TOLERANCE\()''")
 _DEVIATION = re.compile(r"(= MEASURE_WITH_UNIT\()(?:-(?=0\.,))?(-?[0-9.][0-9.E+-]*),")
 _NUMBER = re.compile(r"^#(\d+) = ", re.MULTILINE)
@@ -42,7 +44,7 @@ def finished(
     """
     data = in_ascii(text[text.index("ENDSEC;") + len("ENDSEC;") :])
     number = count(1)
-    data = _USAGE.sub(lambda usage: f"{usage[1]}{next(number)}'", data)
+    data = _USAGE.sub(lambda usage: _usage(usage[1], next(number), usage[2]), data)
     body, end, rest = data.rpartition("ENDSEC;")
     body += _styles(body, colours)
     if properties:
@@ -51,6 +53,21 @@ def finished(
         lines = entities(body, first, header.model, attributes, properties)
         body = _annotated(body, names) + "".join(f"{line}\n" for line in lines)
     return f"ISO-10303-21;\n{write_header(header, SCHEMA, KERNEL)}{body}{end}{rest}"
+
+
+def _usage(start: str, number: int, rest: str) -> str:
+    """A usage by its number in the file, with lines as the writer breaks them for this number."""
+    lines = [f"{start}'{number}',"]
+    for token in _TOKEN.findall(rest.replace("\n  ", "").removesuffix(")")):
+        _append(lines, token)
+    _append(lines, ");")
+    return "\n".join(lines)
+
+
+def _append(lines: list[str], token: str) -> None:
+    if len(lines[-1]) + len(token) > _WIDEST:
+        lines.append("  ")
+    lines[-1] += token
 
 
 def _annotated(data: str, names: Sequence[str]) -> str:

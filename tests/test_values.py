@@ -48,8 +48,12 @@ GROWING = {
     "Conditions",
     "Expressions",
     "Lists",
+    "CreoSession",
 }
 """Records that one function fills step by step before it returns them."""
+
+MANY = {"Answer", "Echo", "Estimate", "Judgement"}
+"""Records of which each calculation makes hundreds: frozen, one would cost four times as much or more."""
 
 
 def modules(package):
@@ -68,4 +72,4 @@ def test_dataclasses_are_frozen(package):
     }
     assert len(classes) > 15
     open_ones = {cls.__name__ for cls in classes if not cls.__dataclass_params__.frozen}
-    assert open_ones <= GROWING
+    assert open_ones <= GROWING | MANY

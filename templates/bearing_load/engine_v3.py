@@ -150,7 +150,7 @@ class Engine(ArticulatedEngine):
         "crankcase_pressure": "1 bar",
         "orders": [1, 2],
         "main_positions": {"value": [0, 94, 170], "unit": "mm"},
-        "web_positions": {"value": [22, 72], "unit": "mm"},
+        "web_positions": {"value": [22, 72, 132], "unit": "mm"},
         "web_unbalance": "12 kg*mm",
         "counterweights": "16 kg*mm",
         "support_stiffness": "500 kN/mm",

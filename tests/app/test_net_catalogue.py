@@ -11,8 +11,11 @@ TEMPLATES = sorted(CATALOGUES.templates.versions)
 MODELS = sorted(CATALOGUES.models.versions)
 
 
-EXACT = {"forced_torsion": {"crank_angle"}}
-"""Inputs that are refused unless they are exact: a cycle has 720 deg."""
+EXACT = {
+    "forced_torsion": {"crank_angle"},
+    "bearing_assembly": {"journal_diameter", "diametral_clearance", "wall", "housing_bore"},
+}
+"""Inputs that are refused unless they are exact: a cycle has 720 deg, shells fit a housing within 20 µm."""
 
 
 def quantities(cls):

@@ -86,7 +86,9 @@ def test_the_paper_in_a_browser(watched, tmp_path, is_drawn):
     step = (tmp_path / "bearing.step").read_bytes()
     assert step_diameters(step) >= {48.0, 88.0}
 
-    paper = page.request.get(watched.url + page.get_by_role("link", name="PDF").get_attribute("href")).body()
+    paper = page.request.get(
+        watched.url + page.get_by_role("link", name="PDF", exact=True).get_attribute("href")
+    ).body()
     for text in ("25 kN", "= scale * 48 mm", "Minimum film thickness", "= 47.945 mm", "= 3.2449 µm"):
         assert text in words_of(paper)
     page.get_by_role("link", name="Open the report").click()

@@ -42,7 +42,7 @@ def test_a_worksheet_lives_its_life_by_forms_alone(plain):
     expect(page.locator("[data-sheet-state]")).to_have_text("released")
     page.get_by_role("button", name="Use it in a design").click()
     expect(page).to_have_url(
-        f"{plain.url}/designs/new?design_name=by_forms&template=by_forms%2F1&model=plain_bearing%2F1"
+        f"{plain.url}/designs/new?design_name=by_forms&template=by_forms%2F1&model=plain_bearing%2F2"
     )
 
 
