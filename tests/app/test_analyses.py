@@ -265,6 +265,7 @@ class TestFoundAgain:
             client.analyse("ball_bearing", 1, {"inner_diameter": "40 mm"})
 
 
+@pytest.mark.slow
 def test_the_deadline_of_analyses_is_their_own(tmp_path):
     folders = (folder_of_models(tmp_path / "templates"),)
     settings = Settings(

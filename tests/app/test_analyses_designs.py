@@ -187,6 +187,7 @@ class TestBeforeItIsKnown:
 
 
 class TestLoad:
+    @pytest.mark.slow
     def test_analytic_a_life_follows_from_the_stress_on_the_solid(self, http):
         """√3 · 16 T / (π d³) in a short bar, then Basquin's line without a mean stress."""
         torque, diameter, strength, exponent = 300.0, 0.020, 900e6, -0.1

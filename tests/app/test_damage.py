@@ -33,7 +33,14 @@ def replace_by_folder(path):
     path.mkdir()
 
 
-DAMAGES = pytest.mark.parametrize("damage", [delete, flip, truncate, replace_by_folder])
+DAMAGES = pytest.mark.parametrize(
+    "damage",
+    [
+        delete,
+        flip,
+        *(pytest.param(damage, marks=pytest.mark.slow) for damage in (truncate, replace_by_folder)),
+    ],
+)
 ONE_DAMAGE = pytest.mark.parametrize(
     "damage",
     [delete, *(pytest.param(one, marks=pytest.mark.slow) for one in (flip, truncate, replace_by_folder))],

@@ -88,6 +88,7 @@ def test_jobs_of_a_stopped_forkserver_die_with_the_server(tmp_path):
     assert eventually(lambda: not any(alive(pid) for pid in family)), "the grandchild of a job as well"
 
 
+@pytest.mark.slow
 def test_a_hang_up_that_comes_before_the_end_of_the_server_kills_nobody(tmp_path):
     server, forkserver = started(tmp_path)
     pids = tmp_path / "pids"

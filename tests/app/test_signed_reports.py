@@ -129,6 +129,7 @@ def test_a_changed_page_is_named(room, design, printed, unsigned):
     assert all(line.startswith("the text differs: the file says") for line in failed)
 
 
+@pytest.mark.slow
 def test_other_bytes_of_the_same_text_are_named(room, design, printed):
     same = with_block(printed, lambda block: block)
     (failed,) = failures(same, approvals_of(room.author, design), printed)

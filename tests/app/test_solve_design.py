@@ -95,6 +95,7 @@ def test_each_solution_carries_the_verdict_of_every_criterion_of_the_design():
     assert "film.film_exists" in met[0].verdicts
 
 
+@pytest.mark.slow
 def test_the_curve_passes_the_target_at_every_solution():
     solution = asked(FILMS, "clearance", "2 um", "0.5 mm", THIN, "2 um")
     x, y = np.array(solution.curve.x.value), np.array(solution.curve.y.value)

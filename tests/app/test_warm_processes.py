@@ -57,9 +57,9 @@ def test_progress_arrives_from_every_request(single):
 @pytest.mark.parametrize(
     ("function", "limits", "error"),
     [
-        (victims.segfault, USUAL, JobCrashed),
+        pytest.param(victims.segfault, USUAL, JobCrashed, marks=pytest.mark.slow),
         (victims.endless_sum, Limits(0.3, 512), DeadlineExceeded),
-        (victims.memory_bomb, USUAL, MemoryExceeded),
+        pytest.param(victims.memory_bomb, USUAL, MemoryExceeded, marks=pytest.mark.slow),
     ],
 )
 def test_what_did_not_end_by_itself_ends_its_process(single, function, limits, error):

@@ -90,6 +90,7 @@ def test_full_groove_makes_two_short_bearings() -> None:
     assert same.gap.mean() == pytest.approx(orbit.gap.mean(), rel=2e-3)
 
 
+@pytest.mark.slow
 def test_turned_as_a_whole_the_orbit_turns() -> None:
     """By whole cells it is the same to rounding, by part of one to the error of the mesh."""
     orbit, z = swinging()
@@ -108,6 +109,7 @@ def test_the_frame_may_turn() -> None:
         assert np.abs(seen - z).max() < 2e-3
 
 
+@pytest.mark.slow
 def test_without_mass_the_orbit_is_nearly_the_same() -> None:
     heavy, light, none = (swinging(mass=mass)[0].least_gap for mass in (2.5e-3, 2.5e-4, 0.0))
     assert light == pytest.approx(none, rel=1e-3)

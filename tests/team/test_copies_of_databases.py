@@ -121,7 +121,16 @@ def test_a_server_that_dies_between_database_and_store_is_no_copy(original, stor
     require_only_copy(original, store)
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", '{"sweep": 1}', '{"sweep": null, "copied": null}'])
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("", '{"sweep": 1}'),
+        *(
+            pytest.param(text, marks=pytest.mark.slow)
+            for text in ("{", "[]", '{"sweep": null, "copied": null}')
+        ),
+    ],
+)
 def test_a_note_that_nobody_can_read_stops_the_collection(original, store, text):
     require_only_copy(original, store)
     store.write_note(NOTE, text)

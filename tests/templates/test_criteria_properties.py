@@ -7,6 +7,7 @@ import math
 from pathlib import Path
 
 import pytest
+from newest import older_slow
 
 import templates
 from templates.core.catalogue.finding import find
@@ -15,7 +16,7 @@ from templates.core.language.evaluate import evaluate
 from templates.core.language.template import Template
 
 BUILT_IN = find([Path(templates.__file__).parent], Template)
-EVERY = [pytest.param(cls, id=f"{cls.id}-{cls.version}") for cls in BUILT_IN if cls.declared_criteria]
+EVERY = older_slow(cls for cls in BUILT_IN if cls.declared_criteria)
 every_template = pytest.mark.parametrize("cls", EVERY)
 LENIENT = {">=": 1e-9, "<=": 1e9}
 

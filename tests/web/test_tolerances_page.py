@@ -39,6 +39,7 @@ def finished(http, design):
     return http.get(job_of(http, design).replace("/jobs/", "/evaluations/"), headers=JSON).json()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
 def test_the_button_shows_yields_limits_and_pictures(watched, toleranced, http):
     page = watched.page

@@ -180,7 +180,7 @@ def test_the_next_version_is_held_against_the_released_one(watched, http):
 @pytest.mark.parametrize(
     ("width", "scheme"),
     [
-        (390, "dark"),
+        pytest.param(390, "dark", marks=pytest.mark.slow),
         pytest.param(1440, "light", marks=pytest.mark.slow),
         pytest.param(1440, "dark", marks=pytest.mark.slow),
         pytest.param(390, "light", marks=pytest.mark.slow),

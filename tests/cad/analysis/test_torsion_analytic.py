@@ -94,6 +94,7 @@ def test_half_of_a_shaft_is_exactly_half_of_the_mirrored_mesh() -> None:
     assert half == pytest.approx(full, rel=1e-6)
 
 
+@pytest.mark.slow  # the test before asks the same of one mesh, exactly
 @pytest.mark.parametrize(
     "boundary",
     [pytest.param(one, marks=pytest.mark.slow if one == "free_end" else ()) for one in BOUNDARIES],
