@@ -1,0 +1,167 @@
+"""Whatever is sent to `evaluate`, the express way and the general way give the same answer, byte for byte."""
+
+import json
+import re
+from contextlib import nullcontext
+from unittest.mock import patch
+
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+from serving import API, HANG
+
+from app.api import express
+from app.calculations.schemas import OIL_FILM
+
+PLAIN, AS_JSON = f"{API}/templates/oil_film/versions/1/evaluate", {"Content-Type": "application/json"}
+CHANGING = {"date", "x-request-id", "content-length"}
+_OF_ITSELF = re.compile(rb'"(?:seconds|request_id|id)":(?:[0-9.e-]+|"[^"]*")')
+
+RAW = [
+    b"", b" ", b"null", b"[]", b"{}", b"0", b'"x"', b"{", b'{"inputs": {}} x', b'\xef\xbb\xbf{"inputs": {}}',
+    b'{"inputs": {"speed": "\xff"}}', b'{"inputs": {"speed": "\xed\xa0\x80"}}', b'{"inputs": {"\\ud800": 1}}',
+    b'{"inputs": {"speed": "\\u0000"}}', b'{"inputs": {"speed": "\\\\u0000"}}',
+    b'{"inputs": {"a\\u0000": 1}}',
+    b'{"inputs": {"speed": NaN}}', b'{"inputs": {"speed": {"value": Infinity, "unit": "rpm"}}}',
+    b'{"inputs": {"speed": {"value": -Infinity, "unit": "rpm"}}}', b'{"inputs": {}, "tolerance": NaN}',
+    b'{"inputs": {"speed": {"value": 1e999, "unit": "rpm"}}}', b'{"inputs": {}, "tolerance": 1e-999}',
+    b'{"inputs": {"speed": {"value": ' + b"9" * 400 + b', "unit": "rpm"}}}',
+    b'{"inputs": {"speed": ' + b"9" * 5000 + b"}}", b'{"inputs": {"speed": 1}, "inputs": {}}',
+    b'{"inputs": {"speed": "1 rpm", "speed": "2 rpm"}}', b'{"inputs": {}, "level": "none"}',
+    b'{"inputs": ' + b"[" * 100 + b"]" * 100 + b"}", b'{"inputs": ' + b"[" * 5000 + b"]" * 5000 + b"}",
+    b'{"a":' * 300 + b"1" + b"}" * 300, b'{"inputs": {}, "outputs": ["' + b"a" * 200 + b'"]}',
+    b'{"inputs": {' + b",".join(b'"a%d": 1' % n for n in range(2500)) + b"}}", b"{" + b" " * 65_600 + b"}",
+    b"'{}'", b"{'inputs': {}}", b'{"inputs": {"speed": "5000 rpm",}}', b"\x00", b"\x1f\x8b\x08\x00",
+]  # fmt: skip
+NUMBERS = st.integers() | st.floats() | st.sampled_from([0, -0.0, 1e308, 5e-324, 10**400, True])
+TEXTS = st.sampled_from(
+    ["25 kN", "0.05 mm", "5000 rpm", "80 degC", "-1 mm", "1e999 kN", "48 mm H7", "1 ± 2 rpm", ""]
+)
+JUNK = st.none() | st.booleans() | NUMBERS | TEXTS | st.text(max_size=6)
+VALUES = st.recursive(
+    JUNK | st.fixed_dictionaries({"value": NUMBERS | st.lists(NUMBERS, max_size=3), "unit": TEXTS}),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=4), inner, max_size=3),
+    max_leaves=5,
+)
+NAMES = st.sampled_from([*OIL_FILM, "nothing", "", "__class__"])
+CHANGED = st.dictionaries(NAMES, VALUES, max_size=2)
+INPUTS = st.builds(lambda some: {**OIL_FILM, **some}, CHANGED) | CHANGED
+OUTPUTS = ["minimum_film_thickness", "density", "nothing"]
+ASKED = st.fixed_dictionaries(
+    {"inputs": st.just(OIL_FILM) | INPUTS},
+    optional={
+        "outputs": st.lists(st.sampled_from(OUTPUTS), max_size=3) | JUNK,
+        "level": st.sampled_from(["numeric", "nothing"]) | JUNK,
+        "tolerance": NUMBERS,
+        "units": st.dictionaries(st.sampled_from(OUTPUTS), st.sampled_from(["um", "kN", ""])) | JUNK,
+        "per_point": st.booleans() | JUNK,
+        "limits": st.dictionaries(st.sampled_from(OUTPUTS), VALUES, max_size=1) | JUNK,
+        "more": JUNK,
+    },
+)
+RIGHT = json.dumps({"inputs": OIL_FILM}).encode()
+BODIES = st.one_of(
+    st.just(RIGHT),
+    ASKED.map(lambda asked: json.dumps(asked).encode()),
+    ASKED.map(lambda asked: json.dumps(asked, ensure_ascii=False).encode("utf-8", "surrogatepass")),
+    st.sampled_from(RAW),
+    st.binary(max_size=30),
+)
+OTHERS = ["transient_film", "nothing", "Oil_film", "oil%5ffilm", "o" * 65, "%00", "a%2fb"]
+TEMPLATES = [*(7 * ["oil_film"]), *OTHERS]
+VERSIONS = [*(10 * ["1"]), "01", "0", "-1", "999999", "1000000", "1.0", "latest", "%31", "1\u0661"]
+ENDS = ["", "/", "?", "?units=us", "?units=none", "%20", "//"]
+ODD_PATHS = st.builds(
+    "{}/templates/{}/versions/{}/evaluate{}".format,
+    st.just(API),
+    st.sampled_from(TEMPLATES),
+    st.sampled_from(VERSIONS),
+    st.sampled_from(ENDS),
+)
+PATHS = st.integers(0, 9).flatmap(lambda number: ODD_PATHS if number == 0 else st.just(PLAIN))
+TYPES = ["application/json", "Application/JSON", "application/json; charset=utf-8", "text/plain", ""]
+NPY = "application/x-npy"
+ACCEPTS = ["*/*", "application/json", NPY, f"text/html, {NPY}", NPY.upper(), "image/png", ""]
+HEADERS = st.fixed_dictionaries(
+    {"Content-Type": st.sampled_from([*(9 * TYPES[:1]), *TYPES])},
+    optional={
+        "Accept": st.sampled_from(ACCEPTS),
+        "Prefer": st.sampled_from(["wait=5", "respond-async", "wait=x", "wait=-1"]),
+        "Expect": st.just("100-continue"),
+        "Accept-Encoding": st.sampled_from(["gzip", "identity", "*;q=0"]),
+        "If-None-Match": st.just("*"),
+        "Range": st.just("bytes=0-3"),
+        "Origin": st.just("http://elsewhere.example"),
+        "Idempotency-Key": st.just("once"),
+        "X-Request-Id": st.sampled_from(["mine", "a b", "x" * 300]),
+        "X-HTTP-Method-Override": st.just("DELETE"),
+    },
+)
+OTHER_METHODS = ["GET", "HEAD", "OPTIONS", "PUT", "post", "TRACE"]
+METHODS = st.sampled_from([*(60 * ["POST"]), *OTHER_METHODS])
+
+
+def answered(http, method, path, body, headers, *, in_pieces, express_way):
+    """All of an answer but what differs from one request to the next."""
+    content = iter([body[:7], body[7:]]) if in_pieces else body
+    with nullcontext() if express_way else patch.object(express, "_named", lambda scope: None):
+        answer = http.request(method, path, content=content, headers=headers, timeout=HANG)
+    lasting = sorted((n.lower(), v) for n, v in answer.headers.items() if n.lower() not in CHANGING)
+    return answer.status_code, lasting, _OF_ITSELF.sub(b"", answer.content)
+
+
+def compare(http, method, path, body, headers, in_pieces):
+    both = (
+        answered(http, method, path, body, headers, in_pieces=in_pieces, express_way=way)
+        for way in (True, False)
+    )
+    express_way, general_way = both
+    assert express_way == general_way
+    assert express_way[0] < 500
+
+
+def search(count):
+    return settings(
+        max_examples=count,
+        deadline=None,
+        database=None,
+        phases=[Phase.explicit, Phase.generate, Phase.shrink],
+        suppress_health_check=list(HealthCheck),
+    )
+
+
+CASES = given(METHODS, PATHS, BODIES, HEADERS, st.integers(0, 9).map(lambda number: number == 0))
+
+
+@search(60)
+@CASES
+def test_both_ways_answer_alike(http, method, path, body, headers, in_pieces):
+    compare(http, method, path, body, headers, in_pieces)
+
+
+@pytest.mark.slow
+@search(2000)
+@CASES
+def test_both_ways_answer_alike_at_length(http, method, path, body, headers, in_pieces):
+    compare(http, method, path, body, headers, in_pieces)
+
+
+@pytest.mark.parametrize("body", RAW, ids=range(len(RAW)))
+def test_hostile_bodies_are_answered_alike(http, body):
+    compare(http, "POST", PLAIN, body, AS_JSON, False)
+
+
+VARIED = [
+    *(("POST", PLAIN, {"Content-Type": kind}) for kind in TYPES),
+    *(("POST", PLAIN, {**AS_JSON, "Accept": accept}) for accept in ACCEPTS),
+    *(("POST", PLAIN + end, AS_JSON) for end in ENDS),
+    *(("POST", PLAIN.replace("/1/", f"/{version}/"), AS_JSON) for version in VERSIONS[9:]),
+    *(("POST", PLAIN.replace("oil_film", template), AS_JSON) for template in OTHERS),
+    *((method, PLAIN, AS_JSON) for method in OTHER_METHODS),
+]
+
+
+@pytest.mark.parametrize("in_pieces", [False, True])
+def test_a_right_request_but_for_one_thing_is_answered_alike(http, in_pieces):
+    for method, path, headers in VARIED:
+        compare(http, method, path, RIGHT, headers, in_pieces)
