@@ -109,7 +109,8 @@ class Carriers:
 
     def _faces(self, one: Carried) -> list[FaceSeen]:
         if one.part not in self._seen:
-            self._seen[one.part] = faces_of(self._solids[one.part])
+            solid = self._solids.get(one.part)
+            self._seen[one.part] = [] if solid is None else faces_of(solid)
         return self._seen[one.part]
 
     def _missing(self, one: Carried, size: float) -> tuple[int, ...]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -179,7 +179,7 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
         report(0.0, "building")
         parts = model.build()
         report(0.4, "exporting")
-        annotations = _annotations(model)
+        annotations = _annotations(model, {part.name for part in parts})
         step = write_step(parts, Header(cls.id, cls.version, texts, key), annotations)
         report(0.6, "reading back")
         bodies = read_step(step)
@@ -199,11 +199,11 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
     return Build(key, cls.id, cls.version, _plain(model), step, measures, dimensions, materials)
 
 
-def _annotations(model: CadModel) -> Annotations | None:
+def _annotations(model: CadModel, drawn: Collection[str]) -> Annotations | None:
     """What the file says beside the shape; nothing where no dimension has a tolerance."""
     if not (within := limits(model)):
         return None
-    declared = carried(type(model))
+    declared = {name: one.among(drawn) for name, one in carried(type(model)).items()}
     sizes = {name: mm(getattr(model, model.inputs[name].attribute)) for name in declared}
     return Annotations(declared, within, sizes)
 

@@ -7,7 +7,8 @@ A model says it in `toleranced`, by parameter, in plain words:
         "width": {"of": "shell", "planes": "z", "perpendicularity": 1, "to": "A"},
     }
 
-`of` names the part; without it the part is named as the model. One of these says which faces are meant:
+`of` names the part, or lists parts of which the first that is drawn has the faces; without it the part is
+named as the model. One of these says which faces are meant:
 
 - `cylinders`: those about that axis, of the parameter's diameter; `end`, `"low"` or `"high"`, takes only the
   first or the last along the axis, which no other dimension takes then;
@@ -28,8 +29,8 @@ No kernel is imported here; `cad.pmi` finds the faces.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from templates.core.errors import FaultyText
@@ -72,6 +73,8 @@ class Carried:
         Geometric tolerances as shares of the dimension's own tolerance.
     to
         The letter of the datum to which perpendicularity and parallelism refer.
+    others
+        Parts that have the faces where `part` is not drawn.
     """
 
     name: str
@@ -83,6 +86,12 @@ class Carried:
     datum: str = ""
     forms: Mapping[Form, float] = field(default_factory=dict)
     to: str = ""
+    others: tuple[str, ...] = ()
+
+    def among(self, drawn: Collection[str]) -> Carried:
+        """The same on that of its parts which is drawn; on the first of them if none is."""
+        part = next((name for name in (self.part, *self.others) if name in drawn), self.part)
+        return replace(self, part=part)
 
 
 @dataclass(frozen=True)
@@ -138,9 +147,10 @@ def _carried(cls: type[CadModel], name: str, said: dict[str, Any]) -> Carried:
         raise _wrong(cls, name, "a geometric tolerance is a share above 0 and up to 1 of its own tolerance")
     if bool(said.get("to")) != bool(forms.keys() - {"cylindricity"}):
         raise _wrong(cls, name, "perpendicularity and parallelism need `to`, a datum, and nothing else does")
+    part, *others = _parts(cls, name, said.get("of", cls.id))
     return Carried(
         name,
-        said.get("of", cls.id),
+        part,
         kinds[0],
         said[kinds[0]],
         said.get("end", ""),
@@ -148,7 +158,15 @@ def _carried(cls: type[CadModel], name: str, said: dict[str, Any]) -> Carried:
         said.get("datum", ""),
         forms,
         said.get("to", ""),
+        tuple(others),
     )
+
+
+def _parts(cls: type[CadModel], name: str, said: Any) -> list[str]:
+    named = [said] if isinstance(said, str) else said
+    if not (isinstance(named, (list, tuple)) and named and all(isinstance(one, str) for one in named)):
+        raise _wrong(cls, name, "of is the name of a part, or a list of names")
+    return list(named)
 
 
 def _levels(cls: type[CadModel], name: str, said: Any) -> tuple[tuple[int, int], ...]:

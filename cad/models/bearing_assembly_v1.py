@@ -64,6 +64,16 @@ class BearingAssembly(CadModel):
         "journal_length": "30 mm",
     }
     keeps_apart = True
+    toleranced = {
+        "journal_diameter": {"of": "journal", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
+        "journal_length": {"of": "journal", "planes": "z", "perpendicularity": 1, "to": "A"},
+        "width": {"of": "upper_back", "planes": "z"},
+        "lining_thickness": {"of": "upper_lining", "walls": "z"},
+        "housing_bore": {"of": "block", "cylinders": "z", "cylindricity": 0.5},
+        "housing_breadth": {"of": "block", "planes": "x"},
+        "block_height": {"of": "block", "planes": "y"},
+        "cap_height": {"of": "cap", "planes": "y"},
+    }
 
     d: Array = given("mm", "journal diameter", symbol="d_j", ge=5, le=2000, also=("bearing diameter",))
 

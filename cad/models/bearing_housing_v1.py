@@ -46,6 +46,15 @@ class BearingHousing(CadModel):
         "bolt_hole_depth": "50 mm",
         "oil_drilling_diameter": "5 mm",
     }
+    toleranced = {
+        "housing_bore": {"of": "block", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
+        "housing_width": {"of": "block", "planes": "z", "perpendicularity": 1, "to": "A"},
+        "housing_breadth": {"of": "block", "planes": "x"},
+        "block_height": {"of": "block", "planes": "y"},
+        "cap_height": {"of": "cap", "planes": "y"},
+        "bolt_hole_diameter": {"of": "block", "beside": "y"},
+        "oil_drilling_diameter": {"of": "block", "cylinders": "y"},
+    }
 
     D: Array = given("mm", "housing bore", symbol="D_h", ge=2, le=2000)
 

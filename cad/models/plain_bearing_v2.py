@@ -94,6 +94,16 @@ class PlainBearing(CadModel):
         "crush_height": "0.06 mm",
     }
     film_bore = "inner_diameter"
+    toleranced = {
+        "inner_diameter": {
+            "of": ["upper_lining", "lower_lining"], "cylinders": "z", "datum": "A", "cylindricity": 0.5,
+        },
+        "lining_thickness": {"of": ["upper_lining", "lower_lining"], "walls": "z"},
+        "width": {"of": ["upper_back", "lower_back"], "planes": "z", "perpendicularity": 1, "to": "A"},
+        "flange_diameter": {"of": ["upper_back", "lower_back"], "cylinders": "z"},
+        "flange_thickness": {"of": ["upper_back", "lower_back"], "planes": "z", "levels": [[-2, -1]]},
+        "oil_hole_diameter": {"of": "upper_back", "along": "y"},
+    }  # fmt: skip
 
     d: Array = given("mm", "inner diameter", symbol="d", ge=5, le=2000, also=("bearing diameter", "bore"))
 

@@ -22,6 +22,7 @@ NEW = [
     ("plain_bearing", 2),
     ("bearing_housing", 1),
     ("bearing_assembly", 1),
+    ("connecting_rod", 1),
 ]
 NONE_BY_DEFAULT = {
     "oil_grooves": (1, 7), "pin_hole_diameter": (0.02, 0.3), "lug_width": (0.02, 0.6),
@@ -35,6 +36,7 @@ LIMITS = {  # what a random set must reach: the least share of 300 that makes a 
     "plain_bearing": 0.1,
     "bearing_housing": 0.1,
     "bearing_assembly": 0.1,
+    "connecting_rod": 0.03,
 }
 HOSTILE_VALUES = (math.nan, math.inf, -math.inf, -1.0, -1e-3, 0.0, 1e-12, 1e-9, 1e-7, 1e-6, 1e9, 1e300)
 BAD = (*HOSTILE_VALUES[:5], 1e9, 1e300)

@@ -25,7 +25,8 @@ from templates.core.units.fits import deviations
 QUICK = [("plain_bearing", 1)] * 6 + [("ball_bearing", 1)] * 3 + [("crank_throw", 1)]
 ALL = [
     ("plain_bearing", 1), ("ball_bearing", 1), ("flanged_bush", 1), ("thrust_washer", 2), ("crank_throw", 1),
-    ("crankshaft", 1), ("crankshaft", 2),
+    ("crankshaft", 1), ("crankshaft", 2), ("plain_bearing", 2), ("bearing_housing", 1),
+    ("bearing_assembly", 1), ("connecting_rod", 1),
 ]  # fmt: skip
 ZONES = ("H6", "H7", "H8", "G7", "JS7", "P7", "h6", "g6", "f7", "js6", "k6", "p6")
 FREECAD = Path("/usr/lib/freecad-python3/lib")
@@ -366,3 +367,42 @@ def test_the_nose_of_a_shaft_is_not_its_journal_where_both_are_as_thick():
     one, two = (list(File(regenerate_class(cls, t).step).dimensions()) for t in (texts, both))
     assert [d.name for d in one] == ["journal_diameter"]
     assert [d.name for d in two] == ["journal_diameter", "front_diameter"]
+
+
+@pytest.mark.parametrize("shells", ["upper", "lower", "pair"])
+def test_the_bore_of_half_shells_is_toleranced_on_the_shell_that_is_drawn(shells):
+    cls = models().get("plain_bearing", 2)
+    given = {"inner_diameter": "48 mm H6", "width": "24 mm h8", "shells": shells}
+    texts = as_text(cls.from_quantities(given))
+    file = File(regenerate_class(cls, texts).step)
+    assert [(d.name, d.lower, d.upper) for d in file.dimensions()] == [
+        ("inner_diameter", 0.0, 0.016), ("width", -0.033, 0.0),
+    ]  # fmt: skip
+    assert ("width", "perpendicularity", 0.033, ["A"]) in list(file.tolerances())
+
+
+def test_a_tolerance_on_a_hole_that_the_lower_shell_has_not_is_refused_by_name():
+    cls = models().get("plain_bearing", 2)
+    shell = {"inner_diameter": "48 mm", "oil_hole_diameter": "4 mm +0.1/0 mm", "shells": "lower"}
+    with pytest.raises(GeometryError, match="no face of upper_back shows its 4 mm") as refused:
+        regenerate_class(cls, as_text(cls.from_quantities(shell)))
+    assert refused.value.parameters == ("oil_hole_diameter",)
+
+
+@pytest.mark.parametrize(
+    ("id", "fit"),
+    [
+        ("bearing_housing", "housing_bore"),
+        ("bearing_assembly", "journal_diameter"),
+        ("connecting_rod", "centre_distance"),
+    ],
+)
+def test_every_dimension_that_a_mated_part_declares_is_written(id, fit):
+    cls = models().get(id, 1)
+    texts = as_text(cls.from_quantities(cls.example))
+    for name in cls.toleranced:
+        texts[name] += " +0.02/-0.01 mm"
+    dimensions = list(File(regenerate_class(cls, texts).step).dimensions())
+    assert {d.name for d in dimensions} == set(cls.toleranced)
+    (one,) = [d for d in dimensions if d.name == fit]
+    assert (one.lower, one.upper) == (-0.01, 0.02)

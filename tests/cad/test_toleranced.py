@@ -79,6 +79,7 @@ def test_every_model_carries_its_diameters(model):
     ("said", "message"),
     [
         ({"depth": {"planes": "z"}}, "no parameter that is a length"),
+        ({"size": {"of": [], "planes": "z"}}, "a part, or a list"),
         ({"size": {}}, "exactly one sort of faces"),
         ({"size": {"planes": "z", "cylinders": "z"}}, "exactly one sort of faces"),
         ({"size": {"planes": "z", "colour": "red"}}, "knows the words"),

@@ -1,0 +1,287 @@
+"""Connecting rod with its cap; see the class below."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from cad.model import BRIGHT_STEEL, STEEL, Box, CadModel, Part, mm
+from cad.shells.housing import Housing
+from cad.shells.rod import Rod
+from cad.surfaces import Seen, X, Y, Z
+from templates.core.language.template import Array, Truth, derived, formula, given, require
+
+
+class ConnectingRod(CadModel):
+    """Connecting rod: split big end with its cap and bolt holes, I-shaped shank, small end.
+
+    z is along the crankpin, the axis of the big end at the origin, that of the small end at +y; the joint is
+    in the plane y = 0, the cap at -y. The big end is a box up to its shoulder, the small end a ring. The
+    shank is a bar of one width and one thickness; a pocket on each side leaves the web of an I. Bolt holes
+    run through the cap and end blind, with flat bottoms, in the rod.
+
+    Pockets or bolt holes of no width are none. Mass and centre of mass are measured on the solids.
+
+    Limits
+    ------
+    A part to mate shells with and to weigh, not a forging: no fillets, tapers, draft, bosses, oil holes,
+    threads or tang notches are drawn. Sizes by default are typical of engines and no standard's. Bores have
+    their nominal sizes; give tolerances with the parameters.
+
+    References
+    ----------
+    ISO 3548-1:2014, Plain bearings, thin-walled half bearings, part 1: the housing bore.
+    """
+
+    example = {
+        "big_end_bore": "51.8 mm",
+        "big_end_width": "22 mm",
+        "big_end_breadth": "84 mm",
+        "shoulder_height": "38 mm",
+        "cap_height": "36 mm",
+        "bolt_hole_diameter": "9 mm",
+        "bolt_spacing": "66 mm",
+        "bolt_hole_depth": "26 mm",
+        "centre_distance": "144 mm",
+        "small_end_bore": "22 mm",
+        "small_end_diameter": "34 mm",
+        "small_end_width": "24 mm",
+        "shank_width": "22 mm",
+        "shank_thickness": "14 mm",
+        "pocket_width": "13 mm",
+        "web_thickness": "5 mm",
+    }
+    toleranced = {
+        "big_end_bore": {"of": "rod", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
+        "small_end_bore": {"of": "rod", "beside": "z", "parallelism": 1, "to": "A"},
+        "small_end_diameter": {"of": "rod", "beside": "z"},
+        "centre_distance": {"of": "rod", "between": ["big_end_bore", "small_end_bore"]},
+        "big_end_breadth": {"of": "rod", "planes": "x"},
+        "cap_height": {"of": "cap", "planes": "y"},
+        "bolt_hole_diameter": {"of": "rod", "beside": "y"},
+    }
+
+    D: Array = given("mm", "big end bore", symbol="D_b", ge=2, le=2000)
+
+    @derived("mm", "big end width", symbol="B_b", ge=0.2, le=2000)
+    def B(self) -> Array:
+        """Along the pin."""
+        return 0.42 * self.D
+
+    @derived("mm", "big end breadth", symbol="A_b", ge=2, le=5000)
+    def A(self) -> Array:
+        """Across the pin."""
+        return 1.6 * self.D
+
+    @derived("mm", "shoulder height", symbol="H_b", ge=1, le=5000)
+    def H_b(self) -> Array:
+        """From the axis of the big end to its shoulder, where the shank begins."""
+        return 0.72 * self.D
+
+    @derived("mm", "cap height", symbol="H_c", ge=1, le=5000)
+    def H_c(self) -> Array:
+        return 0.7 * self.D
+
+    @derived("mm", "bolt hole diameter", symbol="d_b", ge=0, le=500)
+    def d_b(self) -> Array:
+        return 0.17 * self.D
+
+    @derived("mm", "bolt spacing", symbol="a_b", ge=0.5, le=5000)
+    def a_b(self) -> Array:
+        return 1.28 * self.D
+
+    @derived("mm", "bolt hole depth", symbol="l_b", ge=0.1, le=5000)
+    def l_b(self) -> Array:
+        return 0.7 * self.H_b
+
+    @derived("mm", "centre distance", symbol="L", ge=4, le=10000, also=("rod length",))
+    def L(self) -> Array:
+        """Between the axes of both ends."""
+        return 2.8 * self.D
+
+    @derived("mm", "small end bore", symbol="D_s", ge=0.5, le=2000)
+    def D_s(self) -> Array:
+        return 0.43 * self.D
+
+    @derived("mm", "small end diameter", symbol="A_s", ge=0.6, le=5000)
+    def A_s(self) -> Array:
+        """Of its outside."""
+        return 1.5 * self.D_s
+
+    @derived("mm", "small end width", symbol="B_s", ge=0.2, le=2000)
+    def B_s(self) -> Array:
+        """Along the pin."""
+        return 0.45 * self.D
+
+    @derived("mm", "shank width", symbol="b", ge=0.1, le=2000)
+    def b(self) -> Array:
+        """Across the pin."""
+        return 0.65 * self.A_s
+
+    @derived("mm", "shank thickness", symbol="h", ge=0.1, le=2000)
+    def h(self) -> Array:
+        """Along the pin."""
+        return 0.6 * np.minimum(self.B, self.B_s)
+
+    @derived("mm", "pocket width", symbol="b_p", ge=0, le=2000)
+    def b_p(self) -> Array:
+        return 0.6 * self.b
+
+    @derived("mm", "web thickness", symbol="h_w", ge=0.02, le=2000)
+    def h_w(self) -> Array:
+        return 0.35 * self.h
+
+    @formula("mm", "length of the shank, from shoulder to small end", name="shank_length", symbol="l_s")
+    def l_s(self) -> Array:
+        return self.L - self.H_b - self.A_s / 2
+
+    @formula("mm2", "section of the shank", name="shank_section", symbol="S")
+    def S(self) -> Array:
+        return self.b * self.h - self.b_p * (self.h - self.h_w)
+
+    @formula("mm", "wall of the big end at the joint", name="joint_wall", symbol="s_j")
+    def s_j(self) -> Array:
+        return (self.A - self.D) / 2
+
+    @require("big_end_breadth", "big_end_bore", remedy="make the big end broader")
+    def bore_has_sides(self) -> Truth:
+        """The big end is at least 5 % broader than its bore."""
+        return self.A >= 1.05 * self.D
+
+    @require("shoulder_height", "cap_height", "big_end_bore", remedy="make shoulder and cap higher")
+    def bore_has_a_roof(self) -> Truth:
+        """Shoulder and cap are each at least 55 % of the bore high."""
+        return (self.H_b >= 0.55 * self.D) & (self.H_c >= 0.55 * self.D)
+
+    @require("bolt_spacing", "bolt_hole_diameter", "big_end_bore",
+             remedy="move the bolts outwards or make their holes smaller, or 0 for none")  # fmt: skip
+    def bolts_clear_bore(self) -> Truth:
+        """Bolt holes keep off the bore by 1 % of it."""
+        return (self.d_b <= 0) | (self.a_b - self.d_b >= 1.01 * self.D)
+
+    @require("bolt_spacing", "bolt_hole_diameter", "big_end_breadth",
+             remedy="move the bolts inwards or make their holes smaller, or 0 for none")  # fmt: skip
+    def bolts_keep_within(self) -> Truth:
+        """Bolt holes keep within 98 % of the big end's breadth."""
+        return (self.d_b <= 0) | (self.a_b + self.d_b <= 0.98 * self.A)
+
+    @require("bolt_hole_diameter", "big_end_width", remedy="make the holes smaller or the big end wider")
+    def holes_keep_within_width(self) -> Truth:
+        """Bolt holes take at most 90 % of the big end's width."""
+        return self.d_b <= 0.9 * self.B
+
+    @require("bolt_hole_depth", "shoulder_height", remedy="make the holes less deep, or the shoulder higher")
+    def bolts_are_blind(self) -> Truth:
+        """Bolt holes take at most 95 % of the height to the shoulder."""
+        return (self.d_b <= 0) | (self.l_b <= 0.95 * self.H_b)
+
+    @require("small_end_diameter", "small_end_bore", remedy="make the small end larger or its bore smaller")
+    def small_end_has_a_wall(self) -> Truth:
+        """The small end is at least 5 % larger than its bore."""
+        return self.A_s >= 1.05 * self.D_s
+
+    @require("centre_distance", "shoulder_height", "small_end_diameter",
+             remedy="make the rod longer, or its ends smaller")  # fmt: skip
+    def shank_is_left(self) -> Truth:
+        """Between shoulder and small end there is at least 10 % of the centre distance."""
+        return self.l_s >= 0.1 * self.L
+
+    @require("shank_width", "small_end_diameter", "big_end_breadth", remedy="make the shank narrower")
+    def shank_is_narrow(self) -> Truth:
+        """The shank is at most 95 % as wide as the small end, and as the big end."""
+        return (self.b <= 0.95 * self.A_s) & (self.b <= 0.95 * self.A)
+
+    @require("shank_thickness", "big_end_width", "small_end_width", remedy="make the shank thinner")
+    def shank_is_thin(self) -> Truth:
+        """The shank is at most 98 % as thick as each end is wide."""
+        return (self.h <= 0.98 * self.B) & (self.h <= 0.98 * self.B_s)
+
+    @require("pocket_width", "shank_width", remedy="make the pockets narrower, or 0 for none")
+    def pockets_leave_flanges(self) -> Truth:
+        """Pockets take at most 90 % of the shank's width."""
+        return self.b_p <= 0.9 * self.b
+
+    @require("pocket_width", "shank_width", "centre_distance", "shoulder_height", "small_end_diameter",
+             remedy="make the pockets wider, the shank longer, or 0 for none")  # fmt: skip
+    def pockets_have_a_length(self) -> Truth:
+        """Pockets end as far from the ends of the shank as from its sides, and are a tenth of it long."""
+        return (self.b_p <= 0) | (self.l_s - (self.b - self.b_p) >= 0.1 * self.l_s)
+
+    @require("web_thickness", "shank_thickness", "pocket_width", remedy="make the web thinner")
+    def web_is_thin(self) -> Truth:
+        """Between pockets the web is at most 95 % as thick as the shank."""
+        return (self.b_p <= 0) | (self.h_w <= 0.95 * self.h)
+
+    @require("bolt_hole_diameter", "pocket_width", "big_end_bore", remedy="use 0 for none")
+    def features_are_drawable(self) -> Truth:
+        """Bolt holes and pockets measure 0, or at least 0.1 % of the big end's bore."""
+        least = 1e-3 * self.D
+        return ((self.d_b <= 0) | (self.d_b >= least)) & ((self.b_p <= 0) | (self.b_p >= least))
+
+    def build(self) -> tuple[Part, ...]:
+        """Rod and cap."""
+        rod = self.drawn()
+        return (
+            Part("rod", rod.body(), rod.volume(), STEEL),
+            Part("cap", rod.big_end.cap(), rod.big_end.cap_volume(), BRIGHT_STEEL),
+        )
+
+    def drawn(self) -> Rod:
+        """The parameters as radii and halves."""
+        big_end = Housing(
+            bore=mm(self.D) / 2,
+            half_width=mm(self.B) / 2,
+            half_breadth=mm(self.A) / 2,
+            block_height=mm(self.H_b),
+            cap_height=mm(self.H_c),
+            bolt=mm(self.d_b) / 2,
+            bolt_axis=mm(self.a_b) / 2,
+            bolt_depth=mm(self.l_b),
+        )
+        return Rod(
+            big_end,
+            distance=mm(self.L),
+            bore=mm(self.D_s) / 2,
+            outside=mm(self.A_s) / 2,
+            half_width=mm(self.B_s) / 2,
+            shank_width=mm(self.b),
+            thickness=mm(self.h),
+            pocket_width=mm(self.b_p),
+            web=mm(self.h_w),
+        )
+
+    def bounding_box(self) -> Box:
+        """From the cap to the end of the small end."""
+        a, b = max(mm(self.A), mm(self.A_s)) / 2, max(mm(self.B), mm(self.B_s)) / 2
+        return Box((-a, -mm(self.H_c), -b), (a, mm(self.L) + mm(self.A_s) / 2, b))
+
+    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+        """Every parameter; sizes of bolt holes and pockets only if there are any."""
+        rod, cap = seen["rod"], seen["cap"]
+        across, along = rod.levels(X), [z for z in rod.levels(Z) if z > 0]
+        bolts = [hole.turned(Y) for hole in rod.cylinders if hole.along(Y)]
+        eyes = sorted((c for c in rod.cylinders if c.along(Z) and not c.about(Z)), key=lambda c: c.diameter)
+        bore = rod.about(Z)[0]
+        has_pockets = len(across) == 6  # sides of big end, shank and pockets
+        sizes = {
+            "big_end_bore": bore.diameter,
+            "big_end_width": bore.reach[1] - bore.reach[0],
+            "big_end_breadth": across[-1] - across[0],
+            "shoulder_height": rod.levels(Y)[2 if bolts else 1],
+            "cap_height": cap.length(Y),
+            "bolt_hole_diameter": bolts[0].diameter if bolts else 0.0,
+            "centre_distance": eyes[0].point.y,
+            "small_end_bore": eyes[0].diameter,
+            "small_end_diameter": eyes[-1].diameter,
+            "small_end_width": eyes[0].reach[1] - eyes[0].reach[0],
+            "shank_width": across[-2] - across[1],
+            "shank_thickness": 2 * along[1 if has_pockets else 0],
+            "pocket_width": across[-3] - across[2] if has_pockets else 0.0,
+        }
+        if bolts:
+            sizes["bolt_spacing"] = max(b.point.x for b in bolts) - min(b.point.x for b in bolts)
+            sizes["bolt_hole_depth"] = bolts[0].reach[1]
+        if has_pockets:
+            sizes["web_thickness"] = 2 * along[0]
+        return sizes
