@@ -43,6 +43,7 @@ COMMANDS = {
     "freeze": OnDemand("app.template_commands", "freeze_command", "Write the golden record of a version."),
     "impact": OnDemand("app.impact_commands", "impact_command", "Try another version on every design."),
     "keys": OnDemand("app.key_commands", "keys_command", "Add, list and revoke keys."),
+    "model": OnDemand("app.model_commands", "model_command", "Import models drawn by other programs."),
     "restore": OnDemand("app.maintenance.commands", "restore_command", "Restore a backup."),
     "scheduler": OnDemand("app.workers.remote.commands", "scheduler_command", "Pass jobs to workers."),
     "serve": OnDemand("app.serve_command", "serve_command", "Serve the REST interface and the pages."),

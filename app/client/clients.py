@@ -8,6 +8,7 @@ from __future__ import annotations
 from app.client import (
     approval_operations,
     identity_operations,
+    model_operations,
     operations,
     variant_operations,
     worksheet_operations,
@@ -84,6 +85,11 @@ class Client(BlockingConnection):
     revisions = Method(operations.revisions)
     measurements = Method(operations.measurements)
     design_worksheet = Method(operations.design_worksheet)
+    drawing_programs = Method(model_operations.drawing_programs)
+    import_model = Method(model_operations.import_model)
+    model_version = Method(model_operations.model_version)
+    model_origin = Method(model_operations.model_origin)
+    original_model = Method(model_operations.original_model)
     build = Method(operations.build)
     model = Method(operations.model)
     download = Method(operations.download)
@@ -174,6 +180,11 @@ class AsyncClient(AwaitedConnection):
     revisions = AsyncMethod(operations.revisions)
     measurements = AsyncMethod(operations.measurements)
     design_worksheet = AsyncMethod(operations.design_worksheet)
+    drawing_programs = AsyncMethod(model_operations.drawing_programs)
+    import_model = AsyncMethod(model_operations.import_model)
+    model_version = AsyncMethod(model_operations.model_version)
+    model_origin = AsyncMethod(model_operations.model_origin)
+    original_model = AsyncMethod(model_operations.original_model)
     build = AsyncMethod(operations.build)
     model = AsyncMethod(operations.model)
     download = AsyncMethod(operations.download)

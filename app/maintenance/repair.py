@@ -9,6 +9,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TypeVar, TypeVarTuple
 
+from app.brought.programs import Programs, assembled
+from app.brought.shelf import Shelf
 from app.calculations.errors import InvalidBody, NoArray, TooManyValues
 from app.calculations.jobs import CALCULATION, place_of_answer, question_of
 from app.calculations.operations import answered
@@ -69,13 +71,19 @@ class Repair:
     """Makes files again with the machinery of the service, in processes of its own."""
 
     def __init__(
-        self, database: Database, store: Artifacts, settings: Settings, worker: LocalProcesses
+        self,
+        database: Database,
+        store: Artifacts,
+        settings: Settings,
+        worker: LocalProcesses,
+        programs: Programs,
     ) -> None:
         self.database, self.store = database, store
         files = loaded(settings.template_folders)
         self.catalogues = Catalogues(files.templates, files.models)
         Published(database, self.catalogues, is_shared=False, at_once=math.inf)
-        self.builds = Builds(database, store)
+        Shelf(database, self.catalogues, is_shared=False)
+        self.builds = Builds(database, store, programs)
         longest = Limits(settings.analysis_deadline, settings.analysis_memory_mb)
         self.analysing = Analysing(database, store, longest)
         self.calculation = Limits(settings.calculation_job_deadline, settings.calculation_memory_mb)
@@ -141,13 +149,15 @@ def repair(folder: DataFolder, url: str, findings: Findings, settings: Settings,
 
 def _rebuild(store: Artifacts, url: str, findings: Findings, settings: Settings, say: Say) -> None:
     database, worker = Database(url), LocalProcesses()
+    programs = assembled(settings, store)
     try:
-        repairing = Repair(database, store, settings, worker)
+        repairing = Repair(database, store, settings, worker, programs)
         for row in findings.damaged:
             why = repairing.row(row)
             name = f"{row.kind} of {row.owner}"
             say(f"not repaired: {name}: {why}" if why else f"repaired: {name}")
     finally:
+        programs.close()
         worker.close()
         database.close()
 

@@ -1,0 +1,52 @@
+"""The client's calls about CAD models and those that a team brings: each function is an exchange."""
+
+from __future__ import annotations
+
+import uuid
+
+from app.client.exchange import BASE, Exchange, Progress, Request, answered, done, get, job_of
+from app.client.files import File
+from app.client.problem import checked
+from app.schemas.brought import DrawingProgram, DrawingPrograms, ModelOrigin
+from app.schemas.templates import CadModel
+
+_PATH = "/models"
+
+
+def drawing_programs() -> Exchange[list[DrawingProgram]]:
+    """The programs that draw brought models; of one that is missing how to install it."""
+    return (yield from answered(DrawingPrograms, get(f"{_PATH}/import"))).items
+
+
+def import_model(
+    id: str, content: bytes, file: str, *, key: str | None = None, on_progress: Progress | None = None
+) -> Exchange[CadModel]:
+    """The version that a file becomes once the service has examined it: .FCStd, STEP, or a manifest for Creo.
+
+    Two requests under one key make one. A file that is there under this id already keeps its version.
+
+    Raises
+    ------
+    Problem
+        If the file is not taken, the id is, or the program that draws it is not there.
+    """
+    headers = {"Content-Type": "application/octet-stream", "Idempotency-Key": key or uuid.uuid4().hex}
+    query = {"id": id, "file": file}
+    response = checked((yield Request("POST", f"{BASE}{_PATH}/import", content, query, headers)))
+    job = yield from done(job_of(response) or "", on_progress)
+    return (yield from answered(CadModel, get((job.result or "").removeprefix(BASE))))
+
+
+def model_version(id: str, version: int) -> Exchange[CadModel]:
+    """One version of a CAD model with its parameters, and its origin if it was brought."""
+    return answered(CadModel, get(f"{_PATH}/{id}/versions/{version}"))
+
+
+def model_origin(id: str, version: int) -> Exchange[ModelOrigin]:
+    """The file from which a model was imported, its parameters there, and how far to trust its solids."""
+    return answered(ModelOrigin, get(f"{_PATH}/{id}/versions/{version}/origin"))
+
+
+def original_model(id: str, version: int) -> Exchange[File]:
+    """The file that a model was imported from, as it was sent, under its name."""
+    return File.of(checked((yield get(f"{_PATH}/{id}/versions/{version}/original"))))

@@ -1,0 +1,223 @@
+"""Single-row deep groove ball bearing by its designation; see the class below."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import cos, pi, sin
+
+import numpy as np
+from cadquery import Location, Vector
+from cadquery.func import sphere
+
+from cad.deep_groove import (
+    SIZES,
+    Cage,
+    Ring,
+    bore_by_designation,
+    dynamic_capacity_ISO_281_2007,
+    outside_by_designation,
+    static_capacity_ISO_76_2006,
+    static_factor_ISO_76_2006,
+    width_by_designation,
+)
+from cad.model import BRIGHT_STEEL, BRONZE, Box, CadModel, Part, mm
+from cad.surfaces import Seen, Z
+from templates.core.language.template import Array, Truth, choice, derived, formula, require
+
+INWARDS, OUTWARDS = -1, 1
+BRASS_DENSITY = 8400.0  # kg/m³, CuZn39Pb3 (EN 12164: about 8.4 g/cm³)
+
+
+class BallBearing(CadModel):
+    """Deep groove ball bearing by its designation: rings, balls and cage, with its load ratings.
+
+    The designation, such as 6210, gives bore, outer diameter and width: series 618, 60, 62 and 63. A size
+    that is given beside it takes the place of the designation's, as where it has a tolerance.
+
+    The cage is a machined ring of brass with a round pocket for each ball; a cage of no width is none.
+
+    Dynamic and static capacity are those that ISO 281 and ISO 76 give for the balls as drawn: with the
+    calculation factor they are what `rolling_bearing_life` takes.
+
+    Limits
+    ------
+    The standard leaves the inside to the maker. Ball size and number by default are common proportions; give
+    the maker's for the maker's capacities, which they otherwise miss by up to a tenth. No seals, shields,
+    snap rings, and no clearance between balls and grooves. Chamfers are in proportion, not those of ISO 582.
+
+    References
+    ----------
+    ISO 15:2017, Rolling bearings, radial bearings, boundary dimensions, general plan.
+    ISO 281:2007, Rolling bearings, dynamic load ratings and rating life.
+    ISO 76:2006, Rolling bearings, static load ratings.
+    Harris and Kotzalas, Essential Concepts of Bearing Technology, 5th ed. 2006, ch. 2: osculation.
+    """
+
+    example = {"designation": "6210", "ball_diameter": "12.7 mm", "balls": 10}
+    toleranced = {
+        "inner_diameter": {"of": "inner_ring", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
+        "outer_diameter": {"of": "outer_ring", "cylinders": "z", "cylindricity": 0.5},
+        "width": {"of": "inner_ring", "planes": "z", "perpendicularity": 1, "to": "A"},
+        "ball_diameter": {"of": "ball", "spheres": True},
+        "cage_width": {"of": "cage", "planes": "z"},
+    }
+
+    designation: str = choice(*SIZES, words="designation")
+
+    @derived("mm", "inner diameter", symbol="d", ge=1, le=2000, also=("bore", "shaft diameter"))
+    def d(self) -> Array:
+        return bore_by_designation(self.designation)
+
+    @derived("mm", "outer diameter", symbol="D", ge=1, le=5000)
+    def D(self) -> Array:
+        return outside_by_designation(self.designation)
+
+    @derived("mm", "width", symbol="B", ge=0.1, le=2000, also=("bearing width",))
+    def B(self) -> Array:
+        return width_by_designation(self.designation)
+
+    @derived("mm", "ball diameter", symbol="D_w", ge=0.003, le=1000)
+    def D_w(self) -> Array:
+        return np.minimum(0.3 * (self.D - self.d), 0.66 * self.B)
+
+    @derived("1", "balls", symbol="Z", integer=True, ge=3, le=100)
+    def n(self) -> Array:
+        return np.clip(np.round(0.58 * pi * self.D_pw / self.D_w), 3, 100)
+
+    @derived("mm", "cage width", symbol="B_c", ge=0, le=2000)
+    def B_c(self) -> Array:
+        return np.minimum(1.35 * self.D_w, 0.95 * self.B)
+
+    @derived("mm", "cage thickness", symbol="t_c", ge=0.001, le=500)
+    def t_c(self) -> Array:
+        """Along the radius."""
+        return 0.25 * self.D_w
+
+    @derived("mm", "pocket diameter", symbol="D_p", ge=0.003, le=1100)
+    def D_p(self) -> Array:
+        """Of the cage's pockets."""
+        return 1.04 * self.D_w
+
+    @formula("mm", "pitch diameter", symbol="D_{pw}")
+    def D_pw(self) -> Array:
+        return (self.d + self.D) / 2
+
+    @formula("mm", "ring section", symbol="h")
+    def h(self) -> Array:
+        return (self.D - self.d) / 2
+
+    @formula("mm", "groove radius", symbol="r_g", source="conformity 0.52, Harris and Kotzalas 2006")
+    def r_g(self) -> Array:
+        return 0.52 * self.D_w
+
+    @formula("kN", "dynamic capacity", symbol="C", source="ISO 281:2007, 5.1.1")
+    def C(self) -> Array:
+        return dynamic_capacity_ISO_281_2007(self.D_w, self.D_pw, self.n)
+
+    @formula("1", "calculation factor", symbol="f_0", source="ISO 76:2006, table 1")
+    def f_0(self) -> Array:
+        return static_factor_ISO_76_2006(self.D_w, self.D_pw)
+
+    @formula("kN", "static capacity", symbol="C_0", source="ISO 76:2006, 5.1")
+    def C_0(self) -> Array:
+        return static_capacity_ISO_76_2006(self.f_0, self.n, self.D_w)
+
+    @require("outer_diameter", "inner_diameter", remedy="make the outer diameter larger, or leave it out")
+    def has_section(self) -> Truth:
+        """The outer diameter is at least 2 % larger than the bore."""
+        return self.D >= 1.02 * self.d
+
+    @require("ball_diameter", "outer_diameter", "inner_diameter", remedy="take smaller balls")
+    def balls_fit_between_rings(self) -> Truth:
+        """A ball takes at most 90 % of the height from bore to outside, so that no groove cuts a ring."""
+        return self.D_w <= 0.9 * self.h
+
+    @require("ball_diameter", "outer_diameter", "inner_diameter", remedy="take balls of another size")
+    def balls_are_rated(self) -> Truth:
+        """A ball measures 1 % to 40 % of the pitch diameter, as far as ISO 281 and ISO 76 have capacities."""
+        return (self.D_w >= 0.01 * self.D_pw) & (self.D_w <= 0.4 * self.D_pw)
+
+    @require("ball_diameter", "width", remedy="take smaller balls or a wider bearing")
+    def balls_fit_in_width(self) -> Truth:
+        """A ball is not wider than the bearing, so that the rings hold the whole groove."""
+        return self.D_w <= self.B
+
+    @require(
+        "balls", "ball_diameter", "outer_diameter", "inner_diameter", remedy="take fewer or smaller balls"
+    )
+    def balls_do_not_touch(self) -> Truth:
+        """Between neighbouring balls on the pitch circle there is at least 1 % of a ball's diameter."""
+        return 1.01 * self.D_w <= self.D_pw * np.sin(pi / self.n)
+
+    @require("pocket_diameter", "ball_diameter", "cage_width", remedy="make the pockets larger")
+    def pockets_hold_balls(self) -> Truth:
+        """Pockets are 1 % to 20 % larger than balls."""
+        return (self.B_c <= 0) | ((self.D_p >= 1.01 * self.D_w) & (self.D_p <= 1.2 * self.D_w))
+
+    @require("cage_width", "pocket_diameter", "width", remedy="make the cage wider, or 0 for none")
+    def cage_closes_pockets(self) -> Truth:
+        """The cage is at least 2 % wider than its pockets, and not wider than the bearing."""
+        return (self.B_c <= 0) | ((self.B_c >= 1.02 * self.D_p) & (self.B_c <= self.B))
+
+    @require("cage_thickness", "ball_diameter", "cage_width", remedy="change the cage's thickness")
+    def cage_clears_rings(self) -> Truth:
+        """The cage is 2 % to 50 % as thick as a ball, so that it clears the shoulders of both rings."""
+        return (self.B_c <= 0) | ((self.t_c >= 0.02 * self.D_w) & (self.t_c <= 0.5 * self.D_w))
+
+    @require("pocket_diameter", "balls", "cage_thickness", "outer_diameter", "inner_diameter", "cage_width",
+             remedy="take fewer balls or smaller pockets")  # fmt: skip
+    def pockets_leave_bars(self) -> Truth:
+        """Between neighbouring pockets a bar is left: at the cage's bore they take at most 97 % of it."""
+        return (self.B_c <= 0) | (self.D_p <= (self.D_pw - self.t_c) * np.sin(0.97 * pi / self.n))
+
+    def build(self) -> tuple[Part, ...]:
+        """Two rings, the balls, and the cage if there is one."""
+        ring, radius, balls = self.ring(), mm(self.D_pw) / 2, round(float(self.n))
+        angles = (2 * pi * i / balls for i in range(balls))
+        places = tuple(Location(Vector(radius * cos(a), radius * sin(a), 0)) for a in angles)
+        ball = mm(self.D_w)
+        parts = [
+            Part("inner_ring", ring.solid(radius, INWARDS), ring.volume(radius, INWARDS)),
+            Part("outer_ring", ring.solid(radius, OUTWARDS), ring.volume(radius, OUTWARDS)),
+            Part("ball", sphere(ball), pi * ball**3 / 6, BRIGHT_STEEL, places=places),
+        ]
+        if self.B_c > 0:
+            cage = Cage(radius, mm(self.t_c), mm(self.B_c), mm(self.D_p) / 2, balls)
+            parts.append(
+                Part("cage", cage.solid(), cage.volume(), BRONZE, BRASS_DENSITY, material="CuZn39Pb3")
+            )
+        return tuple(parts)
+
+    def ring(self) -> Ring:
+        """The cross-section that both rings share; one is turned inwards, one outwards."""
+        return Ring(
+            shoulder=0.3 * mm(self.D_w),
+            back=mm(self.h) / 2,
+            width=mm(self.B),
+            chamfer=0.05 * min(mm(self.h), mm(self.B)),
+            groove_radius=mm(self.r_g),
+            groove_centre=mm(self.D_w) / 2 - mm(self.r_g),
+        )
+
+    def bounding_box(self) -> Box:
+        """The outside of the outer ring; neither balls nor cage stand out of the width."""
+        radius, half = mm(self.D) / 2, mm(self.B) / 2
+        return Box((-radius, -radius, -half), (radius, radius, half))
+
+    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+        """Every length and the count of balls, as the parts show them; those of the cage if there is one."""
+        inner, outer, ball = seen["inner_ring"], seen["outer_ring"], seen["ball"]
+        sizes = {
+            "inner_diameter": inner.diameters(Z)[0],
+            "outer_diameter": outer.diameters(Z)[-1],
+            "width": outer.length(Z),
+            "balls": ball.count,
+            "ball_diameter": ball.spheres[0],
+        }
+        if "cage" in seen:
+            cage = seen["cage"]
+            walls = cage.diameters(Z)
+            sizes["cage_width"] = cage.length(Z)
+            sizes["cage_thickness"] = (walls[-1] - walls[0]) / 2
+            sizes["pocket_diameter"] = next(c.diameter for c in cage.cylinders if not c.about(Z))
+        return sizes
