@@ -93,7 +93,7 @@ class BallBearing(CadModel):
         """Along the radius."""
         return 0.25 * self.D_w
 
-    @derived("mm", "pocket diameter", symbol="D_p", ge=0.003, le=1100)
+    @derived("mm", "pocket bore", symbol="D_p", ge=0.003, le=1100)
     def D_p(self) -> Array:
         """Of the cage's pockets."""
         return 1.04 * self.D_w
@@ -149,12 +149,12 @@ class BallBearing(CadModel):
         """Between neighbouring balls on the pitch circle there is at least 1 % of a ball's diameter."""
         return 1.01 * self.D_w <= self.D_pw * np.sin(pi / self.n)
 
-    @require("pocket_diameter", "ball_diameter", "cage_width", remedy="make the pockets larger")
+    @require("pocket_bore", "ball_diameter", "cage_width", remedy="make the pockets larger")
     def pockets_hold_balls(self) -> Truth:
         """Pockets are 1 % to 20 % larger than balls."""
         return (self.B_c <= 0) | ((self.D_p >= 1.01 * self.D_w) & (self.D_p <= 1.2 * self.D_w))
 
-    @require("cage_width", "pocket_diameter", "width", remedy="make the cage wider, or 0 for none")
+    @require("cage_width", "pocket_bore", "width", remedy="make the cage wider, or 0 for none")
     def cage_closes_pockets(self) -> Truth:
         """The cage is at least 2 % wider than its pockets, and not wider than the bearing."""
         return (self.B_c <= 0) | ((self.B_c >= 1.02 * self.D_p) & (self.B_c <= self.B))
@@ -164,7 +164,7 @@ class BallBearing(CadModel):
         """The cage is 2 % to 50 % as thick as a ball, so that it clears the shoulders of both rings."""
         return (self.B_c <= 0) | ((self.t_c >= 0.02 * self.D_w) & (self.t_c <= 0.5 * self.D_w))
 
-    @require("pocket_diameter", "balls", "cage_thickness", "outer_diameter", "inner_diameter", "cage_width",
+    @require("pocket_bore", "balls", "cage_thickness", "outer_diameter", "inner_diameter", "cage_width",
              remedy="take fewer balls or smaller pockets")  # fmt: skip
     def pockets_leave_bars(self) -> Truth:
         """Between neighbouring pockets a bar is left: at the cage's bore they take at most 97 % of it."""
@@ -219,5 +219,5 @@ class BallBearing(CadModel):
             walls = cage.diameters(Z)
             sizes["cage_width"] = cage.length(Z)
             sizes["cage_thickness"] = (walls[-1] - walls[0]) / 2
-            sizes["pocket_diameter"] = next(c.diameter for c in cage.cylinders if not c.about(Z))
+            sizes["pocket_bore"] = next(c.diameter for c in cage.cylinders if not c.about(Z))
         return sizes

@@ -1,4 +1,4 @@
-"""Ball bearings by designation: sizes of the standard, capacities of makers, cages that clear balls and rings."""
+"""Ball bearings by designation: sizes of the standard, capacities of makers, cages that clear the balls."""
 
 import numpy as np
 import pytest
@@ -38,7 +38,8 @@ def test_every_designation_makes_a_bearing_with_cage_and_capacities():
         one = CLS.from_quantities({"designation": designation})
         as_text(one)
         assert 0 < float(one.D_p) < float(one.B_c) <= float(one.B), designation
-        assert np.isfinite(float(one.C)) and float(one.C_0) > 0, designation
+        assert 0 < float(one.C_0) < np.inf, designation
+        assert 0 < float(one.C) < np.inf, designation
 
 
 def test_bores_follow_from_the_designation_s_last_digits():
@@ -47,15 +48,15 @@ def test_bores_follow_from_the_designation_s_last_digits():
         code = designation[-2:]
         if len(designation) > 3:
             assert bore == by_code.get(code, 5 * int(code)), designation
-        assert bore < outside and width < outside, designation
+        assert max(bore, width) < outside, designation
 
 
 @pytest.mark.parametrize(
     ("designation", "balls", "ball", "dynamic", "static"),
     [
-        ("6206", 9, "9.525 mm", 19.5, 11.3),  # catalogues of NSK and NTN, whose balls these are
+        ("6206", 9, "9.525 mm", 19.5, 11.2),  # C as NSK lists it, C0 as SKF does (NSK: up to 2 % more)
         ("6210", 10, "12.7 mm", 35.1, 23.2),
-        ("6310", 8, "19.05 mm", 62.0, 38.3),
+        ("6310", 8, "19.05 mm", 62.0, 38.0),
     ],
 )
 def test_capacities_are_those_of_makers_for_their_balls(designation, balls, ball, dynamic, static):
@@ -65,11 +66,13 @@ def test_capacities_are_those_of_makers_for_their_balls(designation, balls, ball
 
 
 def test_the_table_follows_the_theory_behind_it():
-    """f_c of ISO/TR 1281-1 for grooves of 0.52, a hundredth off at most; neither table has a jump."""
+    """f_c of ISO/TR 1281-1 for grooves of 0.52, but for its rounded constant; no jump in the other table."""
     g = RATIOS
     inner = 1.04 * ((1 - g) / (1 + g)) ** 1.72
     theory = 39.9 * 0.95 * (1 + inner ** (10 / 3)) ** -0.3 * g**0.3 * (1 - g) ** 1.39 / (1 + g) ** (1 / 3)
-    assert pytest.approx(theory * (1.04 / 0.04) ** 0.41, rel=0.012) == DYNAMIC
+    ratio = DYNAMIC / (theory * (1.04 / 0.04) ** 0.41)
+    assert ratio.mean() == pytest.approx(1, abs=0.01)
+    assert ratio == pytest.approx(np.full(40, ratio.mean()), rel=2e-3)  # half a digit of the table
     assert np.abs(np.diff(STATIC, 2)).max() < 0.35
     assert (np.diff(STATIC[9:]) < 0).all()
 
@@ -97,7 +100,7 @@ def test_cage_balls_and_rings_do_not_overlap():
 def test_a_cage_of_no_width_is_none():
     build = built(designation="6203", cage_width="0 mm")
     assert {body.name for body in read_step(build.step)} == {"inner_ring", "outer_ring", "ball"}
-    assert "pocket_diameter" not in build.dimensions
+    assert "pocket_bore" not in build.dimensions
 
 
 def test_the_volume_of_a_cage_is_that_of_a_flat_strip_in_the_limit():
@@ -113,7 +116,7 @@ def test_the_volume_of_a_cage_is_that_of_a_flat_strip_in_the_limit():
         ({"balls": 40}, {"balls"}),
         ({"ball_diameter": "19 mm"}, {"ball_diameter"}),
         ({"cage_width": "5 mm"}, {"cage_width"}),
-        ({"pocket_diameter": "11 mm"}, {"pocket_diameter"}),
+        ({"pocket_bore": "11 mm"}, {"pocket_bore"}),
         ({"cage_thickness": "9 mm"}, {"cage_thickness"}),
     ],
 )
