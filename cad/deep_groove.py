@@ -81,13 +81,15 @@ def dynamic_capacity_ISO_281_2007(D_w: Array, D_pw: Array, Z: Array) -> Array:
     """C = b_m f_c Z^(2/3) D_w^1.8 [N], D_w in mm; from 25.4 mm on b_m f_c Z^(2/3) 3.647 D_w^1.4."""
     ball = np.asarray(D_w) * 1e3
     size = np.where(ball <= LARGE_BALL, ball**1.8, 3.647 * ball**1.4)
-    return MATERIAL * np.interp(D_w / D_pw, RATIOS, DYNAMIC) * Z ** (2 / 3) * size
+    factor: Array = np.interp(D_w / D_pw, RATIOS, DYNAMIC)
+    return MATERIAL * factor * Z ** (2 / 3) * size
 
 
 @units("m", "m", returns="1")
 def static_factor_ISO_76_2006(D_w: Array, D_pw: Array) -> Array:
     """f_0 [1], linear between the rows of the table."""
-    return np.interp(D_w / D_pw, RATIOS, STATIC)
+    factor: Array = np.interp(D_w / D_pw, RATIOS, STATIC)
+    return factor
 
 
 @units("1", "1", "m", returns="N")

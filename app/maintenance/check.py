@@ -20,7 +20,10 @@ from app.storage.integrity import faults, is_damage, marker_of
 
 YOUNG = 60.0  # a file of a running service may be this old before the row that names it is committed [s]
 # by kind of file; of a build else
-OWNERS = {"surface": "analysis", "body": "job", "answer": "job", "rows": "study", "import": "worksheet"}
+OWNERS = {
+    "surface": "analysis", "body": "job", "answer": "job", "rows": "study", "import": "worksheet",
+    "model": "model",
+}  # fmt: skip
 MOST = 100  # faults of the database that are listed
 
 Say = Callable[[str], None]

@@ -136,7 +136,7 @@ class ConnectingRod(CadModel):
     def l_s(self) -> Array:
         return self.L - self.H_b - self.A_s / 2
 
-    @formula("mm2", "section of the shank", name="shank_section", symbol="S")
+    @formula("mm**2", "section of the shank", name="shank_section", symbol="S")
     def S(self) -> Array:
         return self.b * self.h - self.b_p * (self.h - self.h_w)
 

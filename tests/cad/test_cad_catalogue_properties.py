@@ -151,11 +151,13 @@ def test_wrong_box_is_noticed(model: type[CadModel], example: Build) -> None:
     assert refused.value.code == "bounding_box"
 
 
-def _between(declared: Any, share: float) -> float | list[float]:
+def _between(declared: Any, share: float) -> float | str | list[float]:
     """A value [SI] within the declared bounds, `share` of the way up, counted in logarithms.
 
-    Of a list three items, evenly in the bounds, the first at `share` of the way up.
+    Of a list three items, evenly in the bounds, the first at `share` of the way up. Of words one of them.
     """
+    if isinstance(declared, Choice):
+        return str(declared.options[round(share * (len(declared.options) - 1))])
     bounds = declared.meaning.domain_si
     if isinstance(declared, Curve):
         return [bounds.ge + (bounds.le - bounds.ge) * ((share + n / 3) % 1) for n in range(3)]
