@@ -42,8 +42,8 @@ HOSTILE_VALUES = (math.nan, math.inf, -math.inf, -1.0, -1e-3, 0.0, 1e-12, 1e-9, 
 BAD = (*HOSTILE_VALUES[:5], 1e9, 1e300)
 
 EVERY = [pytest.param(models().get(*one), id=f"{one[0]}_v{one[1]}") for one in NEW]
-AND_BEARINGS = [*EVERY, pytest.param(models().get("ball_bearing", 2), id="ball_bearing_v2")]
-QUICK = [one for one in AND_BEARINGS if one.id != "bearing_assembly_v1"]  # it consists of two of the others
+BEARING = pytest.param(models().get("ball_bearing", 2), id="ball_bearing_v2")
+QUICK = [one for one in EVERY if one.id != "bearing_assembly_v1"]  # it consists of two of the others
 
 
 def sample(cls: type[CadModel], rng: np.random.Generator) -> dict[str, Any]:
@@ -131,21 +131,21 @@ def judged(cls: type[CadModel], sets: list[dict[str, Any]]) -> None:
         assert not (drawn(cls, given) and any(value in BAD or value != value for value in given.values()))
 
 
-@pytest.mark.parametrize("cls", QUICK)
+@pytest.mark.parametrize("cls", [*QUICK, BEARING])
 def test_property_some_hostile_parts(cls: type[CadModel]) -> None:
     sets = hostile(cls)
     judged(cls, sets[:: len(sets) // 10])
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("cls", AND_BEARINGS)
+@pytest.mark.parametrize("cls", [*EVERY, BEARING])
 def test_property_hostile_parts(cls: type[CadModel]) -> None:
     sets = hostile(cls)
     assert len(sets) >= 60
     judged(cls, sets)
 
 
-@pytest.mark.parametrize("cls", AND_BEARINGS)
+@pytest.mark.parametrize("cls", [*EVERY, BEARING])
 def test_optional_sizes_may_be_left_out(cls: type[CadModel]) -> None:
     """The example has every feature; what is left out has a size that is drawable."""
     required = {name: value for name, value in cls.example.items() if cls.inputs[name].required}
