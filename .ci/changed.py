@@ -85,6 +85,7 @@ ABOUT = {
     "tests/app/test_tolerance_analysis.py": ("app/tolerances/*.py",),
     "tests/app/test_turns.py": ("app/*jobs/*.py",),
     "tests/app/test_variants_jobs.py": ("app/designs/*.py", "app/*jobs/*.py", "app/solids/*.py"),
+    "tests/app/jobs/test_jobs_interrupted.py": ("app/*jobs/*.py", "app/*workers/*.py"),
     "tests/app/calculations/test_calculations_as_jobs.py": (
         "app/*jobs/*.py",
         "app/*workers/*.py",

@@ -339,7 +339,9 @@ class TestAnswers:
         (fault,) = problems._validation(error)["errors"]
         assert len(fault["name"]) == problems.LONGEST_PLACE
 
-    @pytest.mark.parametrize("piece", ["a", "\x00", "\u202e", " "])
+    @pytest.mark.parametrize(
+        "piece", ["a", "\x00", *(pytest.param(piece, marks=pytest.mark.slow) for piece in ("\u202e", " "))]
+    )
     def test_a_text_in_a_report(self, piece):
         assert_linear(clean, lambda n: piece * n, 20_000)
         assert_linear(text_of, lambda n: [piece] * n, 20_000)

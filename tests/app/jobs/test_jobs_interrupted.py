@@ -150,8 +150,8 @@ def test_stopping_keeps_a_running_job_for_the_next_start(make, database, worker,
     [
         (victims.endless_sum, "DeadlineExceeded"),
         (victims.memory_bomb, "MemoryExceeded"),
-        (victims.segfault, "JobCrashed"),
-        (victims.unpicklable, "RemoteError"),
+        pytest.param(victims.segfault, "JobCrashed", marks=pytest.mark.slow),
+        pytest.param(victims.unpicklable, "RemoteError", marks=pytest.mark.slow),
     ],
 )
 def test_limits_of_the_settings_hold(make, database, worker, failures, victim, problem):
