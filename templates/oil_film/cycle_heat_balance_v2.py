@@ -77,7 +77,8 @@ class CycleHeatBalance(Oil, FedBearing):
     holes do: both are left out. The film is taken as always full, so more oil is displaced than leaves.
     Level supplied conserves the oil: its side flow is all that leaves by the ends, and no feed flow is added.
     It takes three or four marches of a second each, and one point at a time. A film that starves or does not
-    settle has no balance. On the example half as much oil leaves, and the rise is half as large again.
+    settle has no balance. On the example half as much oil leaves as at level mobility_grooved, and the rise
+    is half as large again.
     Levels mobility_short and mobility do not know the groove in their film, but count its flow.
     Shear thinning after Cross needs the HTHS viscosity of the oil (150 °C, 1e6 1/s). The shear rate is |U|/h,
     as mean over the circle and the cycle. What endless shear leaves, by default half, and the exponent, by

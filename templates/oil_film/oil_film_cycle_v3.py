@@ -85,10 +85,10 @@ class OilFilmCycle(FedBearing):
     Level mobility_grooved, the default where a groove is given: where the load passes the groove, two lands
     bear. The mobility is (1 − s) M(b) + s M(b (1 − g)/2)/(1 − g), where g is the groove's share of the width,
     and s the share of the 90° about the load's direction that the groove covers.
-    What the supply pressure bears at rest is taken from the load: p_s B D/2 · (1 + g)/2 · sin(extent/2), out
-    of the groove's middle. In the groove the pressure is p_s, and over its lands it falls evenly.
-    Both formulas are this template's own, and exact for a groove all around; on other grooves they were
-    compared with level supplied. Always full of oil; holes do not count.
+    What the supply pressure bears at rest is taken from the load: p_s W D/2 · (1 + g) · sin(extent/2), out of
+    the groove's middle. In the groove the pressure is p_s, and over its lands it falls evenly.
+    Both formulas are this template's own. The first is exact for a groove all around; for other grooves they
+    were compared with level supplied. Always full of oil; holes do not count.
     Level supplied: conserves the oil, which enters by groove and holes alone. One point at a time, seconds.
     Where every hole is under the load for more than 60 % of the cycle it goes on, on finer meshes: there the
     film depends on what enters at the edges of the holes.
@@ -110,7 +110,7 @@ class OilFilmCycle(FedBearing):
     added.
     The error in the answer is that of the model: how far the level may be from level supplied, a one-sided
     bound from random duties of the same kind of supply. It is null where fewer than 59 duties support it,
-    where no or several inlets are given, and for pressures.
+    where it failed on fresh duties, where no or several inlets are given, and for pressures.
 
     References
     ----------
