@@ -2,15 +2,17 @@
 
 import os
 import signal
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 import victims
-from patience import patient
+from patience import patient, until
 
 from app.calculations.sources import FileSource, SheetSource
 from app.solids.builds import build_in_worker
 from app.workers import local
 from app.workers.base import Limits, shares_process
+from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
 from app.workers.local import LocalProcesses
 
 USUAL = Limits(deadline=patient(20), memory_mb=512)
@@ -97,3 +99,43 @@ def test_closing_ends_the_process_that_waits():
 )
 def test_built_in_models_share_and_code_of_a_team_does_not(source, is_shared):
     assert shares_process(build_in_worker, (source, {})) is is_shared
+
+
+@pytest.mark.parametrize(
+    ("offence", "limits", "error"),
+    [
+        ((victims.shared_spend, 60.0), Limits(deadline=0.3, memory_mb=512), DeadlineExceeded),
+        ((victims.shared_hoard, 600), USUAL, MemoryExceeded),
+        ((victims.shared_end,), USUAL, JobCrashed),
+    ],
+    ids=["deadline", "memory", "crash"],
+)
+def test_a_job_that_is_ended_harms_no_neighbour(worker, offence, limits, error):
+    (kept,) = job(worker, (victims.shared_process_id,))
+    with ThreadPoolExecutor(1) as pool:
+        neighbour = pool.submit(job, worker, (victims.shared_spend, 0.6), (victims.shared_process_id,))
+        until(lambda: not worker._kept)
+        batch = worker.batch()
+        with pytest.raises(error):
+            batch.run(*offence, limits=limits)
+        batch.close()
+        assert neighbour.result() == [kept, kept]
+    assert job(worker, (victims.shared_process_id,)) == [kept]
+
+
+@pytest.mark.parametrize(
+    "offence", [(victims.shared_hoard, 600), (victims.shared_end,)], ids=["memory", "crash"]
+)
+def test_a_used_process_is_never_to_blame_and_never_lent_again(worker, offence):
+    (kept,) = job(worker, (victims.shared_process_id,))
+    with pytest.raises((MemoryExceeded, JobCrashed)):
+        job(worker, offence)
+    assert not worker._kept
+    assert job(worker, (victims.shared_process_id,)) != [kept]
+
+
+def test_what_an_earlier_job_keeps_takes_no_memory_of_the_next(worker):
+    (kept,) = job(worker, (victims.shared_hoard, 100))
+    (own,) = job(worker, (victims.shared_hoard, 450))
+    assert own != kept
+    assert job(worker, (victims.shared_process_id,)) not in ([kept], [own])

@@ -168,3 +168,22 @@ def wait_for(folder):
     (folder / str(os.getpid())).touch()
     while not (folder / "go").exists():
         time.sleep(0.02)
+
+
+@may_share(lambda *_: True)
+def shared_hoard(megabytes):
+    """Keep so much memory."""
+    hoard(megabytes)
+    return os.getpid()
+
+
+@may_share(lambda *_: True)
+def shared_spend(seconds):
+    """Use processor time."""
+    return spend(seconds)
+
+
+@may_share(lambda *_: True)
+def shared_end():
+    """Die at once, as a crash of the kernel does."""
+    os._exit(3)
