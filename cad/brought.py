@@ -29,6 +29,7 @@ from cad.model import STEEL, Box, CadModel, Colour, Dimension, Part
 from cad.part_names import PartNames
 from templates.core.catalogue.loading import BROUGHT
 from templates.core.language.declare import given
+from templates.core.paper.mathml import named_symbol
 
 Program = Literal["freecad", "creo", "step"]
 Role = Literal["", "diameter", "radius", "distance"]
@@ -182,6 +183,7 @@ def class_of(text: str, id: str, version: int) -> type[BroughtModel]:
             one.unit,
             one.words,
             name=one.name,
+            symbol=named_symbol(one.name),
             default={"value": one.value, "unit": one.unit},
             ge=one.low,
             le=one.high,
@@ -195,7 +197,7 @@ def class_of(text: str, id: str, version: int) -> type[BroughtModel]:
         "__doc__": f"{description.title}.",
         "brought": description,
         "sheet": description,
-        "example": {one.name: {"value": one.value, "unit": one.unit} for one in first},
+        "example": {one.name: {"value": _plain(one.value), "unit": one.unit} for one in first},
     }
     cls = BroughtClass("".join(word.capitalize() for word in id.split("_")), (BroughtModel,), space)
     assert issubclass(cls, BroughtModel)
@@ -340,6 +342,11 @@ def _require_stated_volume(model: CadModel, parts: Iterable[Part], stated: float
     if stated is not None and not isclose(measured, stated, rel_tol=VOLUME_TOLERANCE):
         detail = f"the STEP file holds {measured:.9g} mm³; the program that drew it says {stated:.9g} mm³"
         raise GeometryError("volume", detail, model.inputs)
+
+
+def _plain(value: float) -> float:
+    """A whole number as one, so that a form shows `50 mm`, not `50.0 mm`."""
+    return int(value) if float(value).is_integer() else value
 
 
 def _attribute(name: str) -> str:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from html import escape
 
-from cad.drafting.lettering import clipped
+from cad.drafting.lettering import clipped, width_of
 from cad.drafting.title import STAMPED as STAMPED_FIELDS
 from cad.naming import name, stem, wide_stem
 from cad.part21 import end_of_string, plain, quoted
@@ -94,10 +94,18 @@ class Stamp:
             "number": f"{name(self.design)}_{self.called}",
             "revision": str(self.revision),
             "date": self.date[:10],
-            "material": self.material,
+            "material": self._short_material,
             "mass": "" if self.mass is None else f"{self.mass:.4g} kg",
             "part": self.named,
         }
+
+    @property
+    def _short_material(self) -> str:
+        """The materials for the title block: without the names of parts where these have no room."""
+        field_ = STAMPED_FIELDS["iso-material"]
+        if width_of(self.material, field_.letters) <= field_.room:
+            return self.material
+        return "; ".join(dict.fromkeys(self.materials.values()))
 
     @property
     def material(self) -> str:

@@ -95,7 +95,7 @@ class Explainer:
     def _value(self, reference: Reference) -> JsonObject | None:
         """The value with its unit; null while it waits for a solid or is not set."""
         if reference.output is None:
-            kind = f"{self.graph.kinds[reference.block].base:~}" or "1"
+            kind = f"{self.graph.kinds[reference.block].base:~C}" or "1"
             si = self.calculation.values.get(reference.block)
             return None if si is None else {"value": np.asarray(si).tolist(), "unit": kind}
         try:

@@ -168,7 +168,7 @@ def _values(new: Calculation) -> dict[str, Shown]:
     names = (name for name in new.graph.parameters if name in new.values)
     return {
         name: Shown(
-            value=np.asarray(new.values[name]).tolist(), unit=f"{new.graph.kinds[name].base:~}" or "1"
+            value=np.asarray(new.values[name]).tolist(), unit=f"{new.graph.kinds[name].base:~C}" or "1"
         )
         for name in names
     }

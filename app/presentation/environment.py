@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from app.presentation import numbers
 from app.presentation.bidi import balanced, bare
@@ -37,6 +37,14 @@ def isolated(text: object) -> Markup:
     return Markup("<bdi>{}</bdi>").format(balanced(str(text)))
 
 
+def coded(text: str) -> Markup:
+    """A sentence, escaped, with what stands between backticks as code."""
+    pieces = text.split("`")
+    if len(pieces) % 2 == 0:
+        return escape(text)
+    return Markup("").join(Markup("<code>{}</code>").format(p) if n % 2 else p for n, p in enumerate(pieces))
+
+
 def environment(folder: Path) -> Environment:
     """Jinja for the pages in a folder, which may extend the frame of every page, `base.html`."""
     jinja = Environment(
@@ -52,6 +60,7 @@ def environment(folder: Path) -> Environment:
         "capital": capital,
         "bare": bare,
         "isolated": isolated,
+        "coded": coded,
         "aligned": numbers.aligned,
         "plain": numbers.plain,
         "unit": numbers.unit,

@@ -160,3 +160,9 @@ def test_solids_that_freecad_calls_alike_get_numbers():
         tuple(DrawnPart(name, brep.getvalue(), 6.0) for name in ("Körper", "Körper", "Körper 1", ""))
     )
     assert [part.name for part in parts_of(drawn)] == ["Körper", "Körper_2", "Körper 1", "part"]
+
+
+def test_a_parameter_is_written_as_its_name_and_a_whole_number_as_one():
+    cls = class_of(RING.text, "ring", 1)
+    assert cls.inputs["bore"].meaning.symbol == r"\mathrm{bore}"
+    assert str(cls.example["bore"]["value"]) == "20"

@@ -191,3 +191,12 @@ def test_several_places_are_an_assembly():
     part = moved_box()
     twice = Part(part.name, part.shape, part.volume, places=(*part.places, *part.places))
     assert write_step([twice], Header("box", 1, {}, "")).count(b"NEXT_ASSEMBLY_USAGE_OCCURRENCE") == 2
+
+
+def test_the_title_block_names_every_material_where_the_names_of_parts_have_no_room():
+    parts = {f"a_part_with_a_long_name_{n}": f"material {n % 2}" for n in range(6)}
+    stamp = Stamp("engine", "bearing", 1, "2026-01-01", parts)
+    assert stamp.fields["material"] == "material 0; material 1"
+    assert "a_part_with_a_long_name_5" in stamp.material
+    few = Stamp("engine", "bearing", 1, "2026-01-01", {"cap": "iron", "pin": "steel"})
+    assert few.fields["material"] == "cap: iron; pin: steel"
