@@ -73,7 +73,7 @@ def _append(lines: list[str], token: str) -> None:
 def _annotated(data: str, names: Sequence[str]) -> str:
     """The data with parameters as names of dimensions and tolerances, and with the types of deviations."""
     number = iter(names)
-    named = _NAMELESS.sub(lambda found: f"{found[1]}'{next(number)}'", data)
+    named = _NAMELESS.sub(lambda match: f"{match[1]}'{next(number)}'", data)
     return _DEVIATION.sub(r"\1LENGTH_MEASURE(\2),", named)
 
 

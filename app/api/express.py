@@ -1,6 +1,6 @@
 """`POST …/evaluate` past the general machinery of the web framework, which costs more than an evaluation.
 
-What is plainly right is answered here: a short JSON body of known length for a version whose every level is
+What is plainly right is answered here: a short JSON body of stated length for a version whose every level is
 quick. All else is handed on as it came, and gets its answer, or its error, the general way.
 """
 

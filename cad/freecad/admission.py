@@ -2,8 +2,8 @@
 
 A `.FCStd` is a ZIP of `Document.xml` and the shapes that it names. A Python feature is an object whose type
 ends in `Python`, with a proxy that FreeCAD imports by the name of its module: such a file is refused, as is
-one that reads other files. What passes is packed anew: only parts that the document names are left, so that a
-macro beside them goes, and FreeCAD reads a package that this program wrote.
+one that reads other files. What passes is packed again: only parts that the document names are left, so that
+a macro beside them goes, and FreeCAD reads a package that this program wrote.
 
 Runs in a process of its own, whose memory and time are limited.
 """
@@ -66,8 +66,10 @@ def admitted(content: bytes) -> bytes:
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w") as package:
         for name, part in parts.items():
-            if name == DOCUMENT or name in named:
-                package.writestr(zipfile.ZipInfo(name), part)
+            if (
+                name == DOCUMENT or name in named
+            ):  # packed small: a bomb of zeros is not kept at its full size
+                package.writestr(zipfile.ZipInfo(name), part, zipfile.ZIP_DEFLATED, 1)
     return out.getvalue()
 
 

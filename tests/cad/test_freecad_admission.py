@@ -143,3 +143,8 @@ def test_a_directory_that_says_its_size_twice_is_refused():
     end = content.rindex(b"PK\x05\x06")
     locator = b"PK\x06\x07" + bytes(16)
     assert refusal(content[:end] + locator + content[end:]) == "package"
+
+
+def test_what_is_stored_of_a_bomb_is_small():
+    content = packed({DOCUMENT: document('<Part file="Shape.brp"/>'), "Shape.brp": bytes(2**23)})
+    assert len(admitted(content)) < 2**17
