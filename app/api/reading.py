@@ -301,5 +301,8 @@ class BodyLimit:
 
 
 async def fingerprint(request: Request) -> str:
-    """SHA-256 of a request's body."""
-    return hashlib.sha256(await request.body()).hexdigest()
+    """SHA-256 of a request's body; with parameters in its address, of these too."""
+    digest = hashlib.sha256(await request.body())
+    if query := request.scope["query_string"]:
+        digest.update(b"?" + query)
+    return digest.hexdigest()

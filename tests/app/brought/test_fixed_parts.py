@@ -80,6 +80,17 @@ def test_an_id_that_means_something_else_is_refused(http, id, bearing):
     problem(post(http, id, bearing.step), 422, "invalid-inputs")
 
 
+def test_a_key_of_another_import_is_refused(http, bearing):
+    headers = {**BINARY, "Idempotency-Key": "one import"}
+
+    def sent(id):
+        return http.post(f"{API}/models/import", params={"id": id}, content=bearing.step, headers=headers)
+
+    first = sent("keyed_bearing")
+    assert sent("keyed_bearing").headers["Location"] == first.headers["Location"]
+    problem(sent("other_bearing"), 422, "idempotency-key-reused")
+
+
 def test_a_body_of_another_type_is_refused(http):
     answer = http.post(f"{API}/models/import", params={"id": "some"}, json={})
     problem(answer, 415, "not-model")
