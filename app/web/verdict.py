@@ -66,7 +66,8 @@ def key_outputs(
     judged = [name for criterion in ordered for name in _judged(step, criterion)]
     wanted = [name for name in dict.fromkeys([*judged, *driving]) if name in outputs]
     valued = [name for name in wanted if outputs[name].value is not None]
-    return (valued or wanted or single[-3:])[:MOST_KEYS]
+    last = [name for name in single if outputs[name].value is not None] or single
+    return (valued or wanted or last[-3:])[:MOST_KEYS]
 
 
 def _judged(step: str, criterion: Criterion) -> list[str]:

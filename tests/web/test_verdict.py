@@ -135,6 +135,14 @@ def test_a_fold_line_shows_values_and_first_those_that_were_checked():
     ]
 
 
+def test_without_criteria_a_fold_line_shows_the_last_results_that_have_a_value():
+    output = type("Output", (), {"value": 1.0})
+    none = type("Output", (), {"value": None})
+    outputs = {"rms_film_difference": output, "largest_film_difference": output, "strain_difference": none}
+    assert key_outputs("bench", outputs, [], []) == ["rms_film_difference", "largest_film_difference"]
+    assert key_outputs("bench", {"strain_difference": none}, [], []) == ["strain_difference"]  # is awaited
+
+
 def test_the_browser_writes_the_verdict_as_the_server_does(watched, paper):
     watched.open(paper, wait_until="networkidle")  # no preview comes between
     expect(watched.page.locator("[data-state]")).to_be_attached()
