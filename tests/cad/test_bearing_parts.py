@@ -42,7 +42,7 @@ HOSTILE_VALUES = (math.nan, math.inf, -math.inf, -1.0, -1e-3, 0.0, 1e-12, 1e-9, 
 BAD = (*HOSTILE_VALUES[:5], 1e9, 1e300)
 
 EVERY = [pytest.param(models().get(*one), id=f"{one[0]}_v{one[1]}") for one in NEW]
-BEARING = pytest.param(models().get("ball_bearing", 2), id="ball_bearing_v2")
+BEARING = pytest.param(models().get("deep_groove_bearing", 1), id="deep_groove_bearing_v1")
 QUICK = [one for one in EVERY if one.id != "bearing_assembly_v1"]  # it consists of two of the others
 
 

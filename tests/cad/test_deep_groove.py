@@ -10,7 +10,7 @@ from cad.regenerate import as_text, regenerate_class
 from cad.step import read_step
 from templates.core.errors import InvalidInputs
 
-CLS = models().get("ball_bearing", 2)
+CLS = models().get("deep_groove_bearing", 1)
 
 
 def built(**given):

@@ -28,7 +28,7 @@ INWARDS, OUTWARDS = -1, 1
 BRASS_DENSITY = 8400.0  # kg/m³, CuZn39Pb3 (EN 12164: about 8.4 g/cm³)
 
 
-class BallBearing(CadModel):
+class DeepGrooveBearing(CadModel):
     """Deep groove ball bearing by its designation: rings, balls and cage, with its load ratings.
 
     The designation, such as 6210, gives bore, outer diameter and width: series 618, 60, 62 and 63. A size
