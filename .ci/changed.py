@@ -62,6 +62,8 @@ ABOUT = {
         *("templates/physics/engine/*.py", "cad/cranks/*.py", "cad/models/crankshaft_v2.py"),
     ),
     "tests/app/test_events_resumed.py": ("app/*event*.py", "app/api/resuming.py"),
+    "tests/app/test_express_hostile.py": ("app/api/express.py", "app/api/reading.py", "app/api/problems.py"),
+    "tests/app/test_linear_input.py": ("app/reports/*.py", "app/api/problems.py", "app/designs/*.py"),
     "tests/app/test_list_parameters.py": ("app/designs/*.py", "app/web/*.py", "cad/lists.py"),
     "tests/app/test_orphans.py": ("app/*workers/*.py",),
     "tests/app/test_other_makers.py": ("app/solids/*.py", "app/*storage/*.py"),
@@ -213,7 +215,8 @@ def is_named(file: str, test: str, reached: Iterable[str]) -> bool:
     """Whether one of these programs names a data file, or the test finds this version in the catalogue."""
     if version := VERSION.search(file):
         is_listed = test == CATALOGUE and file.startswith("templates/")
-        return is_listed or version[1] in (ROOT / test).read_text(encoding="utf-8")
+        own = (test, *(program for program in reached if program.startswith("tests/")))
+        return is_listed or any(version[1] in (ROOT / one).read_text(encoding="utf-8") for one in own)
     if file.endswith((".py", ".md")):
         return False
     return any(Path(file).name in (ROOT / program).read_text(encoding="utf-8") for program in reached)

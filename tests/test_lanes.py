@@ -67,6 +67,8 @@ def test_servers_begin_first():
             "tests/cad/test_cranks_random.py",
         ),
         ("cad/models/crank_throw_v1.py", "tests/cad/test_cranks_random.py", "tests/app/test_crash.py"),
+        ("cad/models/bearing_assembly_v1.py", "tests/cad/test_dxf.py", "tests/app/test_crash.py"),
+        ("cad/freecad/admission.py", "tests/app/brought/test_freecad.py", "tests/app/test_crash.py"),
         ("templates/oil_film/oil_film_v2.py", changed.CATALOGUE, "tests/cad/test_cranks_random.py"),
         ("app/storage/database.py", "tests/app/test_crash.py", "tests/physics/test_film_map.py"),
         ("tests/app/serving.py", "tests/app/test_contract_at_length.py", "tests/physics/test_film_map.py"),
