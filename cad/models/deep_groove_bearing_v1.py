@@ -44,6 +44,8 @@ class DeepGrooveBearing(CadModel):
     The standard leaves the inside to the maker. Ball size and number by default are common proportions; give
     the maker's for the maker's capacities, which they otherwise miss by up to a tenth. No seals, shields,
     snap rings, and no clearance between balls and grooves. Chamfers are in proportion, not those of ISO 582.
+    The tables of sizes and factors were typed without the standards at hand: six ratings of makers agree
+    within 1 %, and series 618 was compared with nothing. Compare them with your edition before you order.
 
     References
     ----------
