@@ -12,6 +12,7 @@ from sleeping import folder_of_sleeper
 from test_damage import delete, flip, truncate
 from test_workers import alive, eventually
 
+from app.brought.programs import assembled
 from app.calculations.operations import LARGE
 from app.calculations.schemas import EvaluateIn, SolveIn
 from app.cli import main
@@ -205,7 +206,7 @@ class TestLostAnswers:
         flip(self.file(settings, job))
         database, store = server.app.state.services.database, server.app.state.services.store
         damaged = Named(self.file(settings, job).name, None, job["id"], "answer")
-        repair = Repair(database, store, settings, Inline())
+        repair = Repair(database, store, settings, Inline(), assembled(settings, store))
         assert repair.row(damaged) is None
         new = http.get(f"{API}/jobs/{job['id']}").json()
         assert new["result"] != job["result"]
