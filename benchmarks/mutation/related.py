@@ -18,7 +18,7 @@ from types import ModuleType
 
 from benchmarks.mutation import ROOT
 
-NEAREST = 14
+NEAREST = 18
 """So many test files of a mutated file are run."""
 VALUES = "tests/test_values.py"
 """A test about all modules, which it finds by their folders."""
