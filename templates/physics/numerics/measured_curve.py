@@ -30,6 +30,18 @@ def periodic(theta: Array, places: Array, values: Array, cycle: Array, shift: Ar
     return np.asarray(last[..., left] * (1 - share) + last[..., left + 1] * share)
 
 
+def _root_mean_square(difference: Array) -> Array:
+    return np.asarray(np.sqrt((difference**2).mean(axis=-1)))[()] if np.ndim(difference) else _NONE
+
+
+def _mean(difference: Array) -> Array:
+    return np.asarray(difference.mean(axis=-1))[()] if np.ndim(difference) else _NONE
+
+
+def _largest(difference: Array) -> Array:
+    return np.asarray(np.abs(difference).max(axis=-1))[()] if np.ndim(difference) else _NONE
+
+
 @units("rad", returns="1")
 def rises(angles: Array) -> Truth:
     """Whether these are one list of three angles or more that rise."""
@@ -54,19 +66,19 @@ def film_at(theta: Array, places: Array, values: Array, cycle: Array, shift: Arr
 @units("m", returns="m", latex=r"\sqrt{{\overline{{{0}^2}}}}")
 def rms_film(difference: Array) -> Array:
     """Root of the mean square of a difference [m]."""
-    return np.asarray(np.sqrt((difference**2).mean(axis=-1)))[()] if np.ndim(difference) else _NONE
+    return _root_mean_square(difference)
 
 
 @units("m", returns="m", latex=r"\overline{{{0}}}")
 def mean_film(difference: Array) -> Array:
     """Mean of a difference [m]."""
-    return np.asarray(difference.mean(axis=-1))[()] if np.ndim(difference) else _NONE
+    return _mean(difference)
 
 
 @units("m", returns="m", latex=r"\max\left|{0}\right|")
 def largest_film(difference: Array) -> Array:
     """Largest size of a difference [m]."""
-    return np.asarray(np.abs(difference).max(axis=-1))[()] if np.ndim(difference) else _NONE
+    return _largest(difference)
 
 
 @units("rad", "rad", "rad/s", "rad", "rad", returns="rad/s")
@@ -78,19 +90,19 @@ def speed_at(theta: Array, places: Array, values: Array, cycle: Array, shift: Ar
 @units("rad/s", returns="rad/s", latex=r"\sqrt{{\overline{{{0}^2}}}}")
 def rms_speed(difference: Array) -> Array:
     """Root of the mean square of a difference [rad/s]."""
-    return np.asarray(np.sqrt((difference**2).mean(axis=-1)))[()] if np.ndim(difference) else _NONE
+    return _root_mean_square(difference)
 
 
 @units("rad/s", returns="rad/s", latex=r"\overline{{{0}}}")
 def mean_speed(difference: Array) -> Array:
     """Mean of a difference [rad/s]."""
-    return np.asarray(difference.mean(axis=-1))[()] if np.ndim(difference) else _NONE
+    return _mean(difference)
 
 
 @units("rad/s", returns="rad/s", latex=r"\max\left|{0}\right|")
 def largest_speed(difference: Array) -> Array:
     """Largest size of a difference [rad/s]."""
-    return np.asarray(np.abs(difference).max(axis=-1))[()] if np.ndim(difference) else _NONE
+    return _largest(difference)
 
 
 @units("rad", "rad", "1", "rad", "rad", returns="1")
@@ -102,16 +114,16 @@ def strain_at(theta: Array, places: Array, values: Array, cycle: Array, shift: A
 @units("1", returns="1", latex=r"\sqrt{{\overline{{{0}^2}}}}")
 def rms_strain(difference: Array) -> Array:
     """Root of the mean square of a difference [1]."""
-    return np.asarray(np.sqrt((difference**2).mean(axis=-1)))[()] if np.ndim(difference) else _NONE
+    return _root_mean_square(difference)
 
 
 @units("1", returns="1", latex=r"\overline{{{0}}}")
 def mean_strain(difference: Array) -> Array:
     """Mean of a difference [1]."""
-    return np.asarray(difference.mean(axis=-1))[()] if np.ndim(difference) else _NONE
+    return _mean(difference)
 
 
 @units("1", returns="1", latex=r"\max\left|{0}\right|")
 def largest_strain(difference: Array) -> Array:
     """Largest size of a difference [1]."""
-    return np.asarray(np.abs(difference).max(axis=-1))[()] if np.ndim(difference) else _NONE
+    return _largest(difference)
