@@ -179,7 +179,7 @@ def kept() -> list[Line]:
 
 
 def again() -> int:
-    """Compare the cheap levels anew with the marches that are kept on this machine; how many there are."""
+    """Compare the cheap levels again with the marches that are kept on this machine; how many there are."""
     lines, done = recorded(), 0
     for line in lines:
         if line.get("march") == MARCH and "errors" in line and truth_file(line).exists():

@@ -127,9 +127,9 @@ def failed(http, id, content):
 
 
 def test_a_python_feature_never_runs(http):
-    told = failed(http, "with_macro", bush("python feature"))
-    assert (told["status"], told["errors"][0]["code"]) == (422, "python_feature")
-    assert "Script" in told["detail"]
+    refusal = failed(http, "with_macro", bush("python feature"))
+    assert (refusal["status"], refusal["errors"][0]["code"]) == (422, "python_feature")
+    assert "Script" in refusal["detail"]
     assert not Path("/tmp/freecad-was-run").exists()
 
 
@@ -175,8 +175,8 @@ def is_gone(pid):
 
 @pytest.mark.slow
 def test_an_endless_recompute_ends_at_its_deadline_and_harms_nobody(http, model):
-    told = failed(http, "endless", bush("endless"))
-    assert (told["status"], told["type"]) == (422, "/problems/deadline")
+    refusal = failed(http, "endless", bush("endless"))
+    assert (refusal["status"], refusal["type"]) == (422, "/problems/deadline")
     assert built(http, model, bore="50.5 mm").status_code == 200
 
 
