@@ -1,6 +1,7 @@
 """Designs to start from: an in-line four and a V8, from the bore of their cylinders to verdicts.
 
-Loads, a film in each bearing, shells, crankshaft, torsion of the train, life of the shaft's fillets.
+Loads, a film in each bearing, shells, crankshaft, finite elements of its throws, torsion of the train, life
+of the shaft's fillets.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from collections.abc import Sequence
 
 from pydantic import JsonValue
 
-from app.web import gallery_fillets, gallery_train
+from app.web import gallery_train
 from app.web.gallery_train import THROWS, Train
 
 FOUR: dict[str, JsonValue] = {
@@ -126,6 +127,7 @@ def _document(
         "name": name,
         "parameters": {
             "bore": "86 mm",
+            "pin_diameter": "48 mm",
             "pitch": places["pitch"],
             "bearing": "3",
             **gallery_train.parameters(train),
@@ -134,7 +136,7 @@ def _document(
             "engine": {
                 "template": "engine",
                 "version": 2,
-                "inputs": {**engine, **placed},
+                "inputs": {**engine, **placed, "crankpin_diameter": "= pin_diameter"},
                 "outputs": _OUTPUTS,
                 "limits": {"permissible_main_load": "60 kN", "permissible_crankpin_load": "60 kN"},
             },
@@ -167,7 +169,12 @@ def _document(
                     "shell": "half",
                 },
             },
-            "crankshaft": {"id": "crankshaft", "version": 2, "parameters": {**_CRANKSHAFT, **shaft}},
+            "crankshaft": {
+                "id": "crankshaft",
+                "version": 2,
+                "parameters": {**_CRANKSHAFT, **shaft},
+                "analyses": gallery_train.analyses(),
+            },
         },
         "variants": bearings,
     }
@@ -187,7 +194,6 @@ FOUR_CYLINDERS = _document(
         per_throw=1,
         ring="0.02 kg*m**2",
         flywheel="0.14 kg*m**2",
-        tensors=gallery_fillets.FOUR,
     ),
 )
 V8 = _document(
@@ -204,6 +210,5 @@ V8 = _document(
         per_throw=2,
         ring="0.03 kg*m**2",
         flywheel="0.18 kg*m**2",
-        tensors=gallery_fillets.V_EIGHT,
     ),
 )

@@ -1,8 +1,8 @@
 """Torsion and life of the gallery's engines: the train of inertias, and the crank throw beside the flywheel.
 
-Stiffness of the throws follows from their dimensions by `crank_stiffness` 2, their inertia from the solid and
-from the masses on their pins. Nose, flywheel, clutch and damper are our own numbers, of usual size for such
-an engine. The stress tensors of unit loads are by finite elements (`gallery_fillets`).
+Stiffness of the throws and stress tensors of their fillets are by finite elements of the crankshaft that the
+design itself draws, the inertia of the throws from its solid and from the masses on their pins. Nose,
+flywheel, clutch and damper are our own numbers, of usual size for such an engine.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 from pydantic import JsonValue
 
-from app.web.gallery_fillets import Tensors
-
 THROWS = 4
+STIFFNESS = "crankshaft.chain.throw_stiffnesses"  # of each throw, from mid-main to mid-main
+TENSORS = "crankshaft.unit_loads.stress_of_"
 FIRST = 3  # number of the inertia of throw 1, behind the damper's ring and its hub
 _SHAFTS = THROWS + 3
 _MASS_ON_PIN = (
@@ -31,7 +31,6 @@ class Train:
     per_throw: int  # cylinders on each pin
     ring: str  # inertia of the damper's ring
     flywheel: str  # inertia
-    tensors: Tensors  # at the fillets of a throw
 
     def on(self, throw: int) -> Sequence[int]:
         """The cylinders on a throw, counted from 1."""
@@ -79,31 +78,30 @@ def _torque(train: Train, throw: int) -> str:
 
 
 def steps(train: Train) -> dict[str, JsonValue]:
-    """Stiffness of a throw, forced torsion of the train, life of the throw beside the flywheel."""
-    return {"throw": _stiffness(), "torsion": _torsion(train), "life": _life(train)}
+    """Forced torsion of the train, life of the throw beside the flywheel."""
+    return {"torsion": _torsion(train), "life": _life()}
 
 
-def _stiffness() -> dict[str, JsonValue]:
+def analyses() -> dict[str, JsonValue]:
+    """What finite elements of the crankshaft answer: the stiffness of each throw, tensors at its fillets.
+
+    The stiffness between bearings differs from `coarse` to `fine` by less than from formula to formula, so
+    the cheap level serves. Stresses of `coarse` are up to a third too low.
+    """
     return {
-        "template": "crank_stiffness",
-        "version": 2,
-        "inputs": {
-            "journal_length": "= engine.main_positions[2] - engine.main_positions[1] - engine.crankpin_length"
-            " - 2 * engine.web_thickness",
-            "journal_diameter": "= engine.journal_diameter",
-            "pin_length": "= engine.crankpin_length",
-            "pin_diameter": "= engine.crankpin_diameter",
-            "web_thickness": "= engine.web_thickness",
-            "web_width": "= engine.web_width",
-            "throw": "= engine.stroke / 2",
-            "shear_modulus": "81 GPa",
-        },
-        "outputs": ["recommended_stiffness", "recommended", "reason"],
+        "chain": {"level": "coarse", "boundary": "guided_end"},
+        "unit_loads": {"level": "default"},
     }
 
 
+def _between(throw: int) -> str:
+    """Stiffness from the pin of a throw to that of the next: half of either throw, in series."""
+    this, following = (f"{STIFFNESS}[{n}]" for n in (throw, throw + 1))
+    return f"= 2 * {this} * {following} / ({this} + {following})"
+
+
 def _torsion(train: Train) -> dict[str, JsonValue]:
-    throws: list[JsonValue] = ["= throw.recommended_stiffness"] * (THROWS - 1)
+    throws: list[JsonValue] = [_between(k) for k in range(1, THROWS)]
     still: list[JsonValue] = ["0 N*m*s/rad"] * (_SHAFTS - 2)
     section = "= pi / 16 * engine.crankpin_diameter**3"
     cylinders: list[JsonValue] = [FIRST + k - 1 for k in range(1, THROWS + 1) for _ in train.on(k)]
@@ -117,7 +115,7 @@ def _torsion(train: Train) -> dict[str, JsonValue]:
             "shaft_from": list(range(1, _SHAFTS + 1)),
             "shaft_to": list(range(2, _SHAFTS + 2)),
             "shaft_stiffness": [
-                "0 kN*m/rad", "300 kN*m/rad", *throws, "= 2 * throw.recommended_stiffness", "1 kN*m/rad",
+                "0 kN*m/rad", "300 kN*m/rad", *throws, f"= 2 * {STIFFNESS}[{THROWS}]", "1 kN*m/rad",
             ],
             "shaft_damping": ["= damping", *still, "2 N*m*s/rad"],
             "loss_factors": [0, *[0.005] * (_SHAFTS - 2), 0.1],
@@ -141,7 +139,7 @@ def _torsion(train: Train) -> dict[str, JsonValue]:
     }  # fmt: skip
 
 
-def _life(train: Train) -> dict[str, JsonValue]:
+def _life() -> dict[str, JsonValue]:
     return {
         "template": "fatigue_life",
         "version": 2,
@@ -149,9 +147,9 @@ def _life(train: Train) -> dict[str, JsonValue]:
             "force_1": "= pin_x * cos(pin_turn) + pin_y * sin(pin_turn)",
             "force_2": "= pin_y * cos(pin_turn) - pin_x * sin(pin_turn)",
             "moment_1": "= mean(front_torque) + (front_torque - mean(front_torque)) * torque_swing",
-            "stress_of_force_1": {"value": train.tensors.force_1, "unit": "MPa/kN"},
-            "stress_of_force_2": {"value": train.tensors.force_2, "unit": "MPa/kN"},
-            "stress_of_moment_1": {"value": train.tensors.moment_1, "unit": "MPa/(kN*m)"},
+            "stress_of_force_1": f"= {TENSORS}force_1",
+            "stress_of_force_2": f"= {TENSORS}force_2",
+            "stress_of_moment_1": f"= {TENSORS}moment_1",
             "ultimate_strength": "850 MPa",
             "yield_strength": "600 MPa",
             "surface": "ground",

@@ -10,8 +10,9 @@ def four_cylinders(**inputs):
 
 def bearings_of(document):
     """An engine's loads, films, shells and crankshaft, without torsion and life."""
+    kept = ("bore", "pin_diameter", "pitch", "bearing")
     return {
         **document,
-        "parameters": {name: document["parameters"][name] for name in ("bore", "pitch", "bearing")},
+        "parameters": {name: document["parameters"][name] for name in kept},
         "steps": {name: document["steps"][name] for name in ("engine", "film")},
     }
