@@ -1,5 +1,7 @@
 """Every line of issue 20's table, with its aim: `python -m benchmarks.all [films elements serving shell]`.
 
+`python -m benchmarks.all kept` prints the table that is kept, without measuring.
+
 Each kind of work runs in a process of its own, one after the other, on one thread of BLAS. Processor time
 decides, as other work of the machine disturbs it least; figures by the clock say so. The whole takes less
 than 15 minutes on two idle cores. Prints a table in Markdown and, if all was measured, writes
@@ -23,6 +25,7 @@ from benchmarks.service_rows import commit, machine
 from benchmarks.speed.figures import Figure
 
 RESULTS = Path("benchmarks/results/all.json")
+HEAD = "| work | measured | aim | | how |\n|---|---|---|---|---|"
 KINDS = ("shell", "serving", "films", "elements")
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
 
@@ -37,7 +40,7 @@ def main(kinds: list[str]) -> None:
     """Measure, print and keep."""
     os.environ.update(dict.fromkeys(THREADS, "1"))
     begin, load = time.perf_counter(), os.getloadavg()
-    print("| work | measured | aim | | how |\n|---|---|---|---|---|")
+    print(HEAD)
     rows: list[Figure] = []
     for kind in kinds:
         with ProcessPoolExecutor(1, get_context("spawn")) as pool:
@@ -58,7 +61,20 @@ def main(kinds: list[str]) -> None:
         RESULTS.write_text(json.dumps(kept, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
+def kept() -> None:
+    """Print the table of benchmarks/results/all.json, with its date and machine."""
+    content = json.loads(RESULTS.read_text(encoding="utf-8"))
+    print(f"{content['date']}, commit {content['commit']}, {content['minutes']} minutes\n")
+    print(HEAD)
+    for row in content["figures"]:
+        row.pop("is_met")
+        print(Figure(**row).line())
+
+
 if __name__ == "__main__":
+    if sys.argv[1:] == ["kept"]:
+        kept()
+        raise SystemExit
     named = sys.argv[1:] or list(KINDS)
     if unknown := set(named) - set(KINDS):
         raise SystemExit(f"no such kind of work: {', '.join(sorted(unknown))}; there are {', '.join(KINDS)}")
