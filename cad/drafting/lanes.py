@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from cad.drafting.curves import Point
 from cad.drafting.matching import Dimension
+from cad.drafting.views import View
+
+_CLEAR = 1e-4  # [mm]
 
 Box = tuple[Point, Point]
 Side = list[Dimension]
@@ -30,50 +33,63 @@ class Lane:
 class Lanes:
     """Dimensions by the side of the view on which they stand."""
 
-    section: Box
-    end: Box
+    section: View
+    end: View
     left: Side
     right: Side
     beyond: Side  # to the right of the end view
     below: Side
     end_below: Side
     above: Side
+    end_above: Side
     local: Side
 
     @staticmethod
-    def sorted(dimensions: Iterable[Dimension], section: Box, end: Box) -> Lanes:
+    def sorted(dimensions: Iterable[Dimension], section: View, end: View) -> Lanes:
         """Every dimension on the side that is nearest to what it measures."""
-        sides = Lanes(section, end, [], [], [], [], [], [], [])
-        middle = (section[0][0] + section[1][0]) / 2, (section[0][1] + section[1][1]) / 2
+        sides = Lanes(section, end, [], [], [], [], [], [], [], [])
+        (left, low), (right, high) = section.box
+        middle = (left + right) / 2, (low + high) / 2
         for one in dimensions:
-            sides._side(one, middle).append(one)
+            side, out = sides._side(one, middle)
+            view = end if one.measure.place == "end" else section
+            side.append(_from_its_edges(one, view, out) if out else one)
         return sides
 
-    def _side(self, one: Dimension, middle: Point) -> Side:
+    def _side(self, one: Dimension, middle: Point) -> tuple[Side, int]:
+        """The side of a dimension, and whether it lies below or left (-1), above or right (1), or neither."""
         measure = one.measure
         place = sum(x for x, _ in measure.points) / len(measure.points)
         match measure.form, measure.place:
             case "up", "end":
-                return self.beyond
+                return self.beyond, 1
             case "up", _:
-                return self.right if place > middle[0] else self.left
+                return (self.right, 1) if place > middle[0] else (self.left, -1)
             case "across", "end":
-                return self.end_below
+                return (self.end_above, 1) if self._is_high(one) else (self.end_below, -1)
             case "across", _:
-                high = min(y for _, y in measure.points) > middle[1]
-                return self.above if high and measure.sort == "diameter" else self.below
-        return self.local
+                is_high = min(y for _, y in measure.points) > middle[1]
+                return (self.above, 1) if is_high and measure.sort == "diameter" else (self.below, -1)
+        return self.local, 0
+
+    def _is_high(self, one: Dimension) -> bool:
+        """Whether what the end view shows of a width lies nearer to the top of that view."""
+        (_, low), (_, high) = self.end.box
+        reaches = [_edge_at(one, self.end, number) for number in (0, 1)]
+        tops, feet = [high - end for _, end in reaches], [start - low for start, _ in reaches]
+        return one.measure.sort == "width" and sum(tops) + _CLEAR < sum(feet)
 
     @property
     def counts(self) -> tuple[int, int, int, int, int]:
         """How many lanes there can be at most: left, between the views, right, below, above."""
         below = max(len(self.below), len(self.end_below))
-        return len(self.left), len(self.right), len(self.beyond), min(below, 4), len(self.above)
+        above = max(len(self.above), min(len(self.end_above), 4))
+        return len(self.left), len(self.right), len(self.beyond), min(below, 4), above
 
     def sides(self) -> Iterator[Lane]:
         """Every side that has dimensions."""
-        (left, low), (right, high) = self.section
-        (_, end_low), (end_right, _) = self.end
+        (left, low), (right, high) = self.section.box
+        (_, end_low), (end_right, end_high) = self.end.box
         every = (
             (self.left, 1, left, -1, False),
             (self.right, 1, right, 1, False),
@@ -81,7 +97,38 @@ class Lanes:
             (self.below, 0, low, -1, False),
             (self.end_below, 0, end_low, -1, True),
             (self.above, 0, high, 1, False),
+            (self.end_above, 0, end_high, 1, True),
         )
         for side, along, edge, out, is_of_end in every:
             ordered = sorted(side, key=lambda one: (one.measure.value, one.measure.points))
             yield Lane(ordered, along, edge, out, is_of_end)
+
+
+def _from_its_edges(one: Dimension, view: View, out: int) -> Dimension:
+    """The same with extension lines that begin where an edge that it measures is nearest to its side."""
+    along = int(one.measure.form == "up")
+    points = []
+    for number, point in enumerate(one.measure.points):
+        end = _edge_at(one, view, number)[out > 0]
+        points.append((end, point[1]) if along else (point[0], end))
+    return replace(one, measure=replace(one.measure, points=tuple(points)))
+
+
+def _edge_at(one: Dimension, view: View, number: int) -> tuple[float, float]:
+    """From where to where edges or axes run through a point of a dimension, across what it measures.
+
+    A diameter takes those only that hold its point, for at the foot of a circle others may end.
+    """
+    along, point = int(one.measure.form == "up"), one.measure.points[number]
+    at, across = point[along], point[1 - along]
+    for lines in (view.straight, view.unseen, view.axes):
+        spans = [
+            sorted((a[1 - along], b[1 - along]))
+            for a, b in lines
+            if abs(a[along] - at) + abs(b[along] - at) < _CLEAR
+        ]
+        if one.measure.sort == "diameter":
+            spans = [(low, high) for low, high in spans if low - _CLEAR < across < high + _CLEAR]
+        if spans:
+            return min(low for low, _ in spans), max(high for _, high in spans)
+    return across, across

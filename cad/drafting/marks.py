@@ -52,7 +52,10 @@ def centre_lines(section: View, end: View, bodies: Sequence[Body], plan: Plan) -
     axes = _distinct(_axes(section, bodies, over))
     crosses = _distinct(_crosses(section, plan, over))
     pitch, of_end = _pitched(end, plan, over)
-    moved = [(_right(a, plan.beside), _right(b, plan.beside)) for a, b in (*shaft[1:], *_distinct(of_end))]
+    own = [*shaft[1:], *_distinct(of_end)]
+    across = _distinct(_longer(axis, over) for axis in end.axes)
+    own += [axis for axis in across if not any(_on_one_line(axis, other) for other in own)]
+    moved = [(_right(a, plan.beside), _right(b, plan.beside)) for a, b in own]
     return Centres([shaft[0], *axes, *crosses, *moved], [((plan.beside, 0.0), radius) for radius in pitch])
 
 
@@ -117,6 +120,21 @@ def _pitched(view: View, plan: Plan, over: float) -> tuple[list[float], Iterator
                 yield (x - reach, y), (x + reach, y)
 
     return pitch, lines()
+
+
+def _longer(segment: Segment, over: float) -> Segment:
+    """A segment with both ends so far beyond its own."""
+    (x, y), (u, v) = segment
+    size = hypot(u - x, v - y) or 1.0
+    a, b = (u - x) / size * over, (v - y) / size * over
+    return (x - a, y - b), (u + a, v + b)
+
+
+def _on_one_line(one: Segment, other: Segment) -> bool:
+    """Whether a segment lies on the line of another."""
+    (x, y), (u, v) = other
+    size = hypot(u - x, v - y) or 1.0
+    return all(abs((u - x) * (b - y) - (v - y) * (a - x)) / size < 1e-3 for a, b in one)
 
 
 def _distinct(segments: Iterable[Segment]) -> list[Segment]:

@@ -120,15 +120,44 @@ def _size(text: str) -> tuple[float, bool] | None:
 
 
 def references(taken: Sequence[Dimension], measures: Sequence[Measure]) -> Iterator[Dimension]:
-    """Lengths that complete the drawing: from each plane across the shaft to the next, and the whole."""
+    """Lengths that complete the drawing: between planes across the shaft that nothing locates, and the whole.
+
+    What dimensions join is located by them; two planes that lie alike on either side of the origin are joined
+    with it by the dimension between them.
+    """
     lengths = [m for m in measures if m.sort == "length" and m.place == "section"]
-    places = sorted({point[0] for m in lengths for point in m.points})
+    places = sorted({round(point[0], 6) for m in lengths for point in m.points})
+    dimensioned = [
+        _span(d.measure) for d in taken if (d.measure.form, d.measure.place) == ("across", "section")
+    ]
+    groups = _Groups()
+    for low, high in dimensioned:
+        groups.join(low, high)
+        if abs(low + high) < _PRECISION:
+            groups.join(low, 0.0)
     spans = [*pairwise(places), *([(places[0], places[-1])] if len(places) > 2 else [])]
-    dimensioned = {_span(d.measure) for d in taken}
     for low, high in spans:
-        fits = (m for m in lengths if _span(m) == (round(low, 6), round(high, 6)))
-        if (round(low, 6), round(high, 6)) not in dimensioned and (measure := next(fits, None)):
+        is_whole = (low, high) == (places[0], places[-1])
+        fits = (m for m in lengths if _span(m) == (low, high))
+        if (low, high) in dimensioned or (groups.joins(low, high) and not is_whole):
+            continue
+        if measure := next(fits, None):
+            groups.join(low, high)
             yield Dimension(measure, None)
+
+
+class _Groups:
+    """Places that dimensions join."""
+
+    def __init__(self) -> None:
+        self._of: dict[float, set[float]] = {}
+
+    def join(self, one: float, other: float) -> None:
+        both = self._of.get(one, {one}) | self._of.get(other, {other})
+        self._of.update(dict.fromkeys(both, both))
+
+    def joins(self, one: float, other: float) -> bool:
+        return other in self._of.get(one, {one})
 
 
 def _span(measure: Measure) -> tuple[float, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from math import atan2, degrees, hypot
+from math import atan2, degrees, hypot, isclose
 from typing import Literal
 
 from cadquery import Vector
@@ -59,7 +59,7 @@ def _of_cylinders(seen: Seen, section: View, end: View) -> Iterator[Measure]:
     for cylinder in seen.cylinders:
         if cylinder.along(Z):
             turned = cylinder.turned(Z)
-            yield from _lengthwise(turned, section, end, seen.count)
+            yield from _lengthwise(turned, section, end, seen.count * alike(turned, seen))
             about += [turned] if cylinder.about(Z) else []
         elif _within(cylinder, section.frame.towards):
             yield _drilled(cylinder, section, seen.count)
@@ -69,6 +69,23 @@ def _of_cylinders(seen: Seen, section: View, end: View) -> Iterator[Measure]:
         ends = [_edge_at(section, c.diameter / 2, c.reach) for c in (inner, outer)]
         if high - low > _CLEAR and ends[0] is not None and ends[1] is not None:
             yield Measure("gap", high - low, "section", "up", ((ends[0], low), (ends[1], high)))
+
+
+def alike(cylinder: Surface, seen: Seen) -> int:
+    """How many cylinders of its size stand in a pattern with one: at its place along other parallel axes."""
+    axis = cylinder.direction
+    feet = {
+        (
+            round(one.point.cross(axis).x, 4),
+            round(one.point.cross(axis).y, 4),
+            round(one.point.cross(axis).z, 4),
+        )
+        for one in (c.turned(axis) for c in seen.cylinders if c.along(axis))
+        if isclose(one.diameter, cylinder.diameter, abs_tol=_CLEAR)
+        and isclose(one.reach[0], cylinder.reach[0], abs_tol=_CLEAR)
+        and isclose(one.reach[1], cylinder.reach[1], abs_tol=_CLEAR)
+    }
+    return max(len(feet), 1)
 
 
 def _lengthwise(cylinder: Surface, section: View, end: View, count: int) -> Iterator[Measure]:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from datetime import UTC, datetime
 from typing import Any
 
 import typst
 
-from cad.drafting.plan import SHEET
+from cad.drafting.formats import FORMATS
 
 _NO_TIME = datetime(1970, 1, 1, tzinfo=UTC)
+_SIZE = re.compile(rb'<svg [^>]*?width="(\d+)mm" height="(\d+)mm"')  # of the sheet, as `svg` writes it
 _PAGE = (
-    f"#set page(width: {SHEET[0]:g}mm, height: {SHEET[1]:g}mm, margin: 0mm)\n"
+    "#set page(width: {:g}mm, height: {:g}mm, margin: 0mm)\n"
     '#set document(title: "Technical drawing")\n'
     '#image("drawing.svg", width: 100%, height: 100%)\n'
 )
@@ -19,7 +21,16 @@ _PAGE = (
 
 def as_pdf(svg: bytes) -> bytes:
     """A drawing as PDF; equal drawings give equal bytes. What a client wrote in it is text there too."""
-    files: Any = {"main": _PAGE.encode(), "drawing.svg": svg}  # missing in the types of typst
+    files: Any = {
+        "main": _PAGE.format(*_size(svg)).encode(),
+        "drawing.svg": svg,
+    }  # missing in the types of typst
     pdf = typst.compile(files, format="pdf", timestamp=_NO_TIME)
     assert isinstance(pdf, bytes), "one document makes one file"
     return pdf
+
+
+def _size(svg: bytes) -> tuple[float, float]:
+    """Width and height of a drawing's sheet [mm]; the words of a client stand behind them."""
+    found = _SIZE.search(svg[:500])
+    return (float(found[1]), float(found[2])) if found else (FORMATS[0].width, FORMATS[0].height)

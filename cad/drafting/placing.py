@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import atan2, cos, hypot, pi, radians, sin
 
 from cad.drafting.curves import Point
@@ -155,9 +156,7 @@ class Placing:
                 tries = self._around(one, label, right)
         every = list(tries)
         free = [one for one in every if self.room.is_free(one[0])]
-        clear = (
-            one for one in free if one[1].dimension.measure.form == "angle" or self.room.passes(one[2][0])
-        )
+        clear = (one for one in free if all(self.room.passes(piece) for piece in pairwise(one[2][0])))
         if not free and not self.is_last:
             raise NoRoom
         box, placed, lines = next(clear, (free or every)[0])

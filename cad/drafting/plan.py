@@ -6,19 +6,15 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from cad.drafting.curves import Point
+from cad.drafting.formats import FORMATS, Format
 from cad.drafting.lanes import Lanes
 from cad.drafting.matching import Dimension
-from cad.drafting.room import Rectangle
-from cad.drafting.title import HEIGHT
 from cad.drafting.views import View
 
-SHEET = (420.0, 297.0)  # A3 [mm]
-LEFT, EDGE = 20.0, 10.0  # margins (ISO 5457)
-COLUMN = 104.0  # of the table of parameters
 LANE = 9.0  # from one dimension line to the next
-
-AREA: Rectangle = (LEFT, EDGE + HEIGHT, SHEET[0] - EDGE - COLUMN, SHEET[1] - EDGE)
-"""Where the views and their dimensions are [mm on paper]."""
+FILLED, MORE = 0.35, 0.005
+"""Least share of the area's width or height that views without their dimensions take, if a sheet has it; and
+by how much it grows with each dimension."""
 
 _ROOM = 24.0  # around and between views, beside the dimensions
 SCALES = [f * 10.0**n for n in range(3, -5, -1) for f in (5, 2, 1)]
@@ -33,6 +29,7 @@ class Plan:
     beside: float  # by how much the end view is moved to the right
     corner: Point  # lower left corner of the sheet
     lanes: Lanes
+    format: Format = FORMATS[0]
 
     def at(self, x: float, y: float) -> Point:
         """A place on the paper [mm from its lower left corner] in the drawing's coordinates."""
@@ -50,20 +47,34 @@ class Plan:
 
 
 def plans(section: View, end: View, wanted: Sequence[Dimension]) -> Iterator[Plan]:
-    """Plans at the largest common scale at which everything should have room, then at smaller ones."""
-    lanes = Lanes.sorted(wanted, section.box, end.box)
+    """Plans in the order in which they are to be tried.
+
+    First come the sheets and scales whose views fill the sheet, the smallest sheet and its largest scale
+    before others; then all others on which everything should have room, the fullest first.
+    """
+    lanes = Lanes.sorted(wanted, section, end)
     (left, low), (right, high) = section.box
     (end_left, end_low), (end_right, end_high) = end.box
     across, bottom, top = right - left + end_right - end_left, min(low, end_low), max(high, end_high)
-    width, height = AREA[2] - AREA[0], AREA[3] - AREA[1]
     sides = [n * LANE for n in lanes.counts]
     taken = 3 * _ROOM + sides[0] + sides[1] + sides[2], 2 * _ROOM + sides[3] + sides[4]
+
+    def share(format: Format, scale: float) -> float:
+        return max(scale * across / format.room[0], scale * (top - bottom) / format.room[1])
+
     fitting = [
-        s for s in SCALES if s * across + taken[0] <= width and s * (top - bottom) + taken[1] <= height
+        (format, s)
+        for format in FORMATS
+        for s in SCALES
+        if s * across + taken[0] <= format.room[0] and s * (top - bottom) + taken[1] <= format.room[1]
     ]
-    for scale in fitting or SCALES[-1:]:
+    wanted_share = min(FILLED + MORE * len(wanted), 0.55)
+    full = [one for one in fitting if share(*one) >= wanted_share]
+    others = sorted((one for one in fitting if one not in full), key=lambda one: -share(*one))
+    for format, scale in [*full, *others] or [(FORMATS[-1], SCALES[-1])]:
+        area, room = format.area, format.room
         gap = (_ROOM + sides[1]) / scale
-        spare = (width - scale * across - taken[0]) / 2, (height - scale * (top - bottom) - taken[1]) / 2
-        x = left - (AREA[0] + _ROOM + sides[0] + spare[0]) / scale
-        y = bottom - (AREA[1] + _ROOM + sides[3] + spare[1]) / scale
-        yield Plan(scale, right + gap - end_left, (x, y), lanes)
+        spare = (room[0] - scale * across - taken[0]) / 2, (room[1] - scale * (top - bottom) - taken[1]) / 2
+        x = left - (area[0] + _ROOM + sides[0] + spare[0]) / scale
+        y = bottom - (area[1] + _ROOM + sides[3] + spare[1]) / scale
+        yield Plan(scale, right + gap - end_left, (x, y), lanes, format)

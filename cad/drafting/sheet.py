@@ -1,6 +1,6 @@
 """A drawing on its sheet as DXF: views, dimensions, table of parameters and title block, all in millimetres.
 
-The section stands at its true coordinates, everything is drawn 1:1, and the A3 sheet around it is as large as
+The section stands at its true coordinates, everything is drawn 1:1, and the sheet around it is as large as
 the scale requires; so a DIMENSION measures what the part measures. Each carries the name of its parameter.
 """
 
@@ -16,12 +16,13 @@ from ezdxf.document import Drawing
 
 from cad.drafting.controls import Controls
 from cad.drafting.declared import Declared
+from cad.drafting.formats import Format
 from cad.drafting.marks import Centres, centre_lines, cutting_line, pitch_circles, section_label
 from cad.drafting.matching import matched, references
 from cad.drafting.measures import measures
 from cad.drafting.page import Page, document_of
 from cad.drafting.placing import NoRoom, Placed, Placing
-from cad.drafting.plan import AREA, Plan, plans
+from cad.drafting.plan import Plan, plans
 from cad.drafting.room import Rectangle, Room
 from cad.drafting.standing import standing
 from cad.drafting.titling import frame, notes, table, title_block
@@ -29,14 +30,14 @@ from cad.drafting.views import View, views
 from cad.header import Header
 from cad.step import Body
 
-_MOST_SCALES = 4  # that are tried
+_MOST_PLANS = 8  # sheets and scales that are tried
 
 
 def write_dxf(bodies: Sequence[Body], header: Header | None) -> bytes:
     """A dimensioned drawing; equal bodies and headers give equal bytes."""
     stream = io.StringIO()
     with _no_times():
-        document = draw(bodies, header)
+        document, _ = draw(bodies, header)
         _register_classes(document)
         document.write(stream)
     return stream.getvalue().encode()
@@ -59,14 +60,14 @@ def _no_times() -> Iterator[None]:
         options.write_fixed_meta_data_for_testing = kept
 
 
-def draw(bodies: Sequence[Body], header: Header | None) -> Drawing:
-    """The drawing as a document of ezdxf."""
+def draw(bodies: Sequence[Body], header: Header | None) -> tuple[Drawing, Format]:
+    """The drawing as a document of ezdxf, and its sheet."""
     declared = Declared.of(header)
     section, end = views(bodies, is_shaft=declared.is_shaft)
     seen = [*measures(bodies, section, end), *standing(bodies, section, end)]
     parameters = header.parameters if header else {}
     matches, unseen = matched(parameters, seen, declared.limits)
-    tried = list(islice(plans(section, end, [*matches, *references(matches, seen)]), _MOST_SCALES))
+    tried = list(islice(plans(section, end, [*matches, *references(matches, seen)]), _MOST_PLANS))
     for plan in tried:
         document = document_of(plan)
         page = Page(document, plan)
@@ -86,7 +87,7 @@ def draw(bodies: Sequence[Body], header: Header | None) -> Drawing:
     title_block(page, header)
     notes(page, header, unseen)
     table(page, parameters, unseen)
-    return document
+    return document, page.plan.format
 
 
 def _fill(
@@ -105,7 +106,7 @@ def _fill(
 
 def _room(section: View, end: View, centres: Centres, plan: Plan) -> Room:
     """The sheet with its views, into which no words may come, and its centre lines."""
-    left, low, right, high = AREA
+    left, low, right, high = plan.format.area
     room = Room((left + 1, low + 1, right - 1, high - 1))
     for view, away in ((section, 0.0), (end, plan.beside)):
         room.add(_on_paper(view, plan, away), is_view=True)

@@ -8,7 +8,7 @@ from math import acos, degrees, hypot, isclose
 
 from cadquery import Vector
 
-from cad.drafting.measures import Measure, Sort
+from cad.drafting.measures import Measure, Sort, alike
 from cad.drafting.views import View
 from cad.inspect import look_at
 from cad.step import Body
@@ -70,7 +70,8 @@ def of_uprights(seen: Seen, end: View) -> Iterator[Measure]:
         left, right = (end.frame.flat(Vector(x + side * hole.diameter / 2, high, 0)) for side in (-1, 1))
         foot = end.frame.flat(Vector(x, low, 0))
         if end.frame.flat(Y)[1] == 1:
-            yield Measure("diameter", hole.diameter, "end", "across", (left, right))
+            several = alike(hole, seen)
+            yield Measure("diameter", hole.diameter, "end", "across", (left, right), several)
             yield Measure("length", high - low, "end", "up", ((right[0], foot[1]), right))
             feet.append(foot)
     for one, other in combinations(feet, 2):

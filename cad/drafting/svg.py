@@ -12,11 +12,11 @@ from typing import Any
 
 from ezdxf import path as paths
 
+from cad.drafting.formats import Format
 from cad.drafting.hatching import hatch
 from cad.drafting.labels import SMALL, read_stack
 from cad.drafting.lettering import SIZE, width_of
 from cad.drafting.page import APP
-from cad.drafting.plan import SHEET
 from cad.drafting.sheet import draw
 from cad.header import Header
 from cad.stamp import MARK
@@ -48,14 +48,13 @@ _FLAT = 0.02  # greatest distance of a hatched outline from its arcs [mm on pape
 
 def write_drawing(bodies: Sequence[Body], header: Header | None) -> bytes:
     """A dimensioned drawing, the sheet in millimetres."""
-    document = draw(bodies, header)
+    document, format = draw(bodies, header)
     frame: Any = document.modelspace().query('LWPOLYLINE[layer=="FRAME"]').first
     (left, low), (right, _) = frame.get_points("xy")[:2]
-    scale = SHEET[0] / (right - left)
-    ink = Ink(left, low, scale)
+    ink = Ink(left, low, format.width / (right - left), format)
     drawn = "".join(ink.of(entity, entity.dxf.layer) for entity in document.modelspace()).splitlines()
     lines = "\n".join(sorted(drawn, key=lambda line: line.startswith("<text")))  # words lie over lines
-    width, height = SHEET
+    width, height = format.width, format.height
     return (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{height:g}mm"'
@@ -73,12 +72,12 @@ def _title(header: Header | None) -> str:
 class Ink:
     """Draws entities of DXF; the sheet's corner lies at (left, low) in their coordinates."""
 
-    def __init__(self, left: float, low: float, scale: float) -> None:
-        self.left, self.low, self.scale = left, low, scale
+    def __init__(self, left: float, low: float, scale: float, format: Format) -> None:
+        self.left, self.low, self.scale, self.format = left, low, scale, format
 
     def at(self, point: Any) -> tuple[float, float]:
         """A place on the paper, y downwards."""
-        return (point[0] - self.left) * self.scale, SHEET[1] - (point[1] - self.low) * self.scale
+        return (point[0] - self.left) * self.scale, self.format.height - (point[1] - self.low) * self.scale
 
     def of(self, entity: Any, layer: str) -> str:
         """An entity, or its parts."""

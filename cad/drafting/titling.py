@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
+from cad.drafting.formats import COLUMN, EDGE, LEFT
 from cad.drafting.lettering import clipped, width_of
 from cad.drafting.page import APP, Page
-from cad.drafting.plan import COLUMN, EDGE, LEFT, SHEET
 from cad.drafting.symbols import basic_texture, first_angle, texture
 from cad.drafting.title import CAPTION, FIELDS, GENERAL, HEIGHT, TEXTURE, WIDTH
 from cad.header import Header
@@ -22,7 +22,8 @@ _MOST_LINES = 3  # of one value in the table
 
 def frame(page: Page) -> None:
     """The border of the sheet and of its areas; the sheet itself comes first."""
-    width, height = SHEET
+    format = page.plan.format
+    width, height = format.width, format.height
     right, column, block = width - EDGE, width - EDGE - COLUMN, width - EDGE - WIDTH
     top, over = height - EDGE, EDGE + HEIGHT
     page.line([(0, 0), (width, 0), (width, height), (0, height), (0, 0)], "FRAME")
@@ -34,12 +35,12 @@ def frame(page: Page) -> None:
 
 def title_block(page: Page, header: Header | None) -> None:
     """The fields of ISO 7200; a stamp fills in those that belong to a design."""
-    left, low = SHEET[0] - EDGE - WIDTH, EDGE
+    left, low = page.plan.format.block
     model = f"{header.model.replace('_', ' ')}, version {header.version}" if header else "part"
     texts = {
         "sheet": "1/1",
         "language": "en",
-        "format": "A3",
+        "format": page.plan.format.name,
         "model": model,
         "general": GENERAL,
         "scale": page.plan.scale_text,
@@ -90,7 +91,8 @@ def notes(page: Page, header: Header | None, unseen: Sequence[str]) -> None:
 
 def table(page: Page, parameters: Mapping[str, str], unseen: Sequence[str]) -> None:
     """The parameters with their values."""
-    left, top = SHEET[0] - EDGE - COLUMN + 3, SHEET[1] - EDGE - 7
+    left, top = page.plan.format.column
+    left, top = left + 3, top - 7
     page.write("Parameters", left, top, 4.5)
     rows = [
         (name.replace("_", " ") + (" *" if name in unseen else "") if number == 0 else "", line)

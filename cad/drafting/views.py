@@ -9,7 +9,7 @@ whole, a shaft with its hidden lines.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from math import atan2, degrees
 
 from cadquery import BoundBox, Compound, Edge, Face, Shape, Solid, Vector
@@ -83,6 +83,17 @@ class View:
     cut: list[Cut]
     arcs: list[Arc]
     edges: list[tuple[Point, Point]]  # straight ones of the section
+    axes: list[tuple[Point, Point]] = field(default_factory=list)  # of holes that lie in the paper's plane
+
+    @property
+    def straight(self) -> list[tuple[Point, Point]]:
+        """Visible straight lines by their ends."""
+        return _straight(self.visible)
+
+    @property
+    def unseen(self) -> list[tuple[Point, Point]]:
+        """Hidden straight lines by their ends."""
+        return _straight(self.hidden)
 
     @property
     def box(self) -> tuple[Point, Point]:
@@ -102,6 +113,10 @@ class View:
         return [arcs[0] for arcs in turns.values() if sum(arc.turn for arc in arcs) > 179.9]
 
 
+def _straight(curves: Sequence[Curve]) -> list[tuple[Point, Point]]:
+    return [(c.points[0], c.points[-1]) for c in curves if c.arc is None and len(c.points) == 2]
+
+
 def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View]:
     """Section and end view; of a shaft, the view from its side instead of a section."""
     up = _upright(bodies)
@@ -111,7 +126,19 @@ def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View
         for part, body in enumerate(bodies)
         for place in body.places
     ]
-    return _section(placed, section), _projected([one.shape for one in placed], end)
+    seen = _projected([one.shape for one in placed], end)
+    return _section(placed, section), replace(seen, axes=_axes_across(placed, end))
+
+
+def _axes_across(placed: Sequence[_Placed], frame: Frame) -> list[tuple[Point, Point]]:
+    """Axes of cylinders that lie in the plane of the paper, from where to where these reach."""
+    axes = []
+    for cylinder in (c for one in placed for c in look(one.shape).cylinders):
+        if abs(cylinder.direction.dot(frame.towards)) < _CLEAR:
+            foot = cylinder.point - cylinder.direction * cylinder.point.dot(cylinder.direction)
+            low, high = (frame.flat(foot + cylinder.direction * reach) for reach in cylinder.reach)
+            axes.append((low, high))
+    return axes
 
 
 @dataclass(frozen=True)

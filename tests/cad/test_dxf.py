@@ -23,6 +23,12 @@ from cad.regenerate import Build, regenerate
 from cad.step import read_step
 from templates.core.units.units import unit
 
+SHEETS = {
+    "A3": ("420mm", "297mm"),
+    "A2": ("594mm", "420mm"),
+    "A1": ("841mm", "594mm"),
+    "A0": ("1189mm", "841mm"),
+}  # ISO 216
 SHOWN = 0.9  # of the lengths and angles of an example
 SLOW_MODELS = LARGE
 
@@ -121,7 +127,8 @@ def test_equal_files_from_equal_steps(example: Build, dxf: bytes) -> None:
 
 def test_svg_shows_the_same(svg: bytes, drawing: Drawing) -> None:
     root = ElementTree.fromstring(svg)
-    assert root.attrib["width"] == "420mm"
+    formats = {text.dxf.text for text in drawing.modelspace().query("TEXT")} & SHEETS.keys()
+    assert [SHEETS[name] for name in formats] == [(root.attrib["width"], root.attrib["height"])]
     texts = [node.text for node in root.iter("{http://www.w3.org/2000/svg}text")]
     words = [entity.dxf.text for entity in drawing.modelspace().query("TEXT")]
     assert set(words) <= {text or "" for text in texts}
