@@ -123,7 +123,7 @@ def _edge_at(one: Dimension, view: View, number: int) -> tuple[float, float]:
     at, across = point[along], point[1 - along]
     for lines in (view.straight, view.unseen, view.axes):
         spans = [
-            sorted((a[1 - along], b[1 - along]))
+            (min(a[1 - along], b[1 - along]), max(a[1 - along], b[1 - along]))
             for a, b in lines
             if abs(a[along] - at) + abs(b[along] - at) < _CLEAR
         ]
