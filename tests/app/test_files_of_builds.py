@@ -49,3 +49,23 @@ def test_a_failure_leaves_the_others(served, http, monkeypatch):
     assert end["state"] == "failed"
     assert "no picture today" in end["problem"]["detail"]
     assert (files(http, first), files(http, second)) == ({"step"}, {"step", "svg"})
+
+
+def test_a_drawing_of_a_build_is_made_once_and_stored(http):
+    key = built(http, "76 mm")
+    place = f"{API}/builds/{key}/model.drawing.pdf"
+    answer = http.get(place)
+    assert (answer.status_code, answer.headers["content-type"]) == (200, "application/pdf"), answer.text
+    assert answer.content.startswith(b"%PDF")
+    assert 'filename="plain_bearing_v1.drawing.pdf"' in answer.headers["content-disposition"]
+    stored = http.get(f"{API}/builds/{key}").json()["artifacts"]["drawing.pdf"]
+    assert answer.headers["etag"] == f'"{stored}"'
+    again = http.get(place, headers={"If-None-Match": answer.headers["etag"]})
+    assert again.status_code == 304
+
+
+def test_a_file_of_no_build_or_of_no_kind_is_not_found(http):
+    assert http.get(f"{API}/builds/{'0' * 64}/model.dxf").status_code == 404
+    answer = http.get(f"{API}/builds/{built(http, '76 mm')}/model.dwg")
+    assert answer.status_code == 404
+    assert "there is no model.dwg; there are step" in answer.json()["detail"]

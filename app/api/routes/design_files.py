@@ -25,7 +25,7 @@ from app.api.dependencies import (
 from app.api.designs import Id, Number, Prefer
 from app.api.gate.clients import TheClient
 from app.api.reading import StrictRoute
-from app.api.routes.models import send_file
+from app.api.routes.models import PATIENCE, send_file
 from app.api.stored import UNAVAILABLE, UNCHANGED, lost
 from app.api.waiting import LATER, accepted, accepted_weights, finished
 from app.designs import stamps, views
@@ -53,9 +53,6 @@ FILES: RouteOptions = {
         **UNAVAILABLE,
     },
 }
-
-PATIENCE = "wait=30"
-"""How long an answer waits for a file that is still being made, unless the client prefers otherwise."""
 
 PRINTED = {"drawing.pdf": "drawing.svg"}
 """Kinds that are typeset of another one with its stamp: nothing can be written into a finished PDF."""

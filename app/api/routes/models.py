@@ -41,6 +41,8 @@ from templates.core.paper.schema import describe
 router = APIRouter(prefix="/api/v1", tags=["models"], route_class=StrictRoute)
 
 Id = Annotated[str, Path(max_length=64, examples=["ball_bearing"])]
+PATIENCE = "wait=30"
+"""How long an answer waits for a file that is still being made, unless the client prefers otherwise."""
 FOR_EVER = "public, max-age=31536000, immutable"
 
 
@@ -165,6 +167,49 @@ async def build_model(
 def show_build(key: str, models: TheModels) -> Build:
     """A build: its files and what was measured on it."""
     return models.show(key)
+
+
+@router.get(
+    "/builds/{key}/model.{kind}",
+    response_class=FileResponse,
+    responses={
+        200: {"content": {media: {} for media in MEDIA_TYPES.values()}},
+        **LATER,
+        **UNCHANGED,
+        **UNAVAILABLE,
+        **refusals(404, 429),
+    },
+)
+async def read_file_of_build(
+    key: str,
+    kind: Id,
+    models: TheModels,
+    store: TheStore,
+    healing: TheHealing,
+    jobs: TheJobs,
+    client: TheClient,
+    prefer: Annotated[str | None, Header()] = None,
+) -> Response:
+    """A file of a build, of no design: the fields of a drawing that name one are empty.
+
+    It is made when it is first asked for, and stored.
+    """
+    if kind not in MEDIA_TYPES:
+        raise NotFound(f"there is no model.{kind[:20]}; there are {', '.join(MEDIA_TYPES)}")
+    prefer = prefer or PATIENCE
+    build = await run_in_threadpool(models.show, key)
+    if sha := build.artifacts.get(kind):
+        if answer := await lost(sha, healing, jobs, prefer):
+            return answer
+    else:
+        job = await run_in_threadpool(models.request_file, key, kind, client)
+        if not await finished(jobs, job, prefer):
+            return accepted(job)
+        if failed := await run_in_threadpool(jobs.problem, job):
+            return problems.answer(failed)
+    assert build.model is not None, "a recorded build has its model"
+    name = f"{build.model.id}_v{build.model.version}.{kind}"
+    return send_file(store, await run_in_threadpool(models.file, key, kind), name=name)
 
 
 @router.get(
