@@ -1,11 +1,14 @@
 """How far the facets of a mesh may lie from the true surface, as its user asks for it.
 
-A kind of file with a deflection is written `stl@0.05mm`. It is a file of its own beside `stl`.
+A kind of file with a deflection is written `stl@0.05mm`. It is a file of its own beside `stl`. Deflections
+have steps, six in a decade, and a mesh has the step that is not coarser than what its user asked for. So a
+solid has at most 19 meshes of a kind, however many different lengths are asked for.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import floor, log10
 
 from cad.step import Body
 from templates.core.errors import Fault, FaultyText, InvalidInputs
@@ -17,8 +20,14 @@ MESHES = ("glb", "stl")
 
 FINEST, COARSEST = 1e-4, 0.1
 """Least and largest deflection as parts of the diagonal of the largest body's box."""
+LEAST, MOST = 1e-6, 1e5
+"""Of any solid [mm]: a nanometre, and 100 m."""
+
+STEPS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
+"""Of deflections, within a decade."""
 
 _AT, _UNIT = "@", "mm"
+_SAME = 1e-9  # relative; 0.1 mm and 100 um are one step
 
 
 def with_deflection(kind: str, raw: str) -> str:
@@ -39,7 +48,27 @@ def with_deflection(kind: str, raw: str) -> str:
     if typed.tolerance is not None or not isinstance(typed.si, float) or typed.si <= 0:
         detail = "a deflection is a single length above 0, as in 0.05 mm"
         raise InvalidInputs([Fault("deflection", "out_of_range", detail)])
-    return f"{kind}{_AT}{unit(_UNIT).from_si(typed.si):.6g}{_UNIT}"
+    asked = float(unit(_UNIT).from_si(typed.si))
+    if not LEAST <= asked <= MOST:
+        detail = f"{asked:.6g} {_UNIT} suits no solid; give {LEAST:g} to {MOST:g} {_UNIT}"
+        raise InvalidInputs([Fault("deflection", "out_of_range", detail)])
+    return f"{kind}{_AT}{_step_not_above(asked):.6g}{_UNIT}"
+
+
+def _steps(around: float) -> list[float]:
+    """The steps from a decade below a length to a decade above it, ascending."""
+    decade = floor(log10(around))
+    return [float(f"{step:g}e{decade + more}") for more in (-1, 0, 1) for step in STEPS]
+
+
+def _step_not_above(length: float) -> float:
+    """The greatest step that is not coarser than a length."""
+    return max(step for step in _steps(length) if step <= length * (1 + _SAME))
+
+
+def _step_not_below(length: float) -> float:
+    """The least step that is not finer than a length."""
+    return min(step for step in _steps(length) if step >= length * (1 - _SAME))
 
 
 def plain_kind(kind: str) -> str:
@@ -60,7 +89,7 @@ def deflection_of(kind: str, bodies: Sequence[Body]) -> float | None:
         return None
     asked, size = float(text.removesuffix(_UNIT)), _size(bodies)
     if not FINEST * size <= asked <= COARSEST * size:
-        between = f"give {FINEST * size:.3g} to {COARSEST * size:.3g} {_UNIT}"
+        between = f"give {_step_not_below(FINEST * size):g} to {COARSEST * size:.3g} {_UNIT}"
         across = f"a solid whose box measures {size:.4g} {_UNIT} across"
         detail = f"{asked:g} {_UNIT} does not suit {across}; {between}"
         raise InvalidInputs([Fault("deflection", "out_of_range", detail)])

@@ -9,7 +9,7 @@ import pytest
 from slow_models import LARGE, slow_for
 
 from cad.catalogue import models
-from cad.deflection import COARSEST, FINEST, deflection_of, plain_kind, with_deflection
+from cad.deflection import COARSEST, FINEST, STEPS, deflection_of, plain_kind, with_deflection
 from cad.errors import GeometryError
 from cad.export import derive, is_derived
 from cad.inspect import measure
@@ -136,11 +136,48 @@ def test_what_is_no_deflection_is_refused_by_name(kind, raw, code):
     assert [(f.name, f.code) for f in refused.value.faults] == [("deflection", code)]
 
 
+def least(length):
+    """The finest step of deflections that is not finer than a length."""
+    return min(float(f"{s}e{n}") for s in STEPS for n in range(-9, 6) if float(f"{s}e{n}") >= length)
+
+
+@pytest.mark.parametrize(
+    ("raw", "step"),
+    [
+        ("0.05 mm", "0.05"), ("0.0517 mm", "0.05"), ("0.0699 mm", "0.05"), ("0.07 mm", "0.07"),
+        ("9.99 mm", "7"), ("10 mm", "10"), ("70 um", "0.07"), ("1 nm", "1e-06"),
+        ("100 m", "100000"), ("0.1234567 in", "3"),
+    ],
+)  # fmt: skip
+def test_a_deflection_has_the_step_that_is_not_coarser(raw, step):
+    assert with_deflection("stl", raw) == f"stl@{step}mm"
+
+
+def test_however_many_deflections_are_asked_for_a_solid_has_few_meshes(bearing):
+    bodies = read_step(bearing.step)
+    size = max(body.shape.BoundingBox().DiagonalLength for body in bodies)
+    lengths = size * np.geomspace(FINEST, COARSEST, 400)
+    kinds = {with_deflection("stl", f"{length:.9g} mm") for length in lengths}
+    assert len(kinds) <= 20
+    for length in lengths:
+        asked, got = length, float(with_deflection("stl", f"{length:.9g} mm")[4:-2])
+        assert 0.6 * asked <= got <= asked * (1 + 1e-8)
+    fit = [kind for kind in kinds if float(kind[4:-2]) >= least(FINEST * size)]
+    assert len(fit) <= 19
+    assert all(deflection_of(kind, bodies) for kind in fit)
+
+
+@pytest.mark.parametrize("raw", ["0.9 nm", "101 m", "1e300 mm", "1e-300 mm"])
+def test_a_deflection_of_no_solid_is_refused_with_what_suits(raw):
+    with pytest.raises(InvalidInputs, match="suits no solid; give 1e-06 to 100000 mm"):
+        with_deflection("stl", raw)
+
+
 @pytest.mark.parametrize("factor", [0.99 * FINEST, 1.01 * COARSEST, 1e-12, 1e6])
 def test_a_deflection_that_does_not_suit_the_size_is_refused_with_the_sizes_that_do(bearing, factor):
     bodies = read_step(bearing.step)
     size = max(body.shape.BoundingBox().DiagonalLength for body in bodies)
-    with pytest.raises(InvalidInputs, match=f"give {FINEST * size:.3g} to {COARSEST * size:.3g} mm"):
+    with pytest.raises(InvalidInputs, match=f"give {least(FINEST * size):g} to {COARSEST * size:.3g} mm"):
         deflection_of(f"stl@{factor * size:.6g}mm", bodies)
     assert deflection_of(f"stl@{2 * FINEST * size:.6g}mm", bodies) == pytest.approx(
         2 * FINEST * size, rel=1e-5
