@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from math import isfinite
 
@@ -13,11 +15,46 @@ from app.brought.warm import WarmProcesses
 from app.jobs.context import JobContext
 from app.storage.artifacts import Artifacts
 from app.workers.base import Limits
+from app.workers.errors import DeadlineExceeded
 from cad.brought import Description, Drawn, Parameter, Role, role_of, shows, trial_sizes
 from cad.errors import GeometryError, UnreadableModel
 from cad.freecad.admission import admitted
 
 READING = Limits(deadline=20.0, memory_mb=512)
+
+
+class Deadline:
+    """One deadline for all drawings of an import: what one of them takes, the others do not have."""
+
+    def __init__(self, limits: Limits) -> None:
+        self._limits, self._end = limits, time.monotonic() + limits.deadline
+
+    def left(self) -> float:
+        """What is left of it [s].
+
+        Raises
+        ------
+        DeadlineExceeded
+            If that is nothing.
+        """
+        if (seconds := self._end - time.monotonic()) <= 0:
+            raise DeadlineExceeded(self._limits.deadline)
+        return seconds
+
+    @property
+    def limits(self) -> Limits:
+        """The limits of a function that runs in what is left; raises as `left` does."""
+        return Limits(self.left(), self._limits.memory_mb)
+
+    @contextmanager
+    def kept(self) -> Iterator[None]:
+        """Whatever does not end in what is left has exceeded the whole."""
+        try:
+            yield
+        except DeadlineExceeded:
+            raise DeadlineExceeded(self._limits.deadline) from None
+
+
 TRIAL = 1.01
 """By how much a trial changes a length; other than 1 % only where FreeCAD refuses."""
 MOST_TRIALS = 30
@@ -40,9 +77,11 @@ def described_freecad(
     file = store.put(context.run(admitted, content, limits=READING))
     warm, cancelled = programs.freecad.warm, context.cancelled
     context.progress(0.1, "FreeCAD opens the file")
-    answered = warm.ask(file, lambda: store.read(file), "describe", [], cancelled)
-    parameters = _parameters(answered.about["parameters"])
-    roles = _trials(parameters, answered.drawn, warm, file, store, context)
+    deadline = Deadline(warm.limits)
+    with deadline.kept():
+        answered = warm.ask(file, lambda: store.read(file), "describe", [], cancelled, deadline.left())
+        parameters = _parameters(answered.about["parameters"])
+        roles = _trials(parameters, answered.drawn, warm, file, store, context, deadline)
     return Description(
         program="freecad",
         file=file,
@@ -115,17 +154,21 @@ def _trials(
     file: str,
     store: Artifacts,
     context: JobContext,
+    deadline: Deadline,
 ) -> dict[str, Role]:
     """How lengths show on the solid: each is changed alone, and the sizes before and after are compared."""
-    before, roles = context.run(trial_sizes, base), dict[str, Role]()
+    before, roles = context.run(trial_sizes, base, limits=deadline.limits), dict[str, Role]()
     lengths = [one for one in parameters if one.unit == "mm" and one.value > 0][:MOST_TRIALS]
     for number, one in enumerate(lengths):
         context.progress(0.2 + 0.7 * number / len(lengths), f"how {one.words} shows on the solid")
         value = float(f"{one.value * TRIAL:.12g}")
         try:
             given = [given_to_freecad(one, value)]
-            drawn = warm.ask(file, lambda: store.read(file), "draw", given, context.cancelled).drawn
-            roles[one.name] = role_of(one.value, value, before, context.run(trial_sizes, drawn))
+            drawn = warm.ask(
+                file, lambda: store.read(file), "draw", given, context.cancelled, deadline.left()
+            ).drawn
+            sizes = context.run(trial_sizes, drawn, limits=deadline.limits)
+            roles[one.name] = role_of(one.value, value, before, sizes)
         except GeometryError:
             continue  # it shows nowhere, as far as anybody can say
     return roles

@@ -7,6 +7,7 @@ folder, limits of memory and processor time. Whatever it does, it is killed at i
 from __future__ import annotations
 
 import json
+import math
 import os
 import select
 import shutil
@@ -35,6 +36,7 @@ LARGEST_ANSWER = 512 * 2**20
 _ENDING = 1.0
 """How long a process may take to end that answers no more [s]."""
 _GLANCE = 0.05  # [s]
+_LEAST = 0.1  # for which a drawing is let run, however little is left of a deadline [s]
 _PIECE = 2**20
 
 
@@ -85,8 +87,14 @@ class FreeCadProcess:
         self._lifeline.close_reader()
         self._is_ready = False
 
-    def ask(self, do: str, given: list[list[str | float]], cancelled: threading.Event) -> Answered:
-        """Have FreeCAD open the file again, set some parameters, and draw.
+    def ask(
+        self,
+        do: str,
+        given: list[list[str | float]],
+        cancelled: threading.Event,
+        seconds: float = math.inf,
+    ) -> Answered:
+        """Have FreeCAD open the file again, set some parameters, and draw, in so many seconds at most.
 
         Raises
         ------
@@ -100,8 +108,9 @@ class FreeCadProcess:
         self.is_sound = False
         if not self._is_ready:
             self._started(cancelled)
-        end = time.monotonic() + self._limits.deadline
-        question = {"do": do, "file": str(self._file), "set": given, "seconds": self._limits.deadline}
+        seconds = max(min(seconds, self._limits.deadline), _LEAST)
+        end = time.monotonic() + seconds
+        question = {"do": do, "file": str(self._file), "set": given, "seconds": seconds}
         text = json.dumps(question).encode()
         try:
             self._to.write(struct.pack("!I", len(text)) + text)

@@ -7,6 +7,7 @@ the room.
 
 from __future__ import annotations
 
+import math
 import threading
 from collections import OrderedDict
 from collections.abc import Callable
@@ -25,7 +26,7 @@ class WarmProcesses:
     """Processes of FreeCAD that wait, by the hash of their file."""
 
     def __init__(self, find: Callable[[], FreeCad], limits: Limits) -> None:
-        self.find, self._limits = find, limits
+        self.find, self.limits = find, limits
         self._waiting: OrderedDict[str, FreeCadProcess] = OrderedDict()
         self._running = set[FreeCadProcess]()
         self._lock, self._is_closed = threading.Lock(), False
@@ -37,11 +38,12 @@ class WarmProcesses:
         do: str,
         given: list[list[str | float]],
         cancelled: threading.Event,
+        seconds: float = math.inf,
     ) -> Answered:
-        """Ask the process of a file; raises what `FreeCadProcess.ask` raises."""
+        """Ask the process of a file for an answer within some seconds; raises as `FreeCadProcess.ask`."""
         process = self._taken(sha, content)
         try:
-            return process.ask(do, given, cancelled)
+            return process.ask(do, given, cancelled, seconds)
         except GeometryError:
             if self._is_closed:  # it was killed
                 raise JobCancelled from None
@@ -64,7 +66,7 @@ class WarmProcesses:
             if process is not None:
                 self._running.add(process)
                 return process
-        process = FreeCadProcess(self.find(), content(), self._limits)
+        process = FreeCadProcess(self.find(), content(), self.limits)
         with self._lock:
             if not self._is_closed:
                 self._running.add(process)

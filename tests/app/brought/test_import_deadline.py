@@ -1,0 +1,66 @@
+"""An import of a file of FreeCAD has one deadline for all its drawings, here with a FreeCAD that is slow."""
+
+import threading
+import time
+from types import SimpleNamespace
+
+import pytest
+
+from app.brought.describing import described_freecad
+from app.brought.drawing_process import Answered
+from app.workers.base import Limits
+from app.workers.errors import DeadlineExceeded
+from cad.brought import Drawn
+
+LENGTHS = [[f"Sheet{n}", "cell", f"length{n}", 10.0 + n, "mm", "Sheet"] for n in range(30)]
+
+
+class SlowWarm:
+    """FreeCAD that takes a fixed time for a drawing, or as long as it is given."""
+
+    def __init__(self, deadline, takes):
+        self.limits, self.takes, self.asked = Limits(deadline, 512), takes, 0
+
+    def find(self):
+        pass
+
+    def ask(self, sha, content, do, given, cancelled, seconds):
+        self.asked += 1
+        time.sleep(min(self.takes, seconds))
+        if self.takes > seconds:
+            raise DeadlineExceeded(seconds)
+        return Answered({"parameters": LENGTHS, "program": "FreeCAD 1"}, Drawn())
+
+
+class Context:
+    cancelled = threading.Event()
+
+    def progress(self, done, what):
+        pass
+
+    def run(self, function, *args, limits=None):
+        if function.__name__ == "admitted":
+            return b"file"
+        assert limits.deadline > 0
+        return {"diameter": [], "distance": []}
+
+
+def described(warm):
+    store = SimpleNamespace(put=lambda content: "sha", read=lambda sha: b"file")
+    programs = SimpleNamespace(freecad=SimpleNamespace(warm=warm))
+    return described_freecad(b"file", "a.FCStd", store, programs, Context())
+
+
+def test_many_slow_drawings_have_one_deadline_together():
+    warm, begun = SlowWarm(0.4, 0.1), time.monotonic()
+    with pytest.raises(DeadlineExceeded) as late:
+        described(warm)
+    assert late.value.seconds == 0.4  # the whole, not what was left for the last
+    assert time.monotonic() - begun < 4  # 31 drawings of 0.1 s, each within 0.4 s, would be let through
+    assert 2 <= warm.asked <= 5
+
+
+def test_quick_drawings_are_all_made():
+    warm = SlowWarm(30, 0)
+    assert len(described(warm).parameters) == 30
+    assert warm.asked == 31
