@@ -31,11 +31,16 @@ from templates.core.catalogue.loading import BROUGHT
 from templates.core.language.declare import given
 from templates.core.paper.mathml import named_symbol
 
-Program = Literal["freecad", "creo", "step"]
+Program = Literal["freecad", "creo", "step", "assembly"]
 Role = Literal["", "diameter", "radius", "distance"]
 """How a parameter shows on the solid; empty where no trial showed it."""
 
-NAMES: Mapping[Program, str] = {"freecad": "FreeCAD", "creo": "Creo", "step": "a STEP file"}
+NAMES: Mapping[Program, str] = {
+    "freecad": "FreeCAD",
+    "creo": "Creo",
+    "step": "a STEP file",
+    "assembly": "an assembly",
+}
 VOLUME_TOLERANCE = 1e-3
 """Of a program's own figure, relative: FreeCAD integrates to no stated accuracy, 5e-5 off on a half shell."""
 Sizes = Mapping[str, list[float]]
@@ -80,6 +85,14 @@ class Description:
         """SHA-256 of the description, which names the file by its own hash."""
         return hashlib.sha256(self.text.encode()).hexdigest()
 
+    def bases(self) -> tuple[type[CadModel], ...]:
+        """The classes of which its own is made."""
+        return (BroughtModel,)
+
+    def example(self) -> Mapping[str, Any]:
+        """A valid set of parameters: as in the file."""
+        return {one.name: {"value": _plain(one.value), "unit": one.unit} for one in self.parameters[:1]}
+
     @property
     def trust(self) -> str:
         """The limits of the checks on its solids, in plain words."""
@@ -102,8 +115,12 @@ class Description:
 def description_of(text: str) -> Description:
     """The description that `Description.text` wrote."""
     read = json.loads(text)
-    parameters = tuple(Parameter(**one) for one in read.pop("parameters"))
-    return Description(**read, parameters=parameters)
+    read["parameters"] = tuple(Parameter(**one) for one in read["parameters"])
+    if read["program"] == "assembly":
+        from cad.assemblies import assembly_of  # which stands on this module
+
+        return assembly_of(read)
+    return Description(**read)
 
 
 @dataclass(frozen=True)
@@ -122,6 +139,7 @@ class Drawn:
     parts: tuple[DrawnPart, ...] = ()
     step: bytes = field(default=b"", repr=False)
     mass_volume: float | None = None  # [mm³] of all solids, where a program states it with a STEP file
+    fixed: Mapping[str, bytes] = field(default_factory=dict, repr=False)  # of an assembly: STEP files by hash
 
 
 class BroughtModel(CadModel):
@@ -161,7 +179,7 @@ class BroughtModel(CadModel):
         for one in self.brought.parameters:
             if not one.role:
                 continue
-            wanted = float(self.inputs[one.name].meaning.scale.from_si(getattr(self, _attribute(one.name))))
+            wanted = float(self.inputs[one.name].meaning.scale.from_si(getattr(self, attribute_of(one.name))))
             per_size = _factor(one)
             offered = [size / per_size for size in sizes[_SIZE[one.role]]]
             if not offered:
@@ -179,7 +197,7 @@ def class_of(text: str, id: str, version: int) -> type[BroughtModel]:
     """The class of a description in this process, one for each text, id and version."""
     description = description_of(text)
     declared = {
-        _attribute(one.name): given(
+        attribute_of(one.name): given(
             one.unit,
             one.words,
             name=one.name,
@@ -190,16 +208,15 @@ def class_of(text: str, id: str, version: int) -> type[BroughtModel]:
         )
         for one in description.parameters
     }
-    first = description.parameters[:1]
     space = {
         **declared,
         "__module__": f"{BROUGHT}.{id}_v{version}",
         "__doc__": f"{description.title}.",
         "brought": description,
         "sheet": description,
-        "example": {one.name: {"value": _plain(one.value), "unit": one.unit} for one in first},
+        "example": description.example(),
     }
-    cls = BroughtClass("".join(word.capitalize() for word in id.split("_")), (BroughtModel,), space)
+    cls = BroughtClass("".join(word.capitalize() for word in id.split("_")), description.bases(), space)
     assert issubclass(cls, BroughtModel)
     return cls
 
@@ -349,6 +366,6 @@ def _plain(value: float) -> float:
     return int(value) if float(value).is_integer() else value
 
 
-def _attribute(name: str) -> str:
+def attribute_of(name: str) -> str:
     """The attribute of a parameter: the language reserves many a plain word, such as `build`."""
     return f"of_{name}"

@@ -11,10 +11,12 @@ import numpy as np
 from cad.errors import GeometryError
 from cad.inspect import Measured
 from cad.model import Box, CadModel, Dimension, Part
-from cad.overlaps import overlaps
-from cad.step import Body
+from cad.overlaps import Clearance, overlaps
+from cad.step import Body, is_single, rigid
 from cad.surfaces import Seen
 
+MOST_NAMED = 20
+"""Of interferences in a refusal."""
 _BOX_TOLERANCE = 1e-5  # [mm]; the kernel's own boxes of cut faces are good to some 1e-7
 _DIMENSION_TOLERANCE = 1e-6  # in the declared unit: 1 nm of a length in mm
 _is_close: Callable[..., bool] = partial(isclose, rel_tol=1e-12, abs_tol=_DIMENSION_TOLERANCE)
@@ -66,9 +68,47 @@ def check_overlaps(model: CadModel, bodies: Sequence[Body]) -> None:
     GeometryError
         `interference`, naming the parts.
     """
-    if model.keeps_apart and (interfering := list(overlaps(bodies))):
+    own = [body for body in bodies if model.component_of(body.name) is None]
+    if model.keeps_apart and (interfering := list(overlaps(own))):
         detail = f"parts of {model.id} interfere: {'; '.join(map(str, interfering))}"
         raise GeometryError("interference", detail, model.inputs)
+
+
+def check_clearances(model: CadModel, between: Sequence[Clearance]) -> None:
+    """No fixed part of an assembly takes space of another part, unless the assembly allows it.
+
+    Raises
+    ------
+    GeometryError
+        `interference`, naming the parts and the volume that they share.
+    """
+    wrong = [one for one in between if one.overlap and not model.may_overlap(one.one, one.other)]
+    if wrong:
+        listed = "; ".join(map(str, wrong[:MOST_NAMED]))
+        more = f"; and {len(wrong) - MOST_NAMED} more" if len(wrong) > MOST_NAMED else ""
+        raise GeometryError("interference", f"parts of {model.id} interfere: {listed}{more}", model.inputs)
+
+
+def check_places(model: CadModel, parts: Sequence[Part], bodies: Sequence[Body]) -> None:
+    """The fixed parts of an assembly stand in the file where they were put.
+
+    Raises
+    ------
+    GeometryError
+        `place`.
+    """
+    if is_single(parts):  # its coordinates have its place in them
+        return
+    standing = {body.name: body.places for body in bodies}
+    for part in parts:
+        if model.component_of(part.name) is None:
+            continue
+        for wanted, place in zip(part.places, standing[part.name], strict=True):
+            pairs = zip(rigid(wanted), rigid(place), strict=True)
+            if not all(np.allclose(a, b, rtol=1e-12, atol=_DIMENSION_TOLERANCE) for a, b in pairs):
+                raise GeometryError(
+                    "place", f"{part.name} of {model.id} does not stand where it was put", model.inputs
+                )
 
 
 def check_dimensions(model: CadModel, seen: Mapping[str, Seen]) -> dict[str, Dimension]:

@@ -142,6 +142,14 @@ class CadModel(Template):
         """The box [mm] that the parts together must fill."""
         raise NotImplementedError
 
+    def component_of(self, part: str) -> str | None:
+        """The fixed part of an assembly to which a solid belongs; None of the solids of the model itself."""
+        return None
+
+    def may_overlap(self, one: str, other: str) -> bool:
+        """Whether two solids, of which one is of a fixed part, may take the same space."""
+        return False
+
     def shaft(self) -> Shaft | None:
         """The places at which an analysis holds and loads the solid; None if it is not a shaft."""
         return None

@@ -18,12 +18,20 @@ from typing import Any
 import numpy as np
 
 from cad.catalogue import models
-from cad.checks import check_bodies, check_box, check_dimensions, check_overlaps
+from cad.checks import (
+    check_bodies,
+    check_box,
+    check_clearances,
+    check_dimensions,
+    check_overlaps,
+    check_places,
+)
 from cad.errors import GeometryError
 from cad.header import Header
 from cad.inspect import bounding_box, look_at, measure, summarise
 from cad.lists import rounded, written
 from cad.model import CadModel, Dimension, arrays_of_points, mm
+from cad.overlaps import Clearance, clearances
 from cad.pmi import Annotations
 from cad.stated import check_statements
 from cad.statements import read_statements
@@ -69,6 +77,7 @@ class Build:
     measures: dict[str, float]  # in the units of `cad.inspect.MEASURES`
     dimensions: dict[str, Dimension]  # read back from the file, in the declared unit of each parameter
     materials: dict[str, str]  # of every part
+    clearances: tuple[Clearance, ...] = ()  # of the fixed parts of an assembly
 
 
 def ignore(done: float, what: str) -> None:
@@ -188,7 +197,11 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
         box = bounding_box(bodies)
     check_bodies(model, parts, bodies, measured)
     check_box(model, box)
+    check_places(model, parts, bodies)
     check_overlaps(model, bodies)
+    with _kernel(model):
+        between = tuple(clearances(bodies, model.component_of))
+    check_clearances(model, between)
     dimensions = check_dimensions(model, look_at(bodies))
     if annotations is not None:
         check_statements(parts, bodies, annotations, read_statements(step))
@@ -196,7 +209,7 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
     measures = summarise(bodies, measured, densities, box)
     report(1.0, "done")
     materials = {part.name: part.made_of for part in parts}
-    return Build(key, cls.id, cls.version, _plain(model), step, measures, dimensions, materials)
+    return Build(key, cls.id, cls.version, _plain(model), step, measures, dimensions, materials, between)
 
 
 def _annotations(model: CadModel, drawn: Collection[str]) -> Annotations | None:

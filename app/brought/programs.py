@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
+from app.brought.assembling import AssemblyFiles
 from app.brought.creo.manifest import read
 from app.brought.creo.session import CreoDrawing, Creoson
 from app.brought.finding import FreeCad, find
@@ -102,7 +103,8 @@ class Programs:
     def draw(self, shape: BroughtModel, context: Runner) -> Drawn:
         """What the program of a model draws for its parameters; raises as `Drawing.draw` does."""
         cancelled = context.cancelled if isinstance(context, JobContext) else threading.Event()
-        return self.drawn(shape.brought, values_of(shape), cancelled)
+        values = {} if shape.brought.program == "assembly" else values_of(shape)  # it has words and lists too
+        return self.drawn(shape.brought, values, cancelled)
 
     def drawn(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
         """What a program draws for some values; raises as `Drawing.draw` does."""
@@ -129,6 +131,7 @@ def assembled(settings: Settings, store: Artifacts) -> Programs:
     limits = Limits(settings.job_deadline, settings.job_memory_mb)
     freecad = FreeCadDrawing(store, lambda: find(settings.freecad, settings.freecad_python), limits)
     by_name: dict[Program, Drawing] = {"freecad": freecad, "step": StepFiles(store)}
+    by_name["assembly"] = AssemblyFiles(store)
     if settings.creoson_url and settings.creoson_folder:
         exports = settings.creoson_exports or str(settings.creoson_folder)
         creoson = Creoson(settings.creoson_url, exports, settings.creoson_folder)

@@ -36,6 +36,11 @@ def version(session: Session, id: str, number: int) -> Row:
     return row
 
 
+def numbers(session: Session, id: str) -> list[int]:
+    """The versions of a brought model, ascending."""
+    return list(session.scalars(select(Row.number).where(Row.id == id).order_by(Row.number)))
+
+
 def add(session: Session, id: str, described: Description, sent: str) -> int:
     """Add a version, the next of its id; the number of one that is the same already."""
     rows = list(session.scalars(select(Row).where(Row.id == id).order_by(Row.number)))

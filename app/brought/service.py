@@ -7,6 +7,9 @@ from typing import Literal
 from sqlalchemy.orm import Session
 
 from app.brought import repository
+from app.brought.assembling import described_assembly
+from app.brought.assembly_manifest import is_assembly
+from app.brought.assembly_manifest import read as read_assembly
 from app.brought.creo.manifest import read
 from app.brought.describing import described_creo, described_freecad, described_step
 from app.brought.errors import ModelIdTaken
@@ -27,7 +30,7 @@ from cad.errors import GeometryError, ProgramMissing, UnreadableModel, Unreadabl
 from templates.core.errors import TemplateError
 
 IMPORT = "model_import"
-Kind = Literal["freecad", "creo", "step"]
+Kind = Literal["freecad", "creo", "step", "assembly"]
 FAILURES = (
     UnreadableModel, UnreadableStep, GeometryError, ModelIdTaken, TemplateError, DeadlineExceeded,
     MemoryExceeded, JobCrashed, ArtifactMissing, ArtifactDamaged,
@@ -70,6 +73,8 @@ class ModelImports:
             self.programs.freecad.warm.find()
         if kind == "creo":
             read(content)
+        if kind == "assembly":
+            read_assembly(content)
         sha = self.store.put(content)
         payload = {"file": sha, "id": id, "name": file, "kind": kind, "client": once.client}
 
@@ -95,7 +100,7 @@ class ModelImports:
         """
         id, sha, name, kind = (job.payload[key] for key in ("id", "file", "name", "kind"))
         try:
-            described = self._described(kind, self.store.read(sha), name, context)
+            described = self._described(kind, self.store.read(sha), id, name, context)
             class_of(described.text, id, 1)  # it can be published
             require_free(id, self.catalogues)
         except FAILURES as error:
@@ -118,7 +123,9 @@ class ModelImports:
         except ProgramMissing as error:
             return str(error), None
 
-    def _described(self, kind: Kind, content: bytes, name: str, context: JobContext) -> Description:
+    def _described(self, kind: Kind, content: bytes, id: str, name: str, context: JobContext) -> Description:
+        if kind == "assembly":
+            return described_assembly(content, id, name, self.database, self.store, self.catalogues)
         if kind == "step":
             return described_step(content, name, self.store, context)
         if kind == "creo":
@@ -139,9 +146,10 @@ def kind_of(content: bytes) -> Kind:
     if content[:200].lstrip().startswith(b"ISO-10303-21"):
         return "step"
     if content[:200].lstrip().startswith(b"{"):
-        return "creo"
+        return "assembly" if is_assembly(content) else "creo"
     what = "the body is empty" if not content else "it begins as no model does"
     raise UnreadableModel(
         "not_a_model",
-        f"{what}: send a .FCStd of FreeCAD, a STEP file (ISO 10303-21), or a manifest for Creo (JSON)",
+        f"{what}: send a .FCStd of FreeCAD, a STEP file (ISO 10303-21), or a manifest (JSON) for Creo or of "
+        "an assembly",
     )

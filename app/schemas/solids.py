@@ -25,6 +25,17 @@ class Inertia(Answer):
     yz: Quantity
 
 
+class Clearance(Answer):
+    """What lies between a fixed part of an assembly and another part."""
+
+    parts: list[str] = Field(description="the names of the two")
+    distance: Quantity = Field(description="the smallest, in mm; 0 where they touch or overlap")
+    overlap: Quantity | None = Field(
+        None,
+        description="space that both take, in mm**3, as the assembly allows it; absent where there is none",
+    )
+
+
 class Measurements(Answer):
     """Measurements of the finished STEP file."""
 
@@ -44,6 +55,9 @@ class Measurements(Answer):
     )
     trust: str | None = Field(
         None, description="of a brought model: which checks the solid passed, and which it does not have"
+    )
+    clearances: list[Clearance] | None = Field(
+        None, description="of an assembly: between its fixed parts and the other parts, closest boxes first"
     )
 
 

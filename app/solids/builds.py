@@ -152,6 +152,8 @@ class Builds:
         }
         if described := brought(type(shape)):
             measured["trust"] = described.trust
+        if build.clearances:
+            measured["clearances"] = [measures.clearance(one).plain() for one in build.clearances]
         rows.add_build(
             session, build.key, build.model, build.version, parameters, measured, made_by(type(shape))
         )

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from app.plain import Json, JsonObject
 from app.schemas.answers import Quantity, Triple, Values
-from app.schemas.solids import BoundingBox, Inertia, Measurements
+from app.schemas.solids import BoundingBox, Clearance, Inertia, Measurements
 from cad.inspect import MEASURES
 from cad.model import CadModel
+from cad.overlaps import Clearance as Between
 from cad.regenerate import as_quantities
 
 
@@ -18,11 +19,19 @@ def parameters(shape: CadModel) -> JsonObject:
     return as_quantities(shape)
 
 
+def clearance(one: Between) -> Clearance:
+    """What lies between two parts of an assembly."""
+    overlap = {"overlap": Quantity(value=one.overlap, unit="mm**3")} if one.overlap else {}
+    distance = Quantity(value=one.distance, unit="mm")
+    return Clearance(parts=[one.one, one.other], distance=distance, **overlap)
+
+
 def measurements(
     measures: Mapping[str, float],
     dimensions: Mapping[str, Json],
     materials: Mapping[str, str] | None = None,
     trust: str | None = None,
+    clearances: Sequence[Mapping[str, object]] = (),
 ) -> Measurements:
     """The measurements of a solid; builds of an older recipe have fewer."""
 
@@ -36,6 +45,7 @@ def measurements(
     later: dict[str, Any] = {"materials": materials} if materials is not None else {}
     later |= {"polar_inertia": one("polar_inertia")} if "polar_inertia" in measures else {}
     later |= {"trust": trust} if trust is not None else {}
+    later |= {"clearances": [Clearance.model_validate(one) for one in clearances]} if clearances else {}
     return Measurements(
         bounding_box=BoundingBox(low=along_axes("low"), high=along_axes("high")),
         volume=one("volume"),

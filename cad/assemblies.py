@@ -1,0 +1,241 @@
+"""Assemblies that a team makes: a model of this program with fixed parts beside it, or fixed parts alone.
+
+The class of an assembly is that of its model with six parameters more for each fixed part: where it stands on
+its datum. What the model says of its own parts is checked as ever. A fixed part is the shape of a STEP file,
+and its volume is measured. No fixed part may take space of another part, unless its description allows that.
+
+This module imports the kernel only where it draws.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import chain
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from cad.brought import BroughtModel, Description, Parameter, attribute_of, parts_of_step
+from cad.catalogue import models
+from cad.errors import GeometryError, UnreadableStep
+from cad.model import Box, CadModel, Dimension, Part
+from cad.shaft import STEEL_DENSITY
+
+if TYPE_CHECKING:
+    from cad.fillets import Crank
+    from cad.placing import Place
+    from cad.shaft import Shaft
+
+MOST_COMPONENTS = 30
+MOST_SOLIDS = 300
+"""Of all fixed parts, each counted as often as it stands in its file."""
+FARTHEST = 1e5
+"""A fixed part stands within this distance of its datum, along each axis [mm]."""
+SHIFTS, TURNS = ("x", "y", "z"), ("turn_x", "turn_y", "turn_z")
+_DRAWN, _PARTS = "as drawn", "parts as drawn"  # no names that a declaration can have
+_WITHIN = ":"  # between the name of a fixed part and that of one of its solids
+
+
+@dataclass(frozen=True)
+class Component:
+    """A fixed part: which STEP file, and where its place is measured from."""
+
+    name: str
+    file: str  # SHA-256 of its STEP file
+    origin: str  # in words: "model m8_bolt version 1"
+    datum: str = "origin"  # as `cad.placing` reads it
+    may_overlap: tuple[str, ...] = ()  # names of parts and components
+    density: float = STEEL_DENSITY  # [kg/m³]
+    material: str = ""
+    holds: tuple[str, ...] = ()  # ids of the models that it is made of
+
+    def parameters(self, numbers: Mapping[str, float]) -> Iterator[Parameter]:
+        """Its place as parameters of the assembly, with the numbers that hold unless a design sets them."""
+        for key in (*SHIFTS, *TURNS):
+            unit, bound = ("mm", FARTHEST) if key in SHIFTS else ("deg", 360.0)
+            words = f"{self.name} {key.replace('_', ' about ')}".replace("_", " ")
+            source = f"{self.name}.{key}"
+            name, number = f"{self.name}_{key}", numbers.get(key, 0.0)
+            yield Parameter(name, words, unit, number, source, low=-bound, high=bound)
+
+
+@dataclass(frozen=True)
+class AssemblyDescription(Description):
+    """The whole of an assembly, from which its class is made."""
+
+    base: tuple[str, int] | None = None  # id and version of a model of this program
+    components: tuple[Component, ...] = ()
+
+    def bases(self) -> tuple[type[CadModel], ...]:
+        """The assembly, and the class of its model."""
+        return (AssemblyModel, *([base_of(self.base)] if self.base else []))
+
+    def example(self) -> Mapping[str, Any]:
+        """The example of its model; places are as in the description."""
+        return base_of(self.base).example if self.base else super().example()
+
+    @property
+    def trust(self) -> str:
+        """The limits of the checks on its solids, in plain words."""
+        names = ", ".join(one.name for one in self.components)
+        own = f"{self.base[0]} is checked as ever. " if self.base else ""
+        return (
+            f"lower: {own}Fixed parts ({names}) have the shape of their STEP files, without a formula for "
+            "their volume. Their places, clearances and interferences are measured on the finished file"
+        )
+
+
+class AssemblyModel(BroughtModel):
+    """Base of the assemblies that a team makes."""
+
+    brought: ClassVar[AssemblyDescription]
+
+    def build(self) -> tuple[Part, ...]:
+        """The parts of its model, and its fixed parts where they stand."""
+        if _PARTS not in vars(self):
+            vars(self)[_PARTS] = tuple(self._built())
+        parts: tuple[Part, ...] = vars(self)[_PARTS]
+        return parts
+
+    def bounding_box(self) -> Box:
+        """The box of its model, and those of its fixed parts."""
+        from cad.inspect import bounding_box
+        from cad.step import Body
+
+        fixed = [part for part in self.build() if self.component_of(part.name)]
+        boxes = [bounding_box(Body(one.name, one.solid, one.colour, one.places) for one in fixed)]
+        if self.brought.base:
+            boxes.append(super(BroughtModel, self).bounding_box())
+        low, high = ([box.low for box in boxes], [box.high for box in boxes])
+        return Box(
+            (min(p[0] for p in low), min(p[1] for p in low), min(p[2] for p in low)),
+            (max(p[0] for p in high), max(p[1] for p in high), max(p[2] for p in high)),
+        )
+
+    def dimensions(self, seen: Mapping[str, Any]) -> dict[str, Dimension]:
+        """The parameters of its model, as its own parts show them."""
+        if not self.brought.base:
+            return {}
+        own = {name: part for name, part in seen.items() if not self.component_of(name)}
+        return dict(super(BroughtModel, self).dimensions(own))
+
+    def component_of(self, part: str) -> str | None:
+        """The fixed part to which a solid of this name belongs; None of a solid of its model."""
+        name = part.partition(_WITHIN)[0]
+        return name if any(name == one.name for one in self.brought.components) else None
+
+    def may_overlap(self, one: str, other: str) -> bool:
+        """Whether the description allows two of its solids to take the same space."""
+        return self._allows(one, other) or self._allows(other, one)
+
+    def shaft(self) -> Shaft | None:
+        """Finite elements take one solid, not an assembly."""
+        return None
+
+    @classmethod
+    def is_throw(cls) -> bool:
+        """No: finite elements take one solid."""
+        return False
+
+    def throw_sizes(self) -> Crank | None:
+        """No sizes: finite elements take one solid."""
+        return None
+
+    def _allows(self, one: str, other: str) -> bool:
+        names = {one, self.component_of(one)}
+        component = next((c for c in self.brought.components if c.name in names), None)
+        return component is not None and bool({other, self.component_of(other)} & {*component.may_overlap})
+
+    def _built(self) -> Iterator[Part]:
+        from cad.placing import frame_of
+
+        drawn = vars(self).get(_DRAWN)
+        if drawn is None:
+            raise GeometryError("kernel", f"{self.id} has not been given its fixed parts", self.inputs)
+        there = dict[str, Part]()
+        if self.brought.base:
+            for part in super(BroughtModel, self).build():
+                there[part.name] = part
+                yield part
+        count = 0
+        for component in self.brought.components:
+            if component.name in there:
+                detail = f"{component.name} is the name of a part of {self._of_model()}: choose another"
+                raise GeometryError("name", detail)
+            at = frame_of(component.name, component.datum, there) * self.place(component.name).motion
+            parts = _solids_of(component, drawn.fixed[component.file])
+            count += sum(len(part.places) for part in parts)
+            if count > MOST_SOLIDS:
+                detail = f"the fixed parts have more than {MOST_SOLIDS} solids; leave some of them out"
+                raise GeometryError("too_large", detail)
+            for number, part in enumerate(parts):
+                placed = replace(part, places=tuple(at * place for place in part.places))
+                there[part.name] = placed
+                if number == 0:  # a datum may name the component
+                    there[component.name] = placed
+                yield placed
+
+    def place(self, component: str) -> Place:
+        """Where a fixed part stands on its datum."""
+        from cad.placing import Place
+
+        numbers = dict[str, float]()
+        for key in (*SHIFTS, *TURNS):
+            name = f"{component}_{key}"
+            si = float(getattr(self, attribute_of(name)))
+            numbers[key] = round(float(self.inputs[name].meaning.scale.from_si(si)), 9) + 0.0
+        return Place(**numbers)
+
+    def _of_model(self) -> str:
+        return self.brought.base[0] if self.brought.base else self.id
+
+
+def _solids_of(component: Component, step: bytes) -> list[Part]:
+    """The solids of a fixed part: under its name if there is one, else each with a name of its own."""
+    try:
+        parts = list(parts_of_step(step))
+    except UnreadableStep as error:
+        raise GeometryError("no_solid", f"{component.name} ({component.origin}): {error}") from None
+    if not parts:
+        raise GeometryError("no_solid", f"{component.name} ({component.origin}) has no solid")
+    names = [component.name if len(parts) == 1 else f"{component.name}{_WITHIN}{one.name}" for one in parts]
+    made_of = {"density": component.density, "material": component.material}
+    return [replace(one, name=name, **made_of) for name, one in zip(names, parts, strict=True)]  # type: ignore[arg-type]
+
+
+def base_of(base: tuple[str, int]) -> type[CadModel]:
+    """The class of a model of this program, by id and version."""
+    return models().get(*base)
+
+
+def assembly_of(read: Mapping[str, Any]) -> AssemblyDescription:
+    """The description from its JSON, of which the parameters are read already."""
+    components = tuple(_component(one) for one in read["components"])
+    base = read["base"]
+    return AssemblyDescription(
+        **{**read, "components": components, "base": (str(base[0]), int(base[1])) if base else None}
+    )
+
+
+def _component(read: dict[str, Any]) -> Component:
+    lists: dict[str, Any] = {key: tuple(value) for key, value in read.items() if isinstance(value, list)}
+    return Component(**{**read, **lists})
+
+
+def described(
+    title: str,
+    file: str,
+    file_name: str,
+    base: tuple[str, int] | None,
+    components: Mapping[Component, Mapping[str, float]],
+) -> AssemblyDescription:
+    """The description of an assembly; `components` with the numbers of their places, in mm and deg."""
+    return AssemblyDescription(
+        program="assembly",
+        file=file,
+        file_name=file_name,
+        title=title,
+        made_with="STEP",
+        parameters=tuple(chain.from_iterable(one.parameters(at) for one, at in components.items())),
+        base=base,
+        components=tuple(components),
+    )
