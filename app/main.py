@@ -48,6 +48,7 @@ from app.api.routes.networks import router as networks
 from app.api.routes.principals import router as principals
 from app.api.routes.reports import router as reports
 from app.api.routes.revisions import router as revisions
+from app.api.routes.solid_fields import router as solid_fields
 from app.api.routes.solving import router as solving
 from app.api.routes.spreadsheet_lines import router as spreadsheet_lines
 from app.api.routes.studies import router as studies
@@ -101,6 +102,7 @@ ROUTERS = (
     comparisons,
     networks,
     design_files,
+    solid_fields,
     sheets_by_type,
     variant_sheets,
     reports,

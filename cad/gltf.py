@@ -41,7 +41,7 @@ def write_glb(meshes: Sequence[Mesh], title: str = "model") -> bytes:
         **buffers.described(),
     }
     text = json.dumps(content, separators=(",", ":")).encode()
-    return _framed(text, b"".join(buffers.chunks))
+    return framed(text, b"".join(buffers.chunks))
 
 
 class _Buffers:
@@ -99,7 +99,7 @@ def _material(one: Mesh) -> dict[str, Any]:
     return {"name": one.name, "pbrMetallicRoughness": metal}
 
 
-def _framed(text: bytes, binary: bytes) -> bytes:
+def framed(text: bytes, binary: bytes) -> bytes:
     """The 12-byte header and both chunks, padded to four bytes."""
     text += b" " * (-len(text) % 4)
     binary += b"\0" * (-len(binary) % 4)

@@ -33,18 +33,29 @@ _SHININESS = 40
 
 @dataclass(frozen=True)
 class Scene:
-    """Triangles that face the eye; corners in samples, y downwards, z towards the eye."""
+    """Triangles in the axes of a model [mm]; as drawn, in samples, y downwards, z towards the eye."""
 
     corners: Array  # (t, 3, 3)
     normals: Array  # (t, 3, 3)
-    colours: Array  # (t, 3)
+    colours: Array  # (t, 3), or of each corner (t, 3, 3)
     faces: Integers  # (t,), different for every face of every body
 
 
 def write_png(meshes: Sequence[Mesh], size: tuple[int, int] = SIZE) -> bytes:
     """A picture of the meshes on white."""
+    bodies = list(placed(meshes))
+    corners = np.concatenate([points[one.triangles] for one, points, _ in bodies])
+    normals = np.concatenate([normals[one.triangles] for one, _, normals in bodies])
+    colours = np.concatenate([np.tile(one.colour, (len(one.triangles), 1)) for one, _, _ in bodies])
+    firsts = np.cumsum([0, *(int(one.faces.max()) + 1 for one, _, _ in bodies)])
+    faces = np.concatenate([one.faces + first for (one, _, _), first in zip(bodies, firsts, strict=False)])
+    return shaded(Scene(corners, normals, colours, faces), size)
+
+
+def shaded(triangles: Scene, size: tuple[int, int] = SIZE) -> bytes:
+    """A picture of triangles [mm] in the axes of their model, on white."""
     width, height = size[0] * _SAMPLES, size[1] * _SAMPLES
-    scene = _scene(meshes, width, height)
+    scene = _scene(triangles, width, height)
     light, faces = _draw(scene, width, height)
     light[_borders(faces)] *= _LINE
     samples = Image.fromarray((np.clip(light, 0, 1) * 255).round().astype(np.uint8))
@@ -53,18 +64,15 @@ def write_png(meshes: Sequence[Mesh], size: tuple[int, int] = SIZE) -> bytes:
     return stream.getvalue()
 
 
-def _scene(meshes: Sequence[Mesh], width: int, height: int) -> Scene:
+def _scene(triangles: Scene, width: int, height: int) -> Scene:
+    """The triangles that face the eye, in the frame of the picture."""
     frame = np.stack([RIGHT, UP, TOWARDS], axis=1)
-    bodies = [(one, points @ frame, normals @ frame) for one, points, normals in placed(meshes)]
-    corners = np.concatenate([points[one.triangles] for one, points, _ in bodies])
-    normals = np.concatenate([normals[one.triangles] for one, _, normals in bodies])
-    colours = np.concatenate([np.tile(one.colour, (len(one.triangles), 1)) for one, _, _ in bodies])
-    firsts = np.cumsum([0, *(int(one.faces.max()) + 1 for one, _, _ in bodies)])
-    faces = np.concatenate([one.faces + first for (one, _, _), first in zip(bodies, firsts, strict=False)])
-    corners = _fitted(corners, width, height)
+    corners = _fitted(triangles.corners @ frame, width, height)
     # y points downwards in a picture: a triangle that faces the eye runs clockwise there.
     seen = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] < -1e-9
-    return Scene(corners[seen], normals[seen], colours[seen], faces[seen])
+    return Scene(
+        corners[seen], triangles.normals[seen] @ frame, triangles.colours[seen], triangles.faces[seen]
+    )
 
 
 def _fitted(corners: Array, width: int, height: int) -> Array:
@@ -89,7 +97,10 @@ def _draw(scene: Scene, width: int, height: int) -> tuple[Array, Integers]:
     triangle, weights, sample = triangle[wins], weights[wins], sample[wins]
     light = np.full((width * height, 3), _PAPER)
     normals = np.einsum("fc,fcx->fx", weights, scene.normals[triangle])
-    light[sample] = _lit(normals, scene.colours[triangle])
+    colours = scene.colours[triangle]
+    if colours.ndim == 3:
+        colours = np.einsum("fc,fcx->fx", weights, colours)
+    light[sample] = _lit(normals, colours)
     faces = np.full(width * height, -1)
     faces[sample] = scene.faces[triangle]
     return light.reshape(height, width, 3), faces.reshape(height, width)

@@ -142,6 +142,16 @@ class File:
 
 
 @dataclass(frozen=True)
+class PaintedField:
+    """A picture of a part in the colours of a field."""
+
+    id: str
+    title: str
+    low: Cell  # of the scale of colours
+    high: Cell
+
+
+@dataclass(frozen=True)
 class Model:
     """A part."""
 
@@ -157,6 +167,7 @@ class Model:
     rules: list[Rule]
     files: list[File]
     remark: str  # on pictures that could not be had
+    fields: list[PaintedField] = field(default_factory=list)
 
 
 @dataclass(frozen=True)

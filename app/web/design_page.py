@@ -21,6 +21,7 @@ from app.schemas.designs import (
 )
 from app.schemas.jobs import Job, JobList
 from app.schemas.networks import DesignNetwork
+from app.schemas.solid_fields import SolidField, SolidFieldList
 from app.schemas.templates import CadModel as Model
 from app.schemas.templates import Template, TemplateList, TemplateSummary
 from app.schemas.variants import VariantsOut
@@ -98,6 +99,7 @@ async def design_page(
         models=parts,
         measured=measured,
         analyses=await _analyses(request, api, measured, models),
+        painted_fields=await _fields_of_solids(api, id, measured),
         revisions=await api.get(f"/designs/{id}/revisions", RevisionList, limit=20),
         proposals=(await api.post(f"/designs/{id}/auto-map", Proposals)).proposals,
         job=await _job(api, design),
@@ -243,6 +245,18 @@ async def _analyses(
         name: await finished_analyses(request, api, part.build, models[name], part.analyses)
         for name, part in measured.items()
     }
+
+
+async def _fields_of_solids(
+    api: Api, id: str, measured: Mapping[str, ModelMeasurements]
+) -> dict[str, list[SolidField]]:
+    """What can be painted on every model; nothing on one without analyses."""
+    fields: dict[str, list[SolidField]] = {name: [] for name in measured}
+    for name, part in measured.items():
+        if part.analyses:
+            path = f"/designs/{id}/revisions/{part.revision}/models/{name}/fields"
+            fields[name] = (await api.get(path, SolidFieldList)).items
+    return fields
 
 
 def _loose(

@@ -13,7 +13,8 @@ export function readGlb(buffer) {
     const places = nodes.filter((node) => node.mesh === index).map((node) => node.matrix);
     const colour = about.materials[drawn.material].pbrMetallicRoughness.baseColorFactor;
     const mesh = placed(read(drawn.attributes.POSITION), read(drawn.attributes.NORMAL), read(drawn.indices), places);
-    return { ...mesh, colour: screenColour(colour) };
+    const painted = drawn.attributes.COLOR_0 === undefined ? undefined : cornerColours(read(drawn.attributes.COLOR_0));
+    return { ...mesh, colour: screenColour(colour), painted };
   });
 }
 
@@ -55,3 +56,8 @@ function brightness(m, x, y, z) {
 }
 
 const screenColour = (linear) => linear.slice(0, 3).map((part) => Math.round(255 * part ** (1 / 2.2)));
+
+// The colours of the corners, if a field is painted on a body; it has one place then.
+function cornerColours(linear) {
+  return Array.from({ length: linear.length / 3 }, (_, corner) => screenColour(Array.from(linear.subarray(3 * corner, 3 * corner + 3))));
+}

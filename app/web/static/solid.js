@@ -36,10 +36,21 @@ async function fetched(path) {
 }
 
 async function drawSolid(place, bodies) {
-  const figure = document.createElement("div");
-  place.replaceChildren(figure);
-  const traces = bodies.map(({ mesh, light, colour }) => ({ type: "mesh3d", ...mesh, vertexcolor: light.map((power) => shade(colour, power)), hoverinfo: "skip", lighting: PLAIN }));
+  const before = place.querySelector(".js-plotly-plot"), figure = before ?? document.createElement("div");
+  if (!before) place.replaceChildren(figure);
+  const traces = bodies.map(({ mesh, light, colour, painted }) => ({ type: "mesh3d", ...mesh, vertexcolor: light.map((power, corner) => shade(painted ? painted[corner] : colour, power)), hoverinfo: "skip", lighting: PLAIN }));
   await drawScene(figure, traces);
+}
+
+// Show the part in the colours of a field, whose file, range and unit an option of a choice names; or plain again.
+export async function colourBy(place, { value, dataset }) {
+  place.setAttribute("aria-busy", "true");
+  try {
+    await drawSolid(place, readGlb(await fetched(value || place.dataset.solid)));
+    showColours(place, value ? { low: Number(dataset.low), high: Number(dataset.high), unit: unit(dataset.unit) } : undefined);
+  } finally {
+    place.removeAttribute("aria-busy");
+  }
 }
 
 function tellSize(place) {

@@ -1,4 +1,4 @@
-// Starts the 3-D views of a page when they come into view, and the switch that paints the film pressure.
+// Starts the 3-D views of a page when they come into view, the choice of a field that colours them, and the switch that paints the film pressure.
 import { whenSeen } from "./pictures.js";
 
 export function startSolids(stepsNow) {
@@ -8,6 +8,12 @@ export function startSolids(stepsNow) {
       await showSolid(place);
       done();
     }));
+    const choice = place.closest("section").querySelector("[data-field]");
+    choice?.addEventListener("change", async () => {
+      await shown;
+      const { colourBy } = await import("./solid.js");
+      await colourBy(place, choice.selectedOptions[0]);
+    });
     const box = place.closest("section").querySelector("[data-paint]");
     box?.addEventListener("change", async () => {
       await shown;

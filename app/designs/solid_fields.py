@@ -1,0 +1,199 @@
+"""Fields that a revision has for the surface of a crankshaft: use of its fillets, shapes of torsional modes.
+
+They follow from steps that take what finite elements answered about the model: from a `fatigue_life` whose
+tensors are those of `unit_loads`, and from a `forced_torsion` whose stiffnesses are those of `chain`. Nothing
+is declared for them, and nothing is stored.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sqlalchemy.orm import Session
+
+from app.designs import repository, views
+from app.presentation.numbers import rough
+from app.schemas.designs import Revision, RevisionModel, RevisionStep
+from app.schemas.evaluations import UsedInput
+from app.solids import analysis_rows
+from app.solids.shapes import shape_of
+from app.storage.errors import NotFound
+from cad.analysis.kinds import CHAIN, UNIT_LOADS
+from cad.cranks.chain_throw import shaft_of_throws, sizes_of_throw
+from cad.cranks.shaft_fields import along_shaft, at_fillets, places_of
+from cad.cranks.whole import WholeShaft
+from cad.fillets import Crank
+from cad.model import CadModel
+from cad.painting import Field, Glb
+from templates.core.arrays import Array
+from templates.core.catalogue.finding import Catalogue
+
+USE, MODES = "load_use", 3  # the output of a life that is painted; how many modes
+RIGID = 1e-6  # of the highest frequency: a mode below turns as a whole
+
+
+@dataclass(frozen=True)
+class SolidField:
+    """A field, before it is laid on a surface: its range is known."""
+
+    id: str  # `life.load_use`, `torsion.mode_1`
+    title: str
+    unit: str
+    low: float
+    high: float
+
+    def on(self, glb: Glb) -> Field:
+        """Values at the corners of a surface."""
+        return Field(self.title, self.unit, self._values(glb), self.low, self.high)
+
+    def _values(self, glb: Glb) -> Array:
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class FilletUse(SolidField):
+    """How much of the endurance limit the points of the fillets use, under the loads of one throw."""
+
+    sizes: Crank
+    places: Sequence[tuple[float, float]]
+    points: Array
+    use: Array
+
+    def _values(self, glb: Glb) -> Array:
+        return at_fillets(self.sizes, self.places, glb.points, glb.faces, self.points, self.use)
+
+
+@dataclass(frozen=True)
+class ModeShape(SolidField):
+    """Angles of a torsional mode along the shaft."""
+
+    whole: WholeShaft
+    angles: Sequence[float]
+    ends: tuple[float, float]
+
+    def _values(self, glb: Glb) -> Array:
+        return along_shaft(self.whole, glb.points, self.angles, self.ends)
+
+
+def fields_of(
+    session: Session, catalogue: Catalogue[CadModel], id: str, number: int, name: str
+) -> dict[str, SolidField]:
+    """The fields of a model in a revision, by their names; none of what is no crank.
+
+    Raises
+    ------
+    NotFound
+        If there is no such revision or model, or its solid is not finished.
+    """
+    build = views.good_model(session, id, name, number).build_key or ""
+    shape = shape_of(session, catalogue, build)
+    whole = shaft_of_throws(shape)
+    sizes = sizes_of_throw(whole) if whole else shape.throw_sizes()
+    if sizes is None:
+        return {}
+    places = places_of(whole) if whole else [(0.0, 0.0)]
+    revision = views.revision(session, repository.revision(session, id, number))
+    found: list[SolidField] = [*_uses(session, revision, name, sizes, places)]
+    if whole:
+        found += _modes(revision, name, whole)
+    return {one.id: one for one in found}
+
+
+def field_of(fields: Mapping[str, SolidField], id: str) -> SolidField:
+    """One of the fields.
+
+    Raises
+    ------
+    NotFound
+        If there is none of this name.
+    """
+    if id not in fields:
+        there = f"there are {', '.join(fields)}" if fields else "this model has none"
+        raise NotFound(f"there is no field {id[:80]!r}; {there}")
+    return fields[id]
+
+
+def _uses(
+    session: Session, revision: Revision, name: str, sizes: Crank, places: Sequence[tuple[float, float]]
+) -> Iterator[FilletUse]:
+    points = _points(session, revision.models[name])
+    for called, step in revision.steps.items():
+        use = _array(step, USE)
+        if step.template.id != "fatigue_life" or not _takes(step, f"{name}.{UNIT_LOADS}."):
+            continue
+        if use is None or points is None or use.shape != points.shape[:1]:
+            continue
+        title = f"Share of the endurance limit that is used (1 / safety factor), {called}"
+        yield FilletUse(
+            f"{called}.{USE}", title, "1", float(use.min()), float(use.max()), sizes, places, points, use
+        )
+
+
+def _points(session: Session, model: RevisionModel) -> Array | None:
+    """Where the tensors of an analysis are [mm]; they were stored with them."""
+    if UNIT_LOADS not in model.analyses:
+        return None
+    stored = analysis_rows.outputs_of(session, model.analyses[UNIT_LOADS].id)
+    value = stored["points"]["value"] if "points" in stored else None
+    return None if value is None else np.asarray(value, dtype=float)
+
+
+def _modes(revision: Revision, name: str, whole: WholeShaft) -> Iterator[ModeShape]:
+    for called, step in revision.steps.items():
+        if step.template.id != "forced_torsion" or not _takes(step, f"{name}.{CHAIN}."):
+            continue
+        shapes, frequencies = _array(step, "mode_shapes"), _array(step, "natural_frequencies")
+        ends = ends_of(step, len(whole.throws))
+        if shapes is None or frequencies is None or ends is None:
+            continue
+        throws, nose, flange = ends
+        elastic = np.flatnonzero(frequencies > RIGID * frequencies.max())[:MODES]
+        for number, mode in enumerate(elastic, start=1):
+            shape = shapes[:, mode]
+            angles, two = shape[throws].tolist(), (float(shape[nose]), float(shape[flange]))
+            most = max(abs(angle) for angle in (*angles, *two))
+            title = f"Angle of torsional mode {number} at {rough(float(frequencies[mode]))} Hz, {called}"
+            yield ModeShape(f"{called}.mode_{number}", title, "1", -most, most, whole, angles, two)
+
+
+def ends_of(step: RevisionStep, throws: int) -> tuple[list[int], int, int] | None:
+    """Which inertias of a train, from 0, are the throws of a shaft, its nose and its flange.
+
+    The throws are those that cylinders excite, in their order. Nose and flange are the one inertia that an
+    elastic shaft joins to the first or the last throw; where there is not one, the throw's own. None if other
+    than all throws are excited.
+    """
+    excited, stiffness = _given(step, "excited_inertias"), _given(step, "shaft_stiffness")
+    start, end = _given(step, "shaft_from"), _given(step, "shaft_to")
+    if excited is None or stiffness is None or start is None or end is None:
+        return None
+    pins = sorted({round(number) for number in excited.tolist()})
+    if len(pins) != throws:
+        return None
+
+    shafts = zip(start.tolist(), end.tolist(), stiffness.tolist(), strict=True)
+    joined = [(round(one), round(other)) for one, other, k in shafts if k > 0 and min(one, other) > 0]
+
+    def beside(pin: int) -> int:
+        others = {sum(pair) - pin for pair in joined if pin in pair} - {*pins}
+        return others.pop() if len(others) == 1 else pin
+
+    return [pin - 1 for pin in pins], beside(pins[0]) - 1, beside(pins[-1]) - 1
+
+
+def _takes(step: RevisionStep, prefix: str) -> bool:
+    """Whether a relation of a step uses what begins so."""
+    return any(prefix in str(relation) for relation in step.relations.values())
+
+
+def _array(step: RevisionStep, name: str) -> Array | None:
+    value = step.outputs[name].value if name in step.outputs else None
+    return np.asarray(value, dtype=float) if isinstance(value, list) and value else None
+
+
+def _given(step: RevisionStep, name: str) -> Array | None:
+    used = step.inputs.get(name)
+    value = used.value if isinstance(used, UsedInput) else None
+    return np.asarray(value, dtype=float) if isinstance(value, list) and value else None
