@@ -167,7 +167,7 @@ class Model:
     rules: list[Rule]
     files: list[File]
     remark: str  # on pictures that could not be had
-    fields: list[PaintedField] = field(default_factory=list)
+    painted: list[PaintedField] = field(default_factory=list)
 
 
 @dataclass(frozen=True)

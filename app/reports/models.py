@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from sqlalchemy.orm import Session
 
 from app.designs import repository
+from app.designs.solid_fields import SolidField
 from app.plain import JsonObject
 from app.presentation import numbers
 from app.presentation.numbers import in_line
 from app.presentation.units import System
 from app.reports.cells import NOTHING, cell, typed
-from app.reports.content import File, Line, Mapped, Model, Rule, Warned
+from app.reports.content import File, Line, Mapped, Model, PaintedField, Rule, Warned
 from app.reports.steps import class_of, relation_mathml, rules, symbol_of, version_of, words_of
 from app.reports.typesetting import DRAWING, PICTURE
 from app.schemas.analyses import AnalysisOutput, ModelAnalysis
@@ -41,6 +42,7 @@ def model_of(
     catalogue: Catalogue[CadModel],
     system: System,
     remark: str,
+    painted: Sequence[SolidField] = (),
 ) -> Model:
     """One model of a revision, compared with the newest good one before it."""
     cls = class_of(catalogue, model.id, model.version)
@@ -60,7 +62,13 @@ def model_of(
         rules=_rules(model, cls),
         files=[File(kind, model.artifacts[kind]) for kind in KEPT if kind in model.artifacts],
         remark=remark,
+        painted=[_painted(one, system) for one in painted],
     )
+
+
+def _painted(one: SolidField, system: System) -> PaintedField:
+    low, high = (Quantity(value=value, unit=one.unit).in_units(system) for value in (one.low, one.high))
+    return PaintedField(one.id, one.title, cell(low), cell(high))
 
 
 def _warnings(analyses: Mapping[str, ModelAnalysis]) -> list[Warned]:

@@ -17,6 +17,7 @@ from sqlalchemy.orm import Session
 from app.approvals.content import shown, steps_taken
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, stamps, views
+from app.designs.solid_fields import fields_of
 from app.designs.variants.views import variants
 from app.designs.worksheet import worksheet
 from app.presentation.units import System
@@ -25,7 +26,7 @@ from app.reports.content import Line, Model, Report, Round, Step
 from app.reports.models import model_of
 from app.reports.signatures import author_of, of_variants, signatures_of
 from app.reports.steps import step_of
-from app.reports.typesetting import DRAWING, PICTURE, SKETCH
+from app.reports.typesetting import DRAWING, PAINTED, PICTURE, SKETCH
 from app.reports.variants import variants_of
 from app.reports.verdict import judged
 from app.schemas import designs as schemas
@@ -35,9 +36,11 @@ from app.solids.models import Models
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import NotFound
+from cad.painting import Glb
 from cad.stamp import stamped
 
 PENDING = "its picture and drawing were still being made when this report was written"
+SURFACE = "glb"
 NO_PICTURE = "no picture and drawing could be made of it"
 
 
@@ -72,9 +75,14 @@ class Reports:
         """The jobs that make what a report shows of every built model; none if all is there."""
         with self.database.read() as session:
             row = repository.revision(session, id, number)
-            keys = {m.build_key for m in row.models if m.build_key and rows.build(session, m.build_key)}
-            there = {key: rows.artifacts(session, key) for key in sorted(keys)}
-        missing = {key: self._missing(files) for key, files in there.items()}
+            analysed = (row.results or {}).get("analyses", {})
+            wanted = {
+                m.build_key: _kinds(is_analysed=bool(analysed.get(m.name)))
+                for m in sorted(row.models, key=lambda m: bool(analysed.get(m.name)))
+                if m.build_key and rows.build(session, m.build_key)
+            }
+            there = {key: rows.artifacts(session, key) for key in sorted(wanted)}
+        missing = {key: self._missing(files, wanted[key]) for key, files in there.items()}
         return [self.models.request_files(key, kinds, client) for key, kinds in missing.items() if kinds]
 
     def request_variant_pictures(self, id: str, number: int, client: str = "") -> list[str]:
@@ -158,8 +166,21 @@ class Reports:
             }
             for name, shas in files.items()
         }
+        for model in report.models:
+            if model.painted:
+                own[model.name] |= self._painted(report, model.name)
         solids = report.variants.solids if report.variants else []
         return own | {one.name: {SKETCH: self.store.read(one.file.sha256)} for one in solids if one.file}
+
+    def _painted(self, report: Report, name: str) -> dict[str, bytes]:
+        """The pictures of a model in the colours of its fields."""
+        place = report.design, report.revision, name
+        with self.database.read() as session:
+            fields = fields_of(session, self.catalogues.models, *place)
+            build = views.good_model(session, report.design, name, report.revision).build_key or ""
+            surface = rows.artifacts(session, build)[SURFACE]
+        glb = Glb(self.store.read(surface))
+        return {f"{PAINTED}{one.id}": glb.picture(one.on(glb)) for one in fields.values()}
 
     def _missing(
         self, there: Mapping[str, str], shown: Sequence[str] = (PICTURE, DRAWING)
@@ -177,12 +198,21 @@ class Reports:
         system: System,
         pending: bool,
     ) -> Model:
-        missing = self._missing(model.artifacts)
+        missing = self._missing(model.artifacts, _kinds(is_analysed=bool(model.analyses)))
         has_all = not model.build or not rows.build(session, model.build) or not missing
         files = {kind: sha for kind, sha in model.artifacts.items() if kind not in missing}
         present = model.model_copy(update={"artifacts": files})
         remark = "" if has_all else (PENDING if pending else NO_PICTURE)
-        return model_of(session, id, number, name, present, self.catalogues.models, system, remark)
+        catalogue = self.catalogues.models
+        fields = (
+            fields_of(session, catalogue, id, number, name) if model.analyses and SURFACE in files else {}
+        )
+        return model_of(session, id, number, name, present, catalogue, system, remark, [*fields.values()])
+
+
+def _kinds(*, is_analysed: bool) -> tuple[str, ...]:
+    """The files that a report shows a model by; a field is painted on the third."""
+    return (PICTURE, DRAWING, SURFACE) if is_analysed else (PICTURE, DRAWING)
 
 
 def tag(report: Report, kind: str) -> str:

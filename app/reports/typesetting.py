@@ -20,6 +20,7 @@ from app.plain import Json, JsonObject
 from app.presentation.bidi import bare_everywhere
 
 PICTURE, DRAWING = "png", "drawing.svg"  # kinds of files that a report shows of a model
+PAINTED = "painted "  # before the name of a field, whose picture is a PNG too
 SKETCH = "svg"  # and of each solid of variants: its lines, which cost a tenth of a shaded picture
 
 Pictures = Mapping[str, Mapping[str, bytes]]  # by model and kind
@@ -50,9 +51,13 @@ def _as_svg(files: Mapping[str, bytes]) -> dict[str, str]:
     kinds = {"drawing": DRAWING, "picture": SKETCH}
     pictures = {name: files[kind].decode() for name, kind in kinds.items() if kind in files}
     if PICTURE in files:
-        coded = base64.b64encode(files[PICTURE]).decode()
-        pictures["picture"] = (
-            '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 640 480" width="640" height="480">'
-            f'<image width="640" height="480" href="data:image/png;base64,{coded}"/></svg>'
-        )
-    return pictures
+        pictures["picture"] = _in_svg(files[PICTURE])
+    return pictures | {name: _in_svg(file) for name, file in files.items() if name.startswith(PAINTED)}
+
+
+def _in_svg(png: bytes) -> str:
+    coded = base64.b64encode(png).decode()
+    return (
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 640 480" width="640" height="480">'
+        f'<image width="640" height="480" href="data:image/png;base64,{coded}"/></svg>'
+    )

@@ -8,6 +8,7 @@ import json
 from math import cos, pi, sin
 
 import numpy as np
+import pypdf
 import pytest
 from PIL import Image
 from serving import API, created, revision
@@ -138,6 +139,18 @@ def test_page_offers_them_as_colours_and_files(http, design, listed):
     for one in listed.values():
         assert f'<option value="{one["glb"]}"' in page
         assert f'href="{one["png"]}"' in page
+
+
+@pytest.mark.slow
+def test_the_report_shows_them(http, design, listed):
+    address = f"{DESIGNS}/{design['id']}/report"
+    page = http.get(f"{address}.html", headers={"Prefer": "wait=60"}).text
+    for one in listed.values():
+        assert f'<img src="{one["png"]}"' in page
+    printed = http.get(f"{address}.pdf", headers={"Prefer": "wait=60"})
+    assert printed.content.startswith(b"%PDF")
+    text = "".join(page.extract_text() for page in pypdf.PdfReader(io.BytesIO(printed.content)).pages)
+    assert "Angle of torsional mode 1" in " ".join(text.split())
 
 
 @pytest.mark.parametrize("tail", ["nothing.glb", "life.load_use.stl", "train.mode_9.png"])
