@@ -95,10 +95,10 @@ def fields_of(
         return {}
     places = places_of(whole) if whole else [(0.0, 0.0)]
     revision = views.revision(session, repository.revision(session, id, number))
-    found: list[SolidField] = [*_uses(session, revision, name, sizes, places)]
+    fields: list[SolidField] = [*_uses(session, revision, name, sizes, places)]
     if whole:
-        found += _modes(revision, name, whole)
-    return {one.id: one for one in found}
+        fields += _modes(revision, name, whole)
+    return {one.id: one for one in fields}
 
 
 def field_of(fields: Mapping[str, SolidField], id: str) -> SolidField:
