@@ -39,7 +39,7 @@ LARGEST_LOAD = 1e12  # [N m]
 ON_REQUEST = STRESSES | {SURFACE}
 """Outputs that are computed only if a request names them."""
 
-RECIPE = 3
+RECIPE = 4
 """Raised whenever the same question to the same solid gets another answer."""
 
 _MADE_BY = f"recipe {RECIPE}, ngsolve {version('ngsolve')}"

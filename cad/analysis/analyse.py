@@ -145,7 +145,7 @@ def _stress(solid: Solid, shaft: Shaft, request: AnalysisRequest, report: Report
     last = peaks.steps[-1]
     common = {
         "unit": "MPa",
-        "error": peaks.changes[-1],
+        "error": peaks.error,
         "convergence": [
             {"elements": peak.elements, "value": _per_newton_metre(peak.value)} for peak in peaks.steps
         ],
