@@ -1,11 +1,17 @@
 """`python -m app …` is `crankwright …`."""
 
+import sys
+
 from app.workers.threads import use_one_thread
 
 
 def main() -> None:
     """Run the command line, with one thread for the numerical libraries."""
     use_one_thread()
+    if sys.argv[1:2] == ["serve"]:
+        from app.beginning import begin_serving
+
+        begin_serving()
     from app.cli import main as run_command  # commands import NumPy, which reads the environment once
 
     run_command()

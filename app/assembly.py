@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from typing import TYPE_CHECKING
 
 from app.api import problems, readiness
@@ -36,6 +36,7 @@ from app.identity.sealing import Sealer
 from app.identity.service import Identity
 from app.impact.service import Impacts
 from app.jobs.service import Jobs
+from app.machines import LOCAL
 from app.observation import metrics
 from app.reports.paper import Press
 from app.reports.service import Reports
@@ -57,6 +58,8 @@ from app.studies.running import LANES, Parts
 from app.studies.solid_making import SolidMaking
 from app.tolerances.process import analysed
 from app.workers.base import Limits, Worker
+from app.workers.light import CHECKS
+from app.workers.local import LocalProcesses
 from app.workers.started import started_workers
 from app.worksheets.importing.service import IMPORT, Imports
 from app.worksheets.published import Published
@@ -192,11 +195,18 @@ def register_answers(jobs: Jobs, *answering: LongAnswers) -> None:
 
 
 def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:
-    """The catalogues. A process of the worker checks every file of a team before the server loads it."""
+    """The catalogues. A process of the worker checks every file of a team before the server loads it.
+
+    At the start a light process checks those that do not name the kernel, so that nobody waits for it.
+    """
     if not settings.template_folders:
         return Catalogues(find_templates(()), find_models())
     limits = Limits(settings.template_seconds, settings.job_memory_mb)
-    return TeamCatalogues(settings.template_folders, CheckInProcess(worker, limits))
+    check = CheckInProcess(worker, limits)
+    if settings.engine != LOCAL:
+        return TeamCatalogues(settings.template_folders, check)
+    with closing(LocalProcesses(CHECKS)) as light:  # it is ready long before a process that loads the kernel
+        return TeamCatalogues(settings.template_folders, check, CheckInProcess(worker, limits, light))
 
 
 def published_worksheets(database: Database, catalogues: Catalogues, stack: ExitStack) -> Published:

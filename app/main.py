@@ -194,6 +194,7 @@ def spared_by_collections() -> Iterator[None]:
     """
     gc.collect()
     gc.freeze()
+    gc.enable()  # `app.beginning` has switched it off
     try:
         yield
     finally:

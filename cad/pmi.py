@@ -26,21 +26,24 @@ from OCP.XCAFDoc import XCAFDoc_Datum, XCAFDoc_Dimension, XCAFDoc_DocumentTool, 
 from cad.carriers import Carriers, Place
 from cad.toleranced import Carried, Faces, Form, Limits
 
-_TYPES: Mapping[Faces, DimensionType] = {
-    "cylinders": DimensionType.XCAFDimTolObjects_DimensionType_Size_Diameter,
-    "beside": DimensionType.XCAFDimTolObjects_DimensionType_Size_Diameter,
-    "along": DimensionType.XCAFDimTolObjects_DimensionType_Size_Diameter,
-    "askew": DimensionType.XCAFDimTolObjects_DimensionType_Size_Diameter,
-    "spheres": DimensionType.XCAFDimTolObjects_DimensionType_Size_SphericalDiameter,
-    "planes": DimensionType.XCAFDimTolObjects_DimensionType_Location_LinearDistance,
-    "walls": DimensionType.XCAFDimTolObjects_DimensionType_Location_LinearDistance,
-    "between": DimensionType.XCAFDimTolObjects_DimensionType_Location_LinearDistance,
+_DIAMETER = "XCAFDimTolObjects_DimensionType_Size_Diameter"
+_DISTANCE = "XCAFDimTolObjects_DimensionType_Location_LinearDistance"
+_TYPES: Mapping[Faces, str] = {
+    "cylinders": _DIAMETER,
+    "beside": _DIAMETER,
+    "along": _DIAMETER,
+    "askew": _DIAMETER,
+    "spheres": "XCAFDimTolObjects_DimensionType_Size_SphericalDiameter",
+    "planes": _DISTANCE,
+    "walls": _DISTANCE,
+    "between": _DISTANCE,
 }
-_FORMS: Mapping[Form, ToleranceType] = {
-    "cylindricity": ToleranceType.XCAFDimTolObjects_GeomToleranceType_Cylindricity,
-    "perpendicularity": ToleranceType.XCAFDimTolObjects_GeomToleranceType_Perpendicularity,
-    "parallelism": ToleranceType.XCAFDimTolObjects_GeomToleranceType_Parallelism,
+_FORMS: Mapping[Form, str] = {
+    "cylindricity": "XCAFDimTolObjects_GeomToleranceType_Cylindricity",
+    "perpendicularity": "XCAFDimTolObjects_GeomToleranceType_Perpendicularity",
+    "parallelism": "XCAFDimTolObjects_GeomToleranceType_Parallelism",
 }
+"""Names of the kernel's types, which is asked for them when it writes."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +128,7 @@ class _Writer:
 
     def _dimension(self, one: Carried, place: Place, within: Limits) -> None:
         size = DimensionObject()
-        size.SetType(_TYPES[one.faces])
+        size.SetType(getattr(DimensionType, _TYPES[one.faces]))
         size.SetValue(within.nominal)
         size.SetUpperTolValue(within.upper)
         size.SetLowerTolValue(-within.lower)  # which the writer turns round
@@ -136,7 +139,7 @@ class _Writer:
 
     def _form(self, form: Form, width: float, faces: TDF_LabelSequence, to: str) -> None:
         tolerance = ToleranceObject()
-        tolerance.SetType(_FORMS[form])
+        tolerance.SetType(getattr(ToleranceType, _FORMS[form]))
         tolerance.SetValue(width)
         label = self._tool.AddGeomTolerance()
         XCAFDoc_GeomTolerance.Set_s(label).SetObject(tolerance)

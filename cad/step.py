@@ -27,13 +27,19 @@ from OCP.XSControl import XSControl_WorkSession
 from cad.errors import UnreadableStep
 from cad.header import Header
 from cad.model import STEEL, Colour, Part
+from cad.on_demand import once_loaded
 from cad.pmi import Annotations, Product, annotate
 from cad.properties import properties_of
 from cad.step_text import finished
 from templates.core.arrays import Array
 
-STEPCAFControl_Controller.Init_s()  # the writer's settings exist only from here on
-Message.DefaultMessenger_s().ChangePrinters().Clear()  # what is wrong is raised, not printed
+
+def _set_up() -> None:
+    STEPCAFControl_Controller.Init_s()  # the writer's settings exist only from here on
+    Message.DefaultMessenger_s().ChangePrinters().Clear()  # what is wrong is raised, not printed
+
+
+once_loaded(_set_up)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,11 @@ from cadquery import Shape, Vector
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
 
-X, Y, Z = Vector(1, 0, 0), Vector(0, 1, 0), Vector(0, 0, 1)
+from cad.on_demand import constant
+
+X = constant(lambda: Vector(1, 0, 0))
+Y = constant(lambda: Vector(0, 1, 0))
+Z = constant(lambda: Vector(0, 0, 1))
 
 _COINCIDENT = 1e-6  # [mm], and as the sine of an angle: ten times the kernel's own precision
 

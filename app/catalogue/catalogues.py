@@ -120,16 +120,18 @@ class TeamCatalogues(Catalogues):
 
     A request looks at the files if nobody did for a second. A thread then checks and loads what has changed,
     for which the request waits two seconds at most: an import that does not end holds nobody up for longer.
+    The first look, before this is made, checks by `first` if that is given.
     """
 
-    def __init__(self, folders: Sequence[Path], check: Check) -> None:
+    def __init__(self, folders: Sequence[Path], check: Check, first: Check | None = None) -> None:
         super().__init__(find_templates(()), find_models())
         self._built_in = self.templates, self.models
-        self._team = TeamFiles(folders, check)
+        self._team = TeamFiles(folders, first or check)
         self._thread = ThreadPoolExecutor(1, "catalogue")
         self._looking: Future[None] | None = None
         self._begun = time.monotonic()
         self._look()
+        self._team.check = check
 
     async def refresh(self) -> None:
         """Take notice of files that have changed; called by every request, in the event loop."""

@@ -20,6 +20,8 @@ from templates.core.errors import UnusableFile
 from templates.core.language.template import Template
 
 MOST_BYTES = 2**20
+KERNEL = (b"cadquery", b"OCP")
+"""Names in a file for whose import a process that has the kernel is the quicker one."""
 DECLARE = "a file <id>_v<version>.py declares one class that inherits Template or CadModel"
 
 Check = Callable[[Path, bytes], list[FileFault]]
@@ -28,10 +30,11 @@ Check = Callable[[Path, bytes], list[FileFault]]
 
 @dataclass(frozen=True)
 class CheckInProcess:
-    """Checks files in processes of a worker."""
+    """Checks files in processes of a worker; those that do not name the kernel in processes of `light`."""
 
     worker: Worker
     limits: Limits
+    light: Worker | None = None
 
     def __call__(self, path: Path, content: bytes) -> list[FileFault]:
         """Every fault of a file; that it did not come to an end is one.
@@ -45,7 +48,9 @@ class CheckInProcess:
             what = f"the file has more than {MOST_BYTES // 2**20} MiB"
             return [FileFault("too_large", what, "keep tables in a file beside it")]
         try:
-            return self.worker.run(check_content, str(path), content, limits=self.limits)
+            names_kernel = any(name in content for name in KERNEL)
+            worker = self.worker if self.light is None or names_kernel else self.light
+            return worker.run(check_content, str(path), content, limits=self.limits)
         except DeadlineExceeded as error:
             what = f"it was not loaded and checked within {error.seconds:g} s"
             remedy = "let the import only declare, or allow more by CRANKWRIGHT_TEMPLATE_SECONDS"

@@ -72,7 +72,7 @@ class TeamFiles:
     """
 
     def __init__(self, folders: Sequence[Path], check: Check) -> None:
-        self.folders, self._check = tuple(folders), check
+        self.folders, self.check = tuple(folders), check
         self._files: dict[Path, TeamFile] = {}
 
     def examine(self) -> bool:
@@ -118,7 +118,7 @@ class TeamFiles:
         if file.key is None:
             what = f"{file.path.name} is not a name of a version"
             return replace(file, faults=(FileFault("file_name", what, NAME),))
-        faults = self._check(file.path, content)
+        faults = self.check(file.path, content)
         if any(fault.quarantines for fault in faults):
             return replace(file, faults=tuple(faults))
         cls = loaded_or_faulty(file.path, content, file.digest)

@@ -11,7 +11,6 @@ from itertools import product
 
 import numpy as np
 from scipy.special import ndtr, ndtri
-from scipy.stats import qmc
 
 from templates.core.arrays import Array
 from templates.core.units.tolerance import Distribution
@@ -71,6 +70,8 @@ def scattered(factors: Sequence[Factor], shares: Array) -> Array:
 
 def sobol(dimensions: int, count: int, seed: Sequence[int]) -> Array:
     """A scrambled Sobol' sequence of so many points (a power of two) in the unit cube."""
+    from scipy.stats import qmc  # it takes as long as all other imports of a small command
+
     sequence = qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(list(seed)))
     points: Array = sequence.random_base2(count.bit_length() - 1)
     return points

@@ -40,9 +40,11 @@ def main(channel: int, lifeline: int, modules: Iterable[str]) -> NoReturn:
     # leader of each job's group with it, and what a job has started would hang on nobody.
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
     share_fairly()
+    gc.disable()  # it would look through all that is imported again and again
     loaded = [load(module) for module in modules]
     rehearsals = [module.rehearse for module in loaded if module and hasattr(module, "rehearse")]
     gc.freeze()  # collections in the children shall not copy what is shared
+    gc.enable()
     with socket.socket(fileno=channel) as server:
         _serve(server, lifeline, rehearsals)
     os._exit(0)  # to take down an interpreter with so many modules takes half a second

@@ -9,9 +9,10 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import NamedTuple, TypeVar, TypeVarTuple, cast
 
+from app.workers.ahead import fork_server
 from app.workers.base import GEOMETRY, UNLIMITED, Lane, Limits, shares_process
 from app.workers.errors import DeadlineExceeded, JobCancelled, WorkerError
-from app.workers.isolated import ForkServer, JobProcess
+from app.workers.isolated import JobProcess
 from app.workers.messages import Outcome, Request, Returned
 from app.workers.threads import ONE_THREAD
 from templates.core.progress import Reporter
@@ -33,7 +34,7 @@ class LocalProcesses:
     """
 
     def __init__(self, preload: Sequence[str] = KERNEL) -> None:
-        self._forkserver = ForkServer(preload, ONE_THREAD)
+        self._forkserver = fork_server(preload, ONE_THREAD)
         self._lock = threading.Lock()
         self._spare = self._forkserver.fork()
         self._kept: list[Used] = []

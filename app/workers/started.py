@@ -9,10 +9,8 @@ from dataclasses import dataclass
 from app.machines import LOCAL
 from app.settings import Settings
 from app.workers.base import BatchWorker, Worker
+from app.workers.light import CHECKS
 from app.workers.local import LocalProcesses
-
-CHECKS = ("cad.model", "templates.core.checking.check")
-"""What the check of a team's file imports."""
 
 
 @dataclass(frozen=True)

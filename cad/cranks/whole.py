@@ -24,8 +24,9 @@ from cad.cranks.support import reach
 from cad.cranks.throw import End, Throw, bore, fillet_run, turned
 from cad.cranks.volume import drilling, end_volume, fillet, journal, pin, web
 from cad.model import Box
+from cad.on_demand import constant
 
-_AXIS = Vector(0, 0, 0), Vector(0, 0, 1)
+_AXIS = constant(lambda: (Vector(0, 0, 0), Vector(0, 0, 1)))
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from math import prod
 from typing import Protocol
 
 import numpy as np
-from scipy.stats import qmc
 
 from app.studies.methods.space import Space
 from templates.core.arrays import Array
@@ -100,6 +99,8 @@ class Sobol:
 
 def sobol_sequence(dimensions: int, seed: int, first: int, last: int) -> Array:
     """Points number `first` to `last`, the last one excluded, of a scrambled sequence in the unit cube."""
+    from scipy.stats import qmc  # it takes as long as all other imports of a small command
+
     sequence = qmc.Sobol(dimensions, rng=seed)
     if first:
         return np.asarray(sequence.fast_forward(first).random(last - first), dtype=np.float64)
@@ -119,6 +120,8 @@ class LatinHypercube:
     @cached_property
     def _unit(self) -> Array:
         """All rows at once: where one lies depends on all others."""
+        from scipy.stats import qmc
+
         return np.asarray(qmc.LatinHypercube(len(self.space), rng=self.seed).random(self.count))
 
     def unit(self, first: int, last: int) -> Array:

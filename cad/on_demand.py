@@ -1,0 +1,164 @@
+"""The kernel on demand: a process that draws nothing, such as the server, does without importing it.
+
+CadQuery, OpenCASCADE and what writes drawings take seconds to import, and more memory than all the rest of
+the server, which needs of a model its parameters only. After `postpone`, what a module imports from them is
+a stand-in. The first use of one (a call, an attribute) imports the kernel and puts the real thing in place of
+every stand-in that a module holds. So nothing fails for this; it comes later.
+
+Modules that need the kernel while they are imported say so by `constant` and `once_loaded`.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from importlib import import_module
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+from typing import TypeVar, cast
+
+T = TypeVar("T")
+
+PACKAGES = frozenset({"cadquery", "OCP", "ezdxf", "typst", "PIL"})
+"""What is postponed together."""
+
+
+def postpone() -> None:
+    """Have modules that are imported from now on get stand-ins; nothing changes if the kernel is there."""
+    if not is_loaded() and _finder not in sys.meta_path:
+        sys.meta_path.insert(0, _finder)
+
+
+def is_loaded() -> bool:
+    """Whether the kernel itself is imported, by whatever."""
+    return isinstance(sys.modules.get("OCP"), ModuleType) and not isinstance(sys.modules["OCP"], _Module)
+
+
+def is_postponed() -> bool:
+    """Whether modules get stand-ins."""
+    return _finder in sys.meta_path
+
+
+def constant(make: Callable[[], T]) -> T:
+    """A value that the kernel makes: at once, or a stand-in for it where the kernel is postponed."""
+    return cast(T, StandIn(make)) if is_postponed() else make()
+
+
+def once_loaded(act: Callable[[], object]) -> None:
+    """Call a function that sets up the kernel: at once, or when the kernel is loaded."""
+    if is_postponed():
+        _following.append(act)
+    else:
+        act()
+
+
+def load() -> None:
+    """Import the kernel and replace the stand-ins; a second call does nothing."""
+    with _loading:
+        if not is_postponed():
+            return
+        sys.meta_path.remove(_finder)
+        for name in [name for name, module in sys.modules.items() if isinstance(module, _Module)]:
+            del sys.modules[name]
+        import_module("cadquery")
+        for module in list(sys.modules.values()):
+            _complete(module)
+        while _following:
+            _following.pop(0)()
+
+
+def _complete(module: ModuleType) -> None:
+    """Put the real things in place of the stand-ins in the namespace of a module."""
+    names = getattr(module, "__dict__", {})
+    for name, value in list(names.items()):
+        if type(value) is StandIn:
+            names[name] = value.real()
+
+
+class StandIn:
+    """Something of the kernel that is not imported yet; it forwards what it is asked."""
+
+    def __init__(self, make: Callable[[], object]) -> None:
+        self.__dict__["_make"] = make
+
+    def real(self) -> object:
+        """The thing itself."""
+        load()
+        if "_real" not in self.__dict__:
+            make: Callable[[], object] = self.__dict__["_make"]
+            self.__dict__["_real"] = make()
+        return self.__dict__["_real"]
+
+    def __getattr__(self, name: str) -> object:
+        """An attribute of the thing itself."""
+        return getattr(self.real(), name)
+
+    def __call__(self, *args: object, **options: object) -> object:
+        """Call the thing itself, with the things themselves as arguments."""
+        named = {name: _real(value) for name, value in options.items()}
+        return cast(Callable[..., object], self.real())(*map(_real, args), **named)
+
+    def __getitem__(self, key: object) -> object:
+        """An item of the thing itself, such as the value of a table."""
+        return cast(Mapping[object, object], self.real())[key]
+
+    def __iter__(self) -> Iterator[object]:
+        """The items of the thing itself."""
+        return iter(cast(Iterable[object], self.real()))
+
+    def __neg__(self) -> object:
+        """The opposite of the thing itself, such as of a direction."""
+        return -cast(float, self.real())
+
+    def __instancecheck__(self, instance: object) -> bool:
+        """Whether something is an instance of the class; of a kernel that is not loaded there is none."""
+        return not is_postponed() and isinstance(instance, cast(type, self.real()))
+
+    def __mro_entries__(self, bases: tuple[object, ...]) -> tuple[object, ...]:
+        """The class itself, where one inherits from it."""
+        return (self.real(),)
+
+
+def _real(value: object) -> object:
+    return value.real() if type(value) is StandIn else value
+
+
+class _Module(ModuleType):
+    """Stands in for a module of the kernel while others import names from it."""
+
+    def __getattr__(self, name: str) -> object:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        place = self.__name__
+        return StandIn(lambda: _imported(place, name))
+
+
+def _imported(place: str, name: str) -> object:
+    """What `from place import name` gives: an attribute, else a module."""
+    module = import_module(place)
+    return getattr(module, name) if hasattr(module, name) else import_module(f"{place}.{name}")
+
+
+class _Finder(MetaPathFinder, Loader):
+    """Finds a stand-in for each module of the kernel."""
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """The stand-in, if the module is one of the kernel."""
+        is_ours = fullname.partition(".")[0] in PACKAGES
+        return ModuleSpec(fullname, self, is_package=True) if is_ours else None
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        """An empty module."""
+        return _Module(spec.name)
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Do nothing: there is nothing to run."""
+
+
+_finder = _Finder()
+_loading = threading.RLock()
+_following: list[Callable[[], object]] = []

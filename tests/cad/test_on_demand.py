@@ -1,0 +1,57 @@
+"""A process that draws nothing does without the kernel; one that draws all the same gets it."""
+
+import hashlib
+import subprocess
+import sys
+
+import pytest
+
+from cad import on_demand
+from cad.regenerate import regenerate_from_text
+
+BUSH = {"inner_diameter": "46.75 mm"}
+IMPORTS = """
+from cad import on_demand
+on_demand.postpone()
+from cad.catalogue import models
+import app.assembly
+found = models()
+assert on_demand.is_postponed() and not on_demand.is_loaded(), "something has used the kernel"
+print(len(found.versions))
+"""
+DRAWS = f"""
+import hashlib
+from cad.regenerate import regenerate_from_text
+build = regenerate_from_text("plain_bearing", 1, {BUSH})
+assert on_demand.is_loaded() and not on_demand.is_postponed()
+stale = [f"{{place}}.{{name}}" for place, module in list(sys.modules.items()) if place.startswith("cad.")
+         for name, value in vars(module).items() if type(value) is on_demand.StandIn]
+assert not stale, stale
+print(hashlib.sha256(build.step).hexdigest())
+"""
+
+
+def run(program):
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.split()
+
+
+def test_here_the_kernel_is_loaded_and_stays():
+    on_demand.postpone()
+    assert on_demand.is_loaded()
+    assert not on_demand.is_postponed()
+    assert on_demand.constant(lambda: 3) == 3
+
+
+@pytest.mark.slow
+def test_property_the_server_and_all_models_are_imported_without_the_kernel():
+    from cad.catalogue import models
+
+    assert run(IMPORTS) == [str(len(models().versions))]
+
+
+@pytest.mark.slow
+def test_the_first_use_loads_the_kernel_and_gives_equal_bytes():
+    digest = hashlib.sha256(regenerate_from_text("plain_bearing", 1, BUSH).step).hexdigest()
+    assert run(f"import sys\n{IMPORTS}{DRAWS}")[1:] == [digest]
