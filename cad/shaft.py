@@ -63,3 +63,21 @@ class ThrowsApart:
 
     solids: tuple[ThrowSolid, ...]
     places: tuple[PlacedThrow, ...]
+
+
+CAST_IRON_MATERIAL = Material(110e9, 0.26, 7200.0)  # EN-GJL-250: EN 1561:2011, annex: 103 to 118 GPa
+
+
+@dataclass(frozen=True)
+class BorePlace:
+    """A split bore [mm] about z, its middle at z = 0, and by which face its solid is held.
+
+    Held is the flat face at y = `held_at`, or, where `held_radius` is given, the cylinder along z about
+    (0, `held_at`).
+    """
+
+    radius: float
+    half_width: float
+    held_at: float
+    held_radius: float | None
+    material: Material

@@ -15,14 +15,14 @@ from app.solids import rows
 from app.solids.ages import is_fresh, renew
 from app.solids.analysis_views import shown
 from app.solids.builds import Builds
-from app.solids.finding import Analysing, is_stored, shaft_of
+from app.solids.finding import Analysing, bore_of, is_stored, shaft_of
 from app.solids.models import FAILURES, File
 from app.solids.questions import Question, under_load
 from app.solids.shapes import shape_of
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild, NotFound
-from cad.analysis.kinds import SURFACE
+from cad.analysis.kinds import BORE_COMPLIANCE, SURFACE
 from cad.errors import AnalysisError
 from cad.model import CadModel
 from cad.regenerate import as_text, build_key
@@ -45,9 +45,9 @@ class Analyses:
         Raises
         ------
         AnalysisError
-            If the model is not a shaft.
+            If the model is not a shaft, or has no split bore if that is asked of.
         """
-        shaft_of(shape)
+        bore_of(shape) if question.kind == BORE_COMPLIANCE else shaft_of(shape)
         build = build_key(shape)
         with self.database.read() as session:
             stored = repository.outputs_of(session, question.key(build))

@@ -11,13 +11,14 @@ from app.solids.questions import Question
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.workers.base import Limits, Runner
-from cad.analysis.kinds import CHAIN, DEFAULT_LEVEL, SURFACE, UNIT_LOADS
+from cad.analysis.kinds import BORE_COMPLIANCE, CHAIN, DEFAULT_LEVEL, SURFACE, UNIT_LOADS
 from cad.cranks.chain_throw import first_throw_apart, shaft_of_throws, sizes_of_throw, throws_apart
 from cad.errors import AnalysisError
 from cad.fillets import Crank
 from cad.model import CadModel
 from cad.regenerate import build_key
-from cad.shaft import Shaft, ThrowsApart
+from cad.shaft import BorePlace, Shaft, ThrowsApart
+from cad.shells.bore_place import bore_place
 from templates.core.progress import report
 
 FILE = "file"
@@ -59,6 +60,9 @@ class Analysing:
         self, shape: CadModel, question: Question, unknown: tuple[str, ...], step: str, context: Runner
     ) -> dict[str, JsonObject]:
         """Outputs from the file of the build, or from those of its throws, which are drawn for it."""
+        if question.kind == BORE_COMPLIANCE:
+            bytes_, place = self.store.read(step), bore_of(shape)
+            return context.run(analyse_bore_in_worker, bytes_, place, question, limits=self.limits)
         whole = shaft_of_throws(shape)
         if question.kind == CHAIN:
             if whole is None:
@@ -84,6 +88,20 @@ class Analysing:
 def is_stored(outputs: repository.Outputs, output: str, store: Artifacts) -> bool:
     """Whether an output is stored, and its file, if it is one, is good."""
     return output in outputs and (output != SURFACE or store.exists(outputs[output]["sha256"]))
+
+
+def bore_of(shape: CadModel) -> BorePlace:
+    """Where the split bore of a model is.
+
+    Raises
+    ------
+    AnalysisError
+        `no_bore`.
+    """
+    place = bore_place(shape)
+    if place is None:
+        raise AnalysisError("no_bore", f"{shape.id} has no split bore")
+    return place
 
 
 def shaft_of(shape: CadModel) -> Shaft:
@@ -150,6 +168,19 @@ def analyse_chain_in_worker(apart: ThrowsApart, question: Question) -> dict[str,
 
     try:
         return chain_answers(apart, question.boundary, question.level, question.tolerance, report)
+    except (AnalysisError, MemoryError):
+        raise
+    except Exception as error:
+        detail = f"the analysis failed: {type(error).__name__}: {error}"
+        raise AnalysisError("solver", detail) from error
+
+
+def analyse_bore_in_worker(step: bytes, place: BorePlace, question: Question) -> dict[str, JsonObject]:
+    """`cad.analysis.bore_tables.bore_tables` with progress reported to the job; in the worker's process."""
+    from cad.analysis.bore_tables import bore_tables
+
+    try:
+        return bore_tables(step, place, question.level or DEFAULT_LEVEL, report)
     except (AnalysisError, MemoryError):
         raise
     except Exception as error:

@@ -17,6 +17,7 @@ from pydantic import ConfigDict, Field
 from app.plain import Json, JsonObject, Raw
 from app.schemas.bounded import Bounded
 from cad.analysis.kinds import (
+    BORE_COMPLIANCE,
     BOUNDARIES,
     CHAIN,
     DEFAULT_LEVEL,
@@ -38,6 +39,9 @@ LARGEST_LOAD = 1e12  # [N m]
 
 ON_REQUEST = STRESSES | {SURFACE}
 """Outputs that are computed only if a request names them."""
+
+WITHOUT_SURFACE = (UNIT_LOADS, CHAIN, BORE_COMPLIANCE)
+"""Kinds whose solid has no picture."""
 
 RECIPE = 4
 """Raised whenever the same question to the same solid gets another answer."""
@@ -109,8 +113,8 @@ def load_of(raw: Raw) -> float:
 
 def faults(kind: str, options: Options) -> list[Fault]:
     """What is wrong with the options of a kind beside their types."""
-    if kind == UNIT_LOADS:
-        return [*_faults_of_tables(options)]
+    if kind in (UNIT_LOADS, BORE_COMPLIANCE):
+        return [*_faults_of_tables(kind, options)]
     both = options.level is not None and options.tolerance is not None
     detail = "give either a level or a tolerance, which chooses the level"
     conflicts = [Fault("tolerance", "conflict", detail)] if both else []
@@ -120,17 +124,31 @@ def faults(kind: str, options: Options) -> list[Fault]:
     return conflicts + ([] if options.load is None else load_faults(options.load))
 
 
-def _faults_of_tables(options: Options) -> Iterator[Fault]:
-    """The options that tables under unit loads do not have."""
+_OF_TABLES = {
+    UNIT_LOADS: {
+        "boundary": "has one way of holding the throw, held at one end and borne by both mains",
+        "tolerance": "has no estimate of its error",
+        "load": "is under 1 kN and 1 kN*m: multiply its tables",
+    },
+    BORE_COMPLIANCE: {
+        "boundary": "has one way of holding the solid, by the top of the block or the small end",
+        "tolerance": "chooses no level by a tolerance",
+        "load": "is under unit pressures",
+    },
+}
+"""Of kinds that answer tables, why they do not have an option."""
+
+
+def _faults_of_tables(kind: str, options: Options) -> Iterator[Fault]:
+    """The options that tables do not have."""
+    why = _OF_TABLES[kind]
     if options.boundary != "free_end":
-        held = "held at one end and borne by both mains: leave boundary out"
-        yield Fault("boundary", "not_offered", f"{UNIT_LOADS} has one way of holding the throw, {held}")
+        yield Fault("boundary", "not_offered", f"{kind} {why['boundary']}: leave boundary out")
     if options.tolerance is not None:
-        detail = f"the error of {UNIT_LOADS} is not estimated: give a level, {', '.join(LEVELS)}"
+        detail = f"{kind} {why['tolerance']}: give a level, {', '.join(LEVELS)}"
         yield Fault("tolerance", "not_offered", detail)
     if options.load is not None:
-        detail = f"the tables of {UNIT_LOADS} are under 1 kN and 1 kN*m: leave load out, and multiply them"
-        yield Fault("load", "not_offered", detail)
+        yield Fault("load", "not_offered", f"{kind} {why['load']}: leave load out")
 
 
 def load_faults(raw: Raw) -> list[Fault]:
@@ -161,7 +179,7 @@ def _times(load: float, output: Mapping[str, Json]) -> JsonObject:
 
 def offered(kind: str) -> tuple[str, ...]:
     """All outputs of a kind that can be asked for."""
-    return (*KINDS[kind],) if kind in (UNIT_LOADS, CHAIN) else (*KINDS[kind], SURFACE)
+    return (*KINDS[kind],) if kind in WITHOUT_SURFACE else (*KINDS[kind], SURFACE)
 
 
 def in_order(kind: str, outputs: Container[str]) -> tuple[str, ...]:
@@ -170,7 +188,7 @@ def in_order(kind: str, outputs: Container[str]) -> tuple[str, ...]:
 
 
 def no_shaft(cls: type[CadModel]) -> str | None:
-    """Why solids of a model cannot be analysed; None if they can."""
+    """Why solids of a model cannot be analysed as shafts; None if they can."""
     if cls.shaft is not CadModel.shaft:
         return None
     return f"{cls.id} is not a shaft: it does not say by which ends it is held and loaded"
@@ -178,6 +196,13 @@ def no_shaft(cls: type[CadModel]) -> str | None:
 
 def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
     """Why solids of a model cannot be analysed in this way; None if they can."""
+    if kind == BORE_COMPLIANCE:
+        from cad.shells.bore_place import has_split_bore  # it draws too
+
+        if has_split_bore(cls):
+            return None
+        detail = f"{kind} is of a split bore, as of bearing_housing and connecting_rod; {cls.id} has none"
+        return Fault("model", "no_bore", detail)
     if reason := no_shaft(cls):
         return Fault("model", "no_shaft", reason)
     if kind not in (UNIT_LOADS, CHAIN) or (kind == UNIT_LOADS and cls.is_throw()):
@@ -194,13 +219,13 @@ def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
 
 
 def what_can_be_asked(cls: type[CadModel]) -> JsonObject:
-    """The kinds of analyses of a model, each with its outputs and their units; none unless it is a shaft."""
+    """The kinds of analyses of a model, each with its outputs and their units."""
     return {
         kind: {
             "outputs": {name: KINDS[kind].get(name) for name in offered(kind)},
             "tables": {name: [*TABLES[name]] for name in KINDS[kind] if name in TABLES},
             "lists": [name for name in KINDS[kind] if name in LISTS],
-            "boundaries": [*BOUNDARIES] if kind != UNIT_LOADS else [*BOUNDARIES[:1]],
+            "boundaries": [*BOUNDARIES] if kind not in _OF_TABLES else [*BOUNDARIES[:1]],
             "levels": [*LEVELS],
             "default_level": DEFAULT_LEVEL,
         }

@@ -22,6 +22,22 @@ UNIT_LOADS = "unit_loads"
 CHAIN = "chain"
 """The kind that puts a shaft of throws together: throws by finite elements, the shaft by their matrices."""
 
+BORE_COMPLIANCE = "bore_compliance"
+"""The kind whose output is a matrix: how far a split bore gives way to modes of an oil film's pressure."""
+
+HARMONICS = 9
+"""The highest harmonic around of those modes."""
+
+
+def mode_names() -> tuple[str, ...]:
+    """The modes: harmonics even along the bore, then times the second polynomial of Legendre along it.
+
+    `m` is the mean, `c2` and `s2` are cos and sin of twice the angle from +y towards -x; `z` is Legendre's.
+    """
+    around = ("m", *(f"{part}{n}" for n in range(1, HARMONICS + 1) for part in "cs"))
+    return (*around, *(f"{name}z" for name in around))
+
+
 _TENSOR = ("xx", "yy", "zz", "xy", "yz", "xz")
 _FORCE, _MOMENT = "MPa/kN", "MPa/(kN*m)"
 
@@ -33,14 +49,16 @@ KINDS: dict[str, dict[str, str]] = {
         **dict.fromkeys(("stress_of_moment_1", "stress_of_moment_2", "stress_of_moment_3"), _MOMENT),
         "points": "mm",
     },
+    BORE_COMPLIANCE: {"compliance": "um/GPa", "modulus": "GPa", "poisson_ratio": "1", "bore_width": "mm"},
     CHAIN: {"stiffness": "N*m/rad", "throw_stiffnesses": "N*m/rad", "torsional_frequency": "Hz"},
 }
 """The outputs of each kind with their units; stress is that under a torque or moment of 1 N·m."""
 
 TABLES: dict[str, tuple[str, ...]] = {
-    output: ("x", "y", "z") if output == "points" else _TENSOR for output in KINDS[UNIT_LOADS]
+    **{output: ("x", "y", "z") if output == "points" else _TENSOR for output in KINDS[UNIT_LOADS]},
+    "compliance": mode_names(),
 }
-"""The columns of those outputs that are tables; they have a row for each point."""
+"""The columns of those outputs that are tables; they have a row for each point, or for each mode."""
 
 LISTS = frozenset({"throw_stiffnesses"})
 """Those outputs that are lists; they have a number for each throw."""

@@ -40,7 +40,11 @@ router = APIRouter(prefix="/api/v1", tags=["models"], route_class=StrictRoute)
 Id = Annotated[str, Path(max_length=64, examples=["crank_throw"])]
 Kind = Annotated[
     str,
-    Path(max_length=64, examples=["torsion"], description="`torsion`, `bending`, `unit_loads` or `chain`"),
+    Path(
+        max_length=64,
+        examples=["torsion"],
+        description="`torsion`, `bending`, `unit_loads`, `chain` or `bore_compliance`",
+    ),
 ]
 
 
@@ -68,6 +72,8 @@ async def analyse_model(
     none is given. Of one throw, `unit_loads` are tables: the stress tensors at points of its fillets under
     1 kN on the pin along and across the throw, and under torque and bending moments of 1 kN·m. `chain` is
     of a shaft of several throws, from its first main to its last: stiffness, that of each throw, frequency.
+    `bore_compliance` is of a bearing housing or a connecting rod: how far its bore gives way to the modes of
+    an oil film's pressure.
     """
     if kind not in KINDS:
         raise NotFound(f"there is no analysis {kind[:60]!r}; there are {', '.join(KINDS)}")

@@ -1,0 +1,209 @@
+"""How far a split bore gives way to the pressure of an oil film: a matrix between modes of the pressure.
+
+A mode is a pressure, and a radial displacement, over the whole bore: 1, cos nθ or sin nθ up to n = 9, even
+along the bore or times Legendre's second polynomial of z. Each is scaled to a mean square of 1. A unit
+pressure of mode j displaces the bore by the amounts C_ij of modes i: the work of mode i's pressure on it over
+the bore's area. So C is symmetric (Betti), and no pressure gains energy: C is positive.
+
+θ counts from +y, the block of a housing or the shank of a rod, towards -x.
+
+The halves of the solid are joined as one: bolts are to keep the joint closed. Rows c1 and s1 hold the motion
+of the bore as a whole, of what carries it too; in a film that is eccentricity. A pressure in c1 or s1 still
+bends the bore, by the other rows.
+
+The solid has to mirror itself in z = 0; half of it is meshed. Lengths in mm, forces in N, stresses in MPa.
+
+References
+----------
+Oh, Goenka 1985: The elastohydrodynamic solution of journal bearings under dynamic loading (J. Tribology 107).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import pi
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import ngsolve as ng
+import numpy as np
+from netgen.meshing import MeshingParameters
+from netgen.occ import HalfSpace, OCCGeometry, Pnt, Vec
+
+from cad.analysis.elastic import stress
+from cad.analysis.kinds import HARMONICS, mode_names
+from cad.analysis.mesh import GRADING, MOST_ELEMENTS, curve
+from cad.analysis.solid import FREE, HELD, MIRROR
+from cad.errors import AnalysisError
+from cad.shaft import BorePlace
+from templates.core.arrays import Array
+
+BORE = "bore"
+
+RIGID = np.array([name in ("c1", "s1") for name in mode_names()])
+"""The modes that are a motion of the bore as a whole."""
+
+_NEAR = 1e-5  # [mm], so near to a surface a point lies on it
+_ALIKE = 1e-6  # relative, of volumes, centres and moments of mirrored halves
+_SAMPLES = 5  # of an edge
+
+
+@dataclass(frozen=True)
+class BoreFineness:
+    """How large elements are, in radii of the bore."""
+
+    bore: float  # at the bore
+    body: float  # elsewhere
+
+
+@dataclass(frozen=True)
+class BoredSolid:
+    """Half of a solid, at z > 0, its faces named."""
+
+    shape: Any
+    place: BorePlace
+
+
+def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
+    """Read the solids of a STEP file, join them, and halve them.
+
+    Raises
+    ------
+    AnalysisError
+        `no_bore` if they do not mirror themselves in z = 0, or a face is not where it should be.
+    """
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "model.step")
+        path.write_bytes(step)
+        solids = list(OCCGeometry(str(path)).shape.solids)
+    whole = solids[0]
+    for other in solids[1:]:
+        whole = whole + other
+    half = _upper_half(list(whole.solids))
+    if half is None:
+        raise AnalysisError("no_bore", "the bore's solids are not one body that mirrors itself in z = 0")
+    for face in half.faces:
+        face.name = _name(face, place)
+    for name, words in ((BORE, "bore"), (HELD, "face to hold it by")):
+        if not any(face.name == name for face in half.faces):
+            raise AnalysisError("no_bore", f"the solid has no {words} where the model says")
+    return BoredSolid(half, place)
+
+
+def _upper_half(joined: list[Any]) -> Any:
+    """The part of a solid at z > 0; None if there are several, or if volume, centre or inertia differ."""
+    if len(joined) != 1:
+        return None
+    sides = [list((joined[0] * HalfSpace(Pnt(0, 0, 0), Vec(0, 0, side))).solids) for side in (1, -1)]
+    if any(len(solids) != 1 for solids in sides):
+        return None
+    looks = [_look(solids[0], flip) for solids, flip in zip(sides, (1, -1), strict=True)]
+    if any(np.abs(one - other).max() > _ALIKE * np.abs(one).max() for one, other in zip(*looks, strict=True)):
+        return None
+    return max((solids[0] for solids in sides), key=lambda solid: solid.center[2])
+
+
+def _look(half: Any, flip: int) -> tuple[Array, Array, Array]:
+    """Volume, centre and moments of a solid, or of its image in z = 0."""
+    signs = np.array([1.0, 1.0, flip])
+    moments = np.array([[half.inertia[i, j] for j in range(3)] for i in range(3)])
+    return np.array([half.mass]), signs * np.array([*half.center]), moments * np.outer(signs, signs)
+
+
+def _name(face: Any, place: BorePlace) -> str:
+    """What a face is, by the points of its edges."""
+    x, y, z = np.array([point for edge in face.edges for point in _points(edge)]).T
+    if np.all(np.abs(z) < _NEAR):
+        return MIRROR
+    if np.all(np.abs(np.hypot(x, y) - place.radius) < _NEAR):
+        return BORE
+    away = y if place.held_radius is None else np.hypot(x, y - place.held_at)
+    wanted = place.held_at if place.held_radius is None else place.held_radius
+    return HELD if np.all(np.abs(away - wanted) < _NEAR) else FREE
+
+
+def _points(edge: Any) -> Iterator[tuple[float, float, float]]:
+    start, end = edge.parameter_interval
+    for at in np.linspace(start, end, _SAMPLES):
+        point = edge.Value(at)
+        yield point.x, point.y, point.z
+
+
+def bore_mesh(solid: BoredSolid, fineness: BoreFineness) -> Any:
+    """Tetrahedra, still straight.
+
+    Raises
+    ------
+    AnalysisError
+        `mesh` if Netgen fails, or the mesh becomes larger than a job can bear.
+    """
+    radius = solid.place.radius
+    for face in solid.shape.faces:
+        if face.name == BORE:
+            face.maxh = fineness.bore * radius
+    parameters = MeshingParameters(maxh=fineness.body * radius, grading=GRADING, curvaturesafety=1.0)
+    try:
+        mesh = ng.Mesh(OCCGeometry(solid.shape).GenerateMesh(parameters))
+    except Exception as error:  # Netgen has one kind of exception
+        raise AnalysisError("mesh", f"Netgen could not mesh the solid: {error}") from error
+    if mesh.ne > MOST_ELEMENTS:
+        detail = f"the mesh would have {mesh.ne} elements, more than {MOST_ELEMENTS}: ask for another level"
+        raise AnalysisError("mesh", detail)
+    return mesh
+
+
+def mode_functions(place: BorePlace) -> list[Any]:
+    """The modes as functions in space, in the order of `mode_names`."""
+    angle, zeta = ng.atan2(-ng.x, ng.y), ng.z / place.half_width
+    around = [ng.CF(1.0)]
+    for n in range(1, HARMONICS + 1):
+        around += [2**0.5 * part(n * angle) for part in (ng.cos, ng.sin)]
+    return [*around, *(5**0.5 * (3 * zeta**2 - 1) / 2 * part for part in around)]
+
+
+def compliance_on(
+    mesh: Any,
+    order: int,
+    place: BorePlace,
+    *,
+    spring: float = 0.0,
+    report: Callable[[float], None] = lambda done: None,
+) -> tuple[Array, int]:
+    """The matrix C [mm/MPa] of a half solid in elements of an order, and how many unknowns there were.
+
+    A solid that nothing holds rests on a soft spring [N/mm⁴] at each of its points, which bears the load as
+    the inertia of a free body does.
+    """
+    curve(mesh, order)
+    space = ng.VectorH1(mesh, order=order, dirichletx=HELD, dirichlety=HELD, dirichletz=f"{HELD}|{MIRROR}")
+    u, v = space.TnT()
+    form = ng.BilinearForm(space, symmetric=True, condense=True)
+    form += ng.InnerProduct(stress(u, place.material), ng.Sym(ng.Grad(v))) * ng.dx
+    if spring:
+        form += spring * ng.InnerProduct(u, v) * ng.dx
+    form.Assemble()
+    inverse = form.mat.Inverse(space.FreeDofs(True), inverse="sparsecholesky")
+    outward = ng.CF((ng.x, ng.y, 0)) / place.radius
+    loads, moved = [], []
+    functions = mode_functions(place)
+    for number, function in enumerate(functions):
+        force = ng.LinearForm(space)
+        force += function * ng.InnerProduct(outward, v.Trace()) * ng.ds(BORE, bonus_intorder=6)
+        force.Assemble()
+        loads.append(force.vec)
+        moved.append(_solved(form, inverse, force.vec))
+        report(number / len(functions))
+    work = np.array([[ng.InnerProduct(load, field) for field in moved] for load in loads])
+    return work / (2 * pi * place.radius * place.half_width), int(space.ndof)
+
+
+def _solved(form: Any, inverse: Any, force: Any) -> Any:
+    """The displacement under a force; the unknowns inside elements are eliminated."""
+    outer, u = force.CreateVector(), force.CreateVector()
+    outer.data = force + form.harmonic_extension_trans * force
+    u.data = inverse * outer
+    u.data += form.harmonic_extension * u
+    u.data += form.inner_solve * force
+    return u

@@ -1,0 +1,31 @@
+"""Where the split bore of a model is, and how its solid is held there, for finite elements.
+
+A housing is held by the flat top of its block, where the crankcase goes on. A rod is held by the bore of its
+small end.
+"""
+
+from __future__ import annotations
+
+from cad.model import CadModel
+from cad.shaft import CAST_IRON_MATERIAL, STEEL_MATERIAL, BorePlace
+from cad.shells.housing import Housing
+from cad.shells.rod import Rod
+
+
+def has_split_bore(cls: type[CadModel]) -> bool:
+    """Whether a model is a housing or a rod: its `drawn` answers a `Housing` or a `Rod`."""
+    declared = getattr(getattr(cls, "drawn", None), "__annotations__", {})
+    return declared.get("return") in (Housing, Rod, Housing.__name__, Rod.__name__)
+
+
+def bore_place(shape: CadModel) -> BorePlace | None:
+    """The split bore of a model; None if it has none."""
+    if not has_split_bore(type(shape)):
+        return None
+    drawn = getattr(shape, "drawn")()  # noqa: B009 - the base of models does not declare it
+    if isinstance(drawn, Rod):
+        end = drawn.big_end
+        return BorePlace(end.bore, end.half_width, drawn.distance, drawn.bore, STEEL_MATERIAL)
+    if isinstance(drawn, Housing):
+        return BorePlace(drawn.bore, drawn.half_width, drawn.block_height, None, CAST_IRON_MATERIAL)
+    return None
