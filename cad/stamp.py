@@ -36,7 +36,8 @@ class Stamp:
     """Owner of a file; `model` is its name in the design, `date` when the revision was made (ISO 8601).
 
     `materials` are those of the parts by name, empty where they are not known. A file of a variant is named
-    after that, and after the model only where the design has several (`is_only` is false).
+    after that, and after the model only where the design has several (`is_only` is false). Title, number and
+    mark of the revision replace those of the design in a title block, where they are given.
     """
 
     design: str
@@ -52,6 +53,9 @@ class Stamp:
     approver: str = ""
     status: str = ""
     mass: float | None = None  # [kg]
+    title: str = ""
+    number: str = ""
+    mark: str = ""
 
     @property
     def called(self) -> str:
@@ -86,13 +90,13 @@ class Stamp:
         """The texts of a drawing's title block (ISO 7200), by field."""
         return {
             "owner": self.owner,
-            "title": self.design,
+            "title": self.title or self.design,
             "author": self.author,
             "checker": self.checker,
             "approver": self.approver,
             "status": self.status,
-            "number": f"{name(self.design)}_{self.called}",
-            "revision": str(self.revision),
+            "number": self.number or f"{name(self.design)}_{self.called}",
+            "revision": self.mark or str(self.revision),
             "date": self.date[:10],
             "material": self._short_material,
             "mass": "" if self.mass is None else f"{self.mass:.4g} kg",

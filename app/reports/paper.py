@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
+from collections import OrderedDict
 from collections.abc import Mapping
-from threading import BoundedSemaphore
+from threading import BoundedSemaphore, Lock
 
 from app.plain import Json
 from app.reports.errors import Unprintable
@@ -12,13 +14,17 @@ from app.workers.base import Limits, Worker
 from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
 from cad.drafting.paper import as_pdf
 
+KEPT = 32 * 2**20  # bytes of drawings in memory
+
 
 class Press:
-    """Typesets reports, `at_once` at the same time; others wait."""
+    """Typesets reports, `at_once` at the same time; others wait. It keeps the latest drawings."""
 
     def __init__(self, worker: Worker, limits: Limits, at_once: int) -> None:
         self._worker, self._limits = worker, limits
         self._free = BoundedSemaphore(at_once)
+        self._drawn: OrderedDict[bytes, bytes] = OrderedDict()
+        self._lock = Lock()
 
     def print(self, report: Mapping[str, Json], pictures: Pictures) -> bytes:
         """A report as PDF; equal reports give equal bytes. It waits, so call it in a thread.
@@ -44,8 +50,22 @@ class Press:
         Unprintable
             If the typesetter had to be stopped, or stopped for want of memory.
         """
+        key = hashlib.sha256(svg).digest()
+        with self._lock:
+            if key in self._drawn:
+                self._drawn.move_to_end(key)
+                return self._drawn[key]
         with self._free:
             try:
-                return self._worker.run(as_pdf, svg, limits=self._limits)
+                pdf = self._worker.run(as_pdf, svg, limits=self._limits)
             except (DeadlineExceeded, MemoryExceeded, JobCrashed) as error:
                 raise Unprintable(f"this drawing cannot be typeset; take its SVG or DXF ({error})") from error
+        self._keep(key, pdf)
+        return pdf
+
+    def _keep(self, key: bytes, pdf: bytes) -> None:
+        """Keep a drawing, and forget those that were asked for the longest ago."""
+        with self._lock:
+            self._drawn[key] = pdf
+            while sum(map(len, self._drawn.values())) > KEPT:
+                self._drawn.popitem(last=False)

@@ -11,6 +11,7 @@ from ezdxf.document import Drawing
 from ezdxf.entities.text import Text
 from ezdxf.filemanagement import new
 
+from cad.drafting.breaks import zigzag
 from cad.drafting.curves import Curve, Point
 from cad.drafting.placing import EXTENSION, GAP, TEXT, Placed
 from cad.drafting.plan import Plan
@@ -28,6 +29,7 @@ _LAYERS = {
     "HIDDEN": (8, 25, "DASHED"),
     "CENTRE": (1, 18, "CENTER"),
     "CUTTING": (7, 70, "CONTINUOUS"),
+    "BREAK": (7, 18, "CONTINUOUS"),
     "HATCH": (8, 13, "CONTINUOUS"),
     "DIMENSIONS": (5, 18, "CONTINUOUS"),
     "SYMBOLS": (7, 25, "CONTINUOUS"),
@@ -79,6 +81,9 @@ class Page:
         for layer, curves in (("HIDDEN", view.hidden), ("SMOOTH", view.smooth), ("OUTLINE", view.visible)):
             for curve in curves:
                 self._curve(curve, right, layer)
+        for side in view.broken:
+            points = [(x + right, y) for x, y in zigzag(side.points, self.plan.scale)]
+            self.space.add_lwpolyline(points, dxfattribs={"layer": "BREAK"})
         scale = _HATCH / self.plan.scale / _ANSI31
         line = [[45.0, (0.0, 0.0), (-_ANSI31 / sqrt(2), _ANSI31 / sqrt(2)), []]]
         for cut in view.cut:

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import re
 from datetime import UTC, datetime
+from importlib.metadata import version
 from typing import Any
 
 import typst
 
 from cad.drafting.formats import FORMATS
+
+TYPESETTER = f"typst {version('typst')}"
+"""What makes the bytes of a PDF, beside its drawing."""
 
 _NO_TIME = datetime(1970, 1, 1, tzinfo=UTC)
 _SIZE = re.compile(rb'<svg [^>]*?width="(\d+)mm" height="(\d+)mm"')  # of the sheet, as `svg` writes it

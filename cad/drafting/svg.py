@@ -27,6 +27,7 @@ _WIDTHS = {
     "OUTLINE": 0.6,
     "FRAME": 0.4,
     "DIMENSIONS": 0.22,
+    "BREAK": 0.25,
     "HATCH": 0.12,
     "SMOOTH": 0.2,
     "HIDDEN": 0.25,

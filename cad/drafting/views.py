@@ -12,11 +12,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import atan2, degrees
 
-from cadquery import BoundBox, Compound, Edge, Face, Shape, Solid, Vector
+from cadquery import BoundBox, Compound, Edge, Face, Plane, Shape, Solid, Vector
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from OCP.HLRAlgo import HLRAlgo_Projector
 from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape
 
+from cad.drafting.breaks import breaks, opened
 from cad.drafting.curves import (
     Curve,
     Point,
@@ -84,6 +85,7 @@ class View:
     arcs: list[Arc]
     edges: list[tuple[Point, Point]]  # straight ones of the section
     axes: list[tuple[Point, Point]] = field(default_factory=list)  # of holes that lie in the paper's plane
+    broken: list[Curve] = field(default_factory=list)  # sides of broken-out sections
 
     @property
     def straight(self) -> list[tuple[Point, Point]]:
@@ -126,8 +128,44 @@ def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View
         for part, body in enumerate(bodies)
         for place in body.places
     ]
-    seen = _projected([one.shape for one in placed], end)
-    return _section(placed, section), replace(seen, axes=_axes_across(placed, end))
+    return _section(placed, section), _end(placed, end, section)
+
+
+def _end(placed: Sequence[_Placed], frame: Frame, section: Frame) -> View:
+    """The view along the shaft, opened at holes that the section does not show."""
+    plane = Plane((0, 0, 0), frame.right, frame.towards)
+    shapes = [one.shape for one in placed if not one.is_whole]
+    normal = section.towards
+    shown = [
+        c.diameter
+        for shape in shapes
+        for c in look(shape).cylinders
+        if abs(c.point.dot(normal)) < _CLEAR and abs(c.direction.dot(normal)) < _CLEAR
+    ]
+    cuts = breaks(shapes, plane, shown)
+    reach = max((_reach(shape) for shape in shapes), default=0.0)
+    seen = _projected(
+        [one.shape if one.is_whole else opened(one.shape, cuts, plane, reach) for one in placed], frame
+    )
+    faces = [
+        Cut(one.part, [outline([_curve(edge, frame) for edge in wire.Edges()]) for wire in _wires(face)])
+        for one in placed
+        if not one.is_whole
+        for cut in cuts
+        for face in cut.faces(plane, one.shape)
+    ]
+
+    def is_side(curve: Curve) -> bool:
+        return any(cut.bounds(curve) for cut in cuts)
+
+    return replace(
+        seen,
+        axes=_axes_across(placed, frame),
+        cut=faces,
+        visible=[curve for curve in seen.visible if not is_side(curve)],
+        hidden=[curve for curve in seen.hidden if not is_side(curve)],
+        broken=[curve for curve in seen.visible if is_side(curve)],
+    )
 
 
 def _axes_across(placed: Sequence[_Placed], frame: Frame) -> list[tuple[Point, Point]]:

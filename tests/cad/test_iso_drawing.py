@@ -239,6 +239,75 @@ def holds(hatch, point) -> bool:
     return any(is_point_in_polygon_2d(point.vec2, line) > 0 for line in outlines)
 
 
+def extent(entities) -> tuple[float, float, float, float]:
+    """Left, low, right, high of the corners of entities."""
+    every = [corner for one in entities for corner in path.make_path(one).flattening(0.1)]
+    across, up = [corner.x for corner in every], [corner.y for corner in every]
+    return min(across), min(up), max(across), max(up)
+
+
+def test_views_fill_their_sheet(dxf: bytes) -> None:
+    """ISO 5455, ISO 5457: at least a third of the width or the height that a sheet leaves for views."""
+    space = read(dxf).modelspace()
+    left, low, right, high = extent(space.query("LINE ARC CIRCLE LWPOLYLINE").query('*[layer=="OUTLINE"]'))
+    sheet = extent([space.query('LWPOLYLINE[layer=="FRAME"]').first])
+    (name,) = {text.dxf.text for text in space.query("TEXT")} & {"A3", "A2", "A1", "A0"}
+    wide, tall = {"A3": (420, 297), "A2": (594, 420), "A1": (841, 594), "A0": (1189, 841)}[name]
+    scale = wide / (sheet[2] - sheet[0])
+    assert scale * (sheet[3] - sheet[1]) == pytest.approx(tall)
+    assert max((right - left) * scale / (wide - 134), (high - low) * scale / (tall - 66)) > 0.33
+    (text,) = {t.dxf.text for t in space.query("TEXT") if ":" in t.dxf.text and t.dxf.text[0].isdigit()}
+    paper, part = map(float, text.split(":"))
+    assert paper / part == pytest.approx(scale)
+    assert f"{paper / part:.1e}"[0] in "125"
+
+
+@pytest.mark.parametrize(("id", "hole"), [("connecting_rod", "bolt_hole"), ("bearing_housing", "bolt_hole")])
+def test_a_hole_that_no_section_shows_is_broken_out(example_of, id: str, hole: str) -> None:
+    """ISO 128-3: one of two bolt holes, bounded by thin lines with zigzags; both have centre lines."""
+    build = example_of(models().latest(id))
+    drawing = read(derive(build.step, "dxf"))
+    space = drawing.modelspace()
+    sides = list(space.query('LWPOLYLINE[layer=="BREAK"]'))
+    assert len(sides) == 2  # towards the bore and above the blind end; the others lie beyond the part
+    assert drawing.layers.get("BREAK").dxf.lineweight < drawing.layers.get("OUTLINE").dxf.lineweight
+    assert all(len(side) > 2 for side in sides)
+    left = extent(sides)[0]
+    hatches = [hatch for hatch in space.query("HATCH") if extent([hatch])[0] > left - 1e-6]
+    assert len({hatch.pattern.lines[0].angle for hatch in hatches}) == 2  # both parts, each in its direction
+    diameter, spacing = build.dimensions[f"{hole}_diameter"], build.dimensions["bolt_spacing"]
+    upright = [line for line in space.query('LINE[layer=="CENTRE"]') if line.dxf.start.x == line.dxf.end.x]
+    axes = sorted({round(line.dxf.start.x, 4) for line in upright})
+    pairs = [(a, b) for a in axes for b in axes if b - a == pytest.approx(spacing)]
+    assert len(pairs) == 1
+    opened = pairs[0][1]
+    edges = {
+        round(line.dxf.start.x - opened, 4)
+        for line in space.query('LINE[layer=="OUTLINE"]')
+        if abs(line.dxf.start.x - line.dxf.end.x) < 1e-6
+    }
+    assert {round(-diameter / 2, 4), round(diameter / 2, 4)} <= edges
+    assert labels(drawing)["bolt_hole_diameter"] == f"2×Ø{diameter:g}"
+
+
+def test_nothing_is_broken_out_that_the_section_shows(example_of) -> None:
+    space = read(derive(example_of(models().get("flanged_bush", 1)).step, "dxf")).modelspace()
+    assert not space.query('*[layer=="BREAK"]')
+
+
+def test_extension_lines_begin_at_the_outline(example_of) -> None:
+    """The heights of block and cap, between the joint and their ends, are not drawn across the housing."""
+    drawing = read(derive(example_of(models().latest("bearing_housing")).step, "dxf"))
+    space = drawing.modelspace()
+    right = extent(space.query('LINE[layer=="OUTLINE"]'))[2]
+    heights = [d for d in space.query("DIMENSION") if d.has_xdata("CRANKWRIGHT")]
+    heights = [d for d in heights if d.get_xdata("CRANKWRIGHT")[0].value in ("block_height", "cap_height")]
+    assert len(heights) == 2
+    for height in heights:
+        for point in (height.dxf.defpoint2, height.dxf.defpoint3):
+            assert point.x == pytest.approx(right)
+
+
 def test_arcs_of_the_svg_are_arcs() -> None:
     build = toleranced({"shell": "full"})
     root = ElementTree.fromstring(derive(build.step, "drawing.svg"))

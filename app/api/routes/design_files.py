@@ -27,6 +27,7 @@ from app.api.gate.clients import TheClient
 from app.api.reading import StrictRoute
 from app.api.routes.models import PATIENCE, send_file
 from app.api.stored import UNAVAILABLE, UNCHANGED, lost
+from app.api.title_blocks import TheTitleBlock, TitleBlock
 from app.api.waiting import LATER, accepted, accepted_weights, finished
 from app.designs import stamps, views
 from app.jobs.service import Jobs
@@ -39,6 +40,7 @@ from app.storage.database import Database
 from app.storage.errors import NotFound
 from app.storage.tables import RevisionModelRow
 from cad.deflection import with_deflection
+from cad.drafting.paper import TYPESETTER
 from cad.export import DRAWINGS, MEDIA_TYPES
 from cad.stamp import STAMPED, Stamp, stamped, takes_stamp
 
@@ -85,7 +87,8 @@ class FileRequest:
     accept: str | None
     prefer: str | None
     if_none_match: str | None
-    deflection: str | None = None
+    deflection: str | None
+    title_block: TitleBlock
 
     async def answer(self, find: Callable[[Session], RevisionModelRow], kind: str | None) -> Response:
         """The file, of the kind that the path names or the client likes best, of the model that `find` finds.
@@ -95,7 +98,8 @@ class FileRequest:
         NotFound
             If there is no such kind, or no such model.
         InvalidInputs
-            If the deflection is no length, or the kind has no facets.
+            If the deflection is no length, or the kind has no facets; if the kind has no title block, or what
+            was typed contradicts the approval.
         """
         wanted = kind or _accepted(self.accept)
         prefer = self.prefer or PATIENCE
@@ -122,6 +126,7 @@ class FileRequest:
             kind = self._stored_kind(wanted)
             is_drawing = kind in DRAWINGS
             stamp = stamps.signed(session, model, self.owner) if is_drawing else stamps.stamp(session, model)
+            stamp = self.title_block.on(stamp, wanted)
             return model.build_key or "", kind, stamp, views.file(session, model, kind)
 
     def _stored_kind(self, wanted: str) -> str:
@@ -148,11 +153,14 @@ class FileRequest:
             "Content-Disposition": disposition(plain, wide),
         }
         content = stamped(self.store.read(file.sha256), file.kind, stamp) if file.kind in STAMPED else None
-        if content is not None and kind in PRINTED:
-            content = self.press.draw(content)
-        headers["ETag"] = f'"{file.sha256}"' if content is None else tag(content)
+        if content is None:
+            headers["ETag"] = f'"{file.sha256}"'
+        else:  # of what is typeset, that from which and with what: so a client that has it waits for nothing
+            headers["ETag"] = tag(content + TYPESETTER.encode() if kind in PRINTED else content)
         if is_at_hand(self.if_none_match, headers["ETag"]):
             return unchanged(headers)
+        if content is not None and kind in PRINTED:
+            content = self.press.draw(content)
         if content is None:
             return send_file(self.store, file, headers)
         return MemoryFile(content, MEDIA_TYPES[kind], {**headers, "Last-Modified": http_time(stamp.date)})
@@ -170,6 +178,8 @@ async def file_request(
     accept: Accept = None,
     prefer: Prefer = None,
     if_none_match: IfNoneMatch = None,
+    *,
+    title_block: TheTitleBlock,
     deflection: Deflection = None,
 ) -> FileRequest:
     """The parts of a request that all routes of files have in common."""
@@ -186,6 +196,7 @@ async def file_request(
         prefer,
         if_none_match,
         deflection,
+        title_block,
     )
 
 

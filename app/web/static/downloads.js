@@ -4,11 +4,26 @@ import { isolated } from "./isolated.js";
 import { watched } from "./progress.js";
 
 export function startDownloads() {
+  startDownloadForms();
   for (const link of document.querySelectorAll("[data-download]")) {
     link.addEventListener("click", (event) => {
       if (event.ctrlKey || event.metaKey || event.shiftKey) return; // in another tab: the browser's own way
       event.preventDefault();
       download(link);
+    });
+  }
+}
+
+// A form whose fields go into the address of a file: empty ones stay out of it.
+function startDownloadForms() {
+  for (const form of document.querySelectorAll("[data-download-form]")) {
+    form.addEventListener("submit", async (event) => {
+      event.preventDefault();
+      const typed = new URLSearchParams([...new FormData(form)].filter(([, text]) => text.trim()));
+      const link = Object.assign(document.createElement("a"), { href: `${event.submitter.formAction}?${typed}` });
+      form.querySelector("[data-buttons]").append(link);
+      await download(link);
+      link.remove();
     });
   }
 }
