@@ -57,7 +57,7 @@ class Break:
 
 
 def breaks(shapes: Sequence[Shape], plane: Plane, shown: Sequence[float]) -> list[Break]:
-    """Where a view in a plane through the origin opens shapes; not for holes of diameters `shown` elsewhere."""
+    """Where a view in a plane opens shapes; not for holes of diameters that are `shown` elsewhere."""
     holes: dict[tuple[float, ...], list[tuple[Point, Point, Surface, float]]] = {}
     for hole in (c for shape in shapes for c in look(shape).cylinders if _is_across(c, plane)):
         if any(abs(hole.diameter - diameter) < _ON for diameter in shown):
