@@ -35,7 +35,7 @@ _BEGINNING_OF_TIME = (1980, 1, 1, 0, 0, 0)
 
 @dataclass(frozen=True)
 class _Source:
-    """A fixed part as it was found: its file, where it comes from in words, and what it is made of."""
+    """Where a fixed part comes from: its file, where it comes from in words, and what it is made of."""
 
     sha: str
     origin: str

@@ -16,6 +16,7 @@ from app.web import (
     actions,
     approval_page,
     audit_page,
+    beside_page,
     impact_page,
     import_page,
     model_import_page,
@@ -80,6 +81,8 @@ def install(app: FastAPI) -> None:
     """Add the pages; call it after the interface is complete."""
     app.include_router(model_import_page.router)  # before the models: `import` is not one
     app.include_router(model_import_page.forms)
+    app.include_router(beside_page.router)
+    app.include_router(beside_page.forms)
     app.include_router(routes.router)
     app.include_router(organising.router)
     app.include_router(actions.router)

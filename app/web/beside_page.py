@@ -1,0 +1,150 @@
+"""The page that puts a bought part beside a model of a design: it writes the manifest of the assembly.
+
+The assembly is imported as every brought model is; then the design takes it in place of the model.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import re
+from collections.abc import Mapping
+
+from fastapi import APIRouter, Depends, Request, Response
+from pydantic import JsonValue, TypeAdapter
+
+from app.schemas.designs import Design, DesignModel
+from app.schemas.jobs import Job
+from app.schemas.templates import CadModel, TemplateList, TemplateSummary
+from app.web.actions import AT_ONCE, forms_only
+from app.web.api import Api, Refused, TheApi
+from app.web.forms import fields
+from app.web.model_import_page import BINARY, MISSED
+from app.web.rendering import go, show
+from app.web.routes import Id
+
+PATIENCE = 15.0
+"""How long the page waits for the import, which draws nothing [s]."""
+GLANCE = 0.1  # [s]
+PLACES = ("x", "y", "z", "turn_x", "turn_y", "turn_z")
+FIELDS = ("component", "source", "design", "part", "datum", *PLACES, "may_overlap", "id")
+_FIXED = "Fixed part "  # how the title of a STEP file begins that was brought
+_VERSION = re.compile(r"/api/v1/models/([a-z0-9_]+)/versions/([0-9]+)")
+_MANIFEST = TypeAdapter(dict[str, JsonValue])
+_STALE = 412
+
+router = APIRouter(include_in_schema=False)
+forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
+
+
+@router.get("/designs/{id}/models/{name}/beside")
+async def beside_form(request: Request, api: TheApi, id: Id, name: Id) -> Response:
+    """Show the form: which part, and where it stands."""
+    design = await api.get(f"/designs/{id}", Design)
+    return await _form(request, api, design, name, {})
+
+
+@forms.post("/designs/{id}/models/{name}/beside")
+async def put_beside(request: Request, api: TheApi, id: Id, name: Id) -> Response:
+    """Make the assembly and let the design take it; where that is refused, the form again with the reason."""
+    typed = {key: text.strip() for key, text in (await fields(request)).items() if key in FIELDS}
+    design = await api.get(f"/designs/{id}", Design)
+    try:
+        version = await _brought(api, typed, await _manifest(api, _model(design, name), typed))
+        patch = {"models": {name: version}, "note": f"{typed.get('component', '')[:40]} beside {name}"}
+        headers = {**AT_ONCE, "If-Match": f'"{design.revision}"'}
+        await api.send("PATCH", f"/designs/{id}", json=patch, headers=headers)
+    except Refused as refused:
+        if refused.status not in (*MISSED, _STALE):
+            raise
+        said = "; ".join(refused.faults.values()) or refused.problem.detail
+        return await _form(request, api, design, name, typed, said, refused.status)
+    return go(f"/designs/{id}")
+
+
+def _model(design: Design, name: str) -> DesignModel:
+    if name not in design.models:
+        raise Refused.because(404, f"this design has no model {name!r}")
+    return design.models[name]
+
+
+async def _manifest(api: Api, model: DesignModel, typed: Mapping[str, str]) -> dict[str, JsonValue]:
+    """The manifest of the model's assembly with the part that was typed; a new one if it is no assembly."""
+    described = await api.get(f"/models/{model.id}/versions/{model.version}", CadModel)
+    if described.origin is not None and described.origin.program == "assembly":
+        original = await api.send("GET", f"/models/{model.id}/versions/{model.version}/original")
+        manifest = _MANIFEST.validate_json(original.content)
+    else:
+        base: JsonValue = {"model": model.id, "version": model.version}
+        manifest = {"program": "assembly", "title": f"Assembly {typed.get('id', '')}", "base": base}
+    there = manifest.get("components", [])
+    return {**manifest, "components": [*(there if isinstance(there, list) else []), _component(typed)]}
+
+
+def _component(typed: Mapping[str, str]) -> dict[str, JsonValue]:
+    """The entry of a part, as far as anything was typed."""
+    entry: dict[str, JsonValue] = {"name": typed.get("component", "")}
+    if model := typed.get("source", ""):
+        id, _, version = model.partition(":")
+        entry |= {"model": id, "version": int(version) if version.isdecimal() and len(version) < 7 else 0}
+    entry |= {key: typed[key] for key in ("design", "part", "datum", *PLACES) if typed.get(key)}
+    if names := typed.get("may_overlap", "").replace(",", " ").split():
+        entry["may_overlap"] = list[JsonValue](names)
+    return entry
+
+
+async def _brought(
+    api: Api, typed: Mapping[str, str], manifest: Mapping[str, JsonValue]
+) -> dict[str, JsonValue]:
+    """The version of the model that a manifest becomes, as a design names it.
+
+    Raises
+    ------
+    Refused
+        With the reason, if it is not taken, or not in time.
+    """
+    id = typed.get("id", "")
+    query = {"id": id, "file": f"{id[:64] or 'assembly'}.json"}
+    content = json.dumps(manifest, ensure_ascii=False, indent=1).encode()
+    answer = await api.send("POST", "/models/import", content=content, params=query, headers=BINARY)
+    job = answer.headers["Location"].rpartition("/")[2]
+    for _ in range(round(PATIENCE / GLANCE)):
+        work = await api.get(f"/jobs/{job}", Job)
+        if work.problem is not None:
+            raise Refused(work.problem)
+        if work.state == "done" and (version := _VERSION.fullmatch(work.result or "")):
+            return {"id": version[1], "version": int(version[2])}
+        await asyncio.sleep(GLANCE)
+    raise Refused.because(503, "other work goes first: the assembly is not made yet; send the form again")
+
+
+async def _form(
+    request: Request,
+    api: Api,
+    design: Design,
+    name: str,
+    typed: Mapping[str, str],
+    notice: str = "",
+    status: int = 200,
+) -> Response:
+    model = _model(design, name)
+    described = await api.get(f"/models/{model.id}/versions/{model.version}", CadModel)
+    is_assembly = described.origin is not None and described.origin.program == "assembly"
+    usual = {"datum": "origin", "id": model.id if is_assembly else f"{model.id[:50]}_with_parts"}
+    return show(
+        request,
+        "beside.html",
+        status,
+        design=design,
+        model_name=name,
+        model=described,
+        typed={**dict.fromkeys(FIELDS, ""), **usual, **typed},
+        notice=notice,
+        bought=await _bought(api),
+    )
+
+
+async def _bought(api: Api) -> list[TemplateSummary]:
+    """The STEP files that were brought, the newest of each."""
+    items = (await api.get("/models", TemplateList, limit=500)).items
+    return [item for item in items if item.latest and item.title.startswith(_FIXED)]
