@@ -34,7 +34,7 @@ from netgen.occ import HalfSpace, OCCGeometry, Pnt, Vec
 
 from cad.analysis.elastic import stress
 from cad.analysis.kinds import HARMONICS, mode_names
-from cad.analysis.mesh import GRADING, MOST_ELEMENTS, curve
+from cad.analysis.mesh import MOST_ELEMENTS, curve
 from cad.analysis.solid import FREE, HELD, MIRROR
 from cad.errors import AnalysisError
 from cad.shaft import BorePlace
@@ -47,6 +47,7 @@ RIGID = np.array([name in ("c1", "s1") for name in mode_names()])
 
 _NEAR = 1e-5  # [mm], so near to a surface a point lies on it
 _ALIKE = 1e-6  # relative, of volumes, centres and moments of mirrored halves
+_GRADING = 0.5  # how fast elements grow
 _SAMPLES = 5  # of an edge
 
 
@@ -143,7 +144,7 @@ def bore_mesh(solid: BoredSolid, fineness: BoreFineness) -> Any:
     for face in solid.shape.faces:
         if face.name == BORE:
             face.maxh = fineness.bore * radius
-    parameters = MeshingParameters(maxh=fineness.body * radius, grading=GRADING, curvaturesafety=1.0)
+    parameters = MeshingParameters(maxh=fineness.body * radius, grading=_GRADING, curvaturesafety=1.0)
     try:
         mesh = ng.Mesh(OCCGeometry(solid.shape).GenerateMesh(parameters))
     except Exception as error:  # Netgen has one kind of exception
