@@ -144,21 +144,28 @@ def name(file: Path) -> str:
     return file.relative_to(ROOT).as_posix()
 
 
-def reach(file: str) -> set[str]:
+@cache
+def reach(file: str) -> frozenset[str]:
     """Return the file and all of ours that it imports, directly or not."""
     reached, ahead = {file}, [file]
     while ahead:
         new = set(imports(ahead.pop())) - reached
         reached |= new
         ahead += new
-    return reached
+    return frozenset(reached)
 
 
 @cache
 def imports(file: str) -> tuple[str, ...]:
     """Return our files that a file imports, wherever in it."""
-    tree = ast.parse((ROOT / file).read_text(encoding="utf-8"))
+    tree = ast.parse(text(file))
     return tuple(found for module in modules(tree) for found in located(module, Path(file).parent))
+
+
+@cache
+def text(file: str) -> str:
+    """Return what one of our files contains."""
+    return (ROOT / file).read_text(encoding="utf-8")
 
 
 def modules(tree: ast.AST) -> Iterator[str]:
@@ -216,10 +223,10 @@ def is_named(file: str, test: str, reached: Iterable[str]) -> bool:
     if version := VERSION.search(file):
         is_listed = test == CATALOGUE and file.startswith("templates/")
         own = (test, *(program for program in reached if program.startswith("tests/")))
-        return is_listed or any(version[1] in (ROOT / one).read_text(encoding="utf-8") for one in own)
+        return is_listed or any(version[1] in text(one) for one in own)
     if file.endswith((".py", ".md")):
         return False
-    return any(Path(file).name in (ROOT / program).read_text(encoding="utf-8") for program in reached)
+    return any(Path(file).name in text(program) for program in reached)
 
 
 def selection(files: list[str] | None) -> list[str]:

@@ -2,6 +2,8 @@
 
 import json
 import re
+import sqlite3
+from contextlib import ExitStack, closing
 
 import httpx
 import pytest
@@ -21,6 +23,7 @@ from hostile import (
 from serving import API, created, moody
 
 from app.api.reading import SHEET_TYPES
+from app.storage.engines import sqlite_file
 from app.storage.tables import DesignRow, DesignTagRow, JobRow, RevisionRow
 
 ROUTES = sorted(set(every_route(APP)))
@@ -54,23 +57,39 @@ def victim(served):
     return {"design": design["id"], "artifact": revision["models"]["model"]["artifacts"]["step"]}
 
 
-@pytest.fixture
-def unchanged(served, victim):
-    """Whatever the test does changes nothing: no design, revision or job comes or goes."""
-
+@pytest.fixture(scope="module")
+def stored(served):
+    """A function that returns all rows; of SQLite it reads them again only after a commit."""
     database = served.app.state.services.database
+    kept = None, None
 
-    def state():
-        with database.read() as session:
-            names = (table.__tablename__ for table in STORED)
-            # as they are stored: to read the documents of all designs takes ten times as long
-            tables = (session.execute(sa.text(f'SELECT * FROM "{name}"')) for name in names)
-            return [sorted(map(repr, rows)) for rows in tables]
+    def rows():
+        nonlocal kept
+        commits = None if watching is None else watching.execute("PRAGMA data_version").fetchone()
+        if commits is None or commits != kept[0]:
+            kept = commits, read_all(database)
+        return kept[1]
 
-    before = state()
+    with ExitStack() as stack:
+        file = sqlite_file(database.url)
+        watching = file and stack.enter_context(closing(sqlite3.connect(file)))
+        yield rows
+
+
+def read_all(database):
+    """All rows as they are stored: to read the documents of all designs takes ten times as long."""
+    with database.read() as session:
+        tables = (session.execute(sa.text(f'SELECT * FROM "{table.__tablename__}"')) for table in STORED)
+        return [sorted(map(repr, rows)) for rows in tables]
+
+
+@pytest.fixture
+def unchanged(stored, victim):
+    """Whatever the test does changes nothing: no design, revision or job comes or goes."""
+    before = stored()
     assert any(victim["design"] in row for row in before[0])
     yield
-    assert state() == before
+    assert stored() == before
 
 
 def refused(heard, *statuses):
@@ -275,3 +294,13 @@ def test_own_pages_and_programs_change_what_they_want(served, http, victim):
         heard = ask(served.url, "POST", copy_of(victim), headers)
         assert heard.status in (201, 202), heard.body
         assert http.delete(f"{API}/designs/{json.loads(heard.body)['id']}").status_code == 204
+
+
+def test_a_commit_shows(http, stored, victim):
+    """The fixture `unchanged`, which reads again after a commit alone, sees every commit."""
+    before = stored()
+    assert stored() == before
+    response = http.post(copy_of(victim), headers={"Prefer": "wait=60"})
+    assert response.status_code in (201, 202), response.text
+    assert stored() != before
+    assert http.delete(f"{API}/designs/{response.json()['id']}").status_code == 204

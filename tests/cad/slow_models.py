@@ -14,6 +14,9 @@ LARGE = (*SHAFTS, ("bearing_assembly", 1))
 """To build, mesh or draw one takes as long as all others together. What they consist of, throws, shells and
 housings, are models of their own, in the quick lane."""
 
+BALLS = ("deep_groove_bearing", 1)
+"""To draw one takes as long as all other models in the quick lane together: its drawing is read, once."""
+
 
 def slow_for(*models: Model) -> Callable[[Test], Test]:
     """Put a test of these models into the slow lane."""

@@ -34,6 +34,8 @@ newest_templates = pytest.mark.parametrize("cls", older_slow(chain(BUILT_IN, mod
 SAMPLED = {
     ("cycle_heat_balance", 1): 9,
     ("cycle_heat_balance", 2): 9,
+    ("engine", 2): 3,
+    ("engine", 3): 3,
     ("mixed_friction", 1): 3,
     ("thermal_film", 1): 3,
     ("thrust_bearing", 1): 3,

@@ -16,6 +16,7 @@ from test_catalogue_properties import (
     check_case,
 )
 
+from templates.bearing_load import engine_v2, engine_v3
 from templates.core.catalogue import golden
 from templates.oil_film import (
     cycle_heat_balance_v1,
@@ -32,6 +33,8 @@ pytestmark = pytest.mark.slow
 VERSIONS = [
     cycle_heat_balance_v1.CycleHeatBalance,
     cycle_heat_balance_v2.CycleHeatBalance,
+    engine_v2.Engine,
+    engine_v3.Engine,
     mixed_friction_v1.MixedFriction,
     thermal_film_v1.ThermalFilm,
     thrust_bearing_v1.ThrustBearing,
