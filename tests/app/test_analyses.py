@@ -106,9 +106,10 @@ class TestAnswer:
         """Under 1 N·m: τ = 16 / (π d³), von Mises √3 τ; it converges where nothing is sharp."""
         output = asked(http, bar(20, 12), outputs=["maximum_stress"])["outputs"]["maximum_stress"]
         assert output["unit"] == "MPa"
-        assert output["value"] == pytest.approx(sqrt(3) * 16 / (pi * 0.020**3) / 1e6, rel=0.03)
+        exact = sqrt(3) * 16 / (pi * 0.020**3) / 1e6
+        assert output["value"] == pytest.approx(exact, rel=output["error"])
         assert len(output["convergence"]) >= 2
-        assert output["error"] <= 0.01
+        assert 0.005 <= output["error"] <= 0.015  # the last change, at most 0.01, and what the whole leaves
         loaded = asked(http, bar(20, 12), outputs=["maximum_stress", "stiffness"], load="0.5 kN*m")
         assert loaded["load"] == {"value": 500, "unit": "N*m"}
         assert loaded["outputs"]["maximum_stress"]["value"] == pytest.approx(500 * output["value"], rel=1e-12)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from templates.core.arrays import Array, Mask
-from templates.physics.films.banded import Banded, banded
+from templates.physics.films.banded import Banded, Resumed, banded
 from templates.physics.films.film_equations import Equations, dual_widths
 
 _MOST_STEPS = 1000
@@ -59,8 +59,9 @@ def rupture(equations: Equations, film: Mask | None = None) -> Rupture:
         b[0] += b[-1]
     film = (may & (b > 0)) if film is None else may & film
     noise = 1e-13 * np.abs(b).max()
+    solver = Resumed(matrix)
     for step in range(1, _MOST_STEPS):
-        P = matrix.solve(film, b)
+        P = solver.solve(film, b)
         if equations.ring:
             P[-1] = P[0]
         after = may & np.where(film, P > 0, equations.residual(P) < -noise)
