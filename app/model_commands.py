@@ -34,8 +34,8 @@ def programs_command(url: str | None, data: Path | None) -> None:
 def import_command(file: Path, id: str, url: str | None, data: Path | None) -> None:
     """Import FILE as the model ID, or as its next version.
 
-    FILE is a document of FreeCAD (.FCStd), a STEP file as a fixed part, or a manifest of a model in Creo
-    (JSON). Prints the version, its parameters, and how far to trust its solids.
+    FILE is a document of FreeCAD (.FCStd), a STEP file as a fixed part, or a manifest (JSON) of a model in
+    Creo or of an assembly. Prints the version, its parameters, and how far to trust its solids.
     """
     with connected(url, data) as client:
         model = client.import_model(id, file.read_bytes(), file.name, on_progress=_progress)

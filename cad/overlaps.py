@@ -8,11 +8,14 @@ from itertools import combinations
 
 from cadquery import Shape
 from OCP.Bnd import Bnd_Box
+from OCP.BRep import BRep_Tool
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.BRepBndLib import BRepBndLib
+from OCP.BRepClass3d import BRepClass3d_SolidClassifier
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
+from OCP.TopAbs import TopAbs_State
 
 from cad.errors import GeometryError
 from cad.model import names_at
@@ -21,6 +24,8 @@ from cad.step import Body
 MOST_CLEARANCES = 200
 """Pairs of parts of which the distance is measured, those with the closest boxes first."""
 _TOUCHING = 1e-6  # [mm]; parts that are closer touch or overlap
+_OFF = 1e-3  # [mm]; a corner that is closer to a face lies on it
+_MOST_CORNERS = 500  # of a part that are tried
 _SPECK = 1e-6  # [mm³]; touching faces have less in common
 
 
@@ -101,7 +106,23 @@ def _between(one: str, shape: Shape, other: str, beside: Shape) -> Clearance:
         raise GeometryError("kernel", f"whether {one} and {other} overlap cannot be found")
     BRepGProp.VolumeProperties_s(common.Shape(), properties)
     volume = float(properties.Mass())
-    return Clearance(one, other, 0.0, volume if volume > _SPECK else 0.0)
+    if volume > _SPECK:
+        return Clearance(one, other, 0.0, volume)
+    if _has_corner_inside(shape, beside) or _has_corner_inside(beside, shape):
+        raise GeometryError("kernel", f"{one} and {other} overlap, and how much of it cannot be found")
+    return Clearance(one, other, 0.0)
+
+
+def _has_corner_inside(shape: Shape, other: Shape) -> bool:
+    """Whether a corner of a shape lies within another, well off its faces."""
+    inside = [BRepClass3d_SolidClassifier(solid.wrapped) for solid in other.Solids()]
+    for corner in shape.Vertices()[:_MOST_CORNERS]:
+        point = BRep_Tool.Pnt_s(corner.wrapped)
+        for classifier in inside:
+            classifier.Perform(point, _OFF)
+            if classifier.State() == TopAbs_State.TopAbs_IN:
+                return True
+    return False
 
 
 def _box(shape: Shape) -> Bnd_Box:

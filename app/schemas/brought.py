@@ -22,7 +22,7 @@ class BroughtParameter(Answer):
 class ModelOrigin(Answer):
     """The origin of a brought model, and how far its solids are to be trusted."""
 
-    program: str = Field(description="`freecad`, `creo` or `step`")
+    program: str = Field(description="`freecad`, `creo`, `step` or `assembly`")
     file: str = Field(description="the name under which it was sent")
     sha256: str = Field(description="of the file as it was sent, which is kept")
     made_with: str = Field(description="the program and version that examined it")
