@@ -119,7 +119,7 @@ def test_an_image_moves_as_the_other_half_does(load: Kind, mirrors: tuple[str, .
 
 def test_a_half_with_its_image_is_the_mirrored_mesh() -> None:
     """The same elements on both sides: displacements to rounding; what is recovered, off the plane."""
-    solid = read_solid(step_of(Workplane().rect(40, 30).extrude(60)), Shaft(0.0, 60.0), ("y",))
+    solid = read_solid(step_of(Workplane().rect(40, 30).extrude(30)), Shaft(0.0, 30.0), ("y",))
     grid = make_grid(solid, COARSE)
     half = surface_of(grid, "torsion")
     whole = surface_of(Grid(mirrored(grid.mesh), Solid(solid.shape, "", solid.radius)), "torsion")
