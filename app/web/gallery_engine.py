@@ -69,7 +69,7 @@ _CRANKSHAFT: dict[str, JsonValue] = {
     "web_thickness": "= engine.web_thickness",
     "web_width": "= engine.web_width",
     "throw": "= engine.stroke / 2",
-    "fillet": "2.5 mm",
+    "fillet": "3.5 mm",  # 2.5 mm takes twice as many elements
     "oil_drilling_diameter": "5 mm",
     "flange_diameter": "90 mm",
     "bolt_hole_diameter": "10 mm",
