@@ -140,9 +140,9 @@ on_postgresql() {
     CRANKWRIGHT_TEST_DATABASE=postgresql "$environment/bin/pytest" -n 2 -rs "${files[@]}"
 }
 
-# All parts of a team together, and their kills: CRANKWRIGHT_TEST_TEAM_KILLS says how many. team OPTIONS…
+# All parts of a team together, and their kills: CRANKWRIGHT_TEST_TEAM_KILLS says how many. team FILE…
 team() {
-    CRANKWRIGHT_TEST_BUDGET=0 "$environment/bin/pytest" -m slow -rsP tests/team "$@"
+    CRANKWRIGHT_TEST_BUDGET=0 "$environment/bin/pytest" -m slow -rsP "$@"
 }
 
 lint() { "$environment/bin/ruff" check && "$environment/bin/ruff" format --check; }
