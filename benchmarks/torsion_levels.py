@@ -2,10 +2,11 @@
 
     python -m benchmarks.torsion_levels [COUNT]
 
-For each throw and level the true error of every output but stress, and the change from one order less, whose
-multiple is stated as the error, above a floor. Every second throw has no fillets: its corners are sharp. The
-truth is a run with elements of a higher order on a mesh of its own, far finer along sharp corners. `share` is
-the true error by the stated one, which must be below 1. Kept after every throw in
+COUNT shafts, every third of them a crankshaft with plain ends, the others throws. For each shaft and level
+the true error of every output but stress, and the change from one order less, whose multiple is stated as
+the error, above a floor. Every second shaft has no fillets: its corners are sharp. The truth is a run with
+elements of a higher order on a mesh of its own, far finer along sharp corners. `share` is the true error by
+the stated one, which must be below 1. Kept after every shaft in
 benchmarks/results/torsion_levels.json; with COUNT 0 what is kept there is judged by the present table.
 """
 
@@ -25,6 +26,7 @@ from cad.analysis.modes import torsional_mode
 from cad.analysis.solid import read_solid
 from cad.model import CadModel
 from cad.models.crank_throw_v1 import CrankThrow
+from cad.models.crankshaft_v1 import Crankshaft
 from cad.regenerate import regenerate
 from cad.shaft import Shaft
 from templates.core.errors import InvalidInputs
@@ -73,6 +75,30 @@ def random_throws(count: int, seed: int) -> Iterator[dict[str, Any]]:
             yield drawn
 
 
+def random_crankshafts(count: int, seed: int) -> Iterator[dict[str, Any]]:
+    """Parameters [SI] of crankshafts that can be drawn: random throws, each with ends of its own."""
+    rng = np.random.default_rng(seed + 1)
+    for thrown in random_throws(10 * count, seed):
+        size = thrown["journal_diameter"]
+        ends = {
+            f"{end}_{name}": size * rng.uniform(low, high)
+            for end in ("front", "rear")
+            for name, low, high in (("diameter", 0.5, 0.9), ("length", 0.3, 1.0))
+        }
+        if count > 0 and possible(Crankshaft, drawn := {**thrown, **ends}):
+            count -= 1
+            yield drawn
+
+
+def random_shafts(count: int, seed: int) -> Iterator[tuple[type[CadModel], dict[str, Any]]]:
+    """Models and parameters [SI]: every third a crankshaft, the others throws."""
+    cranks = random_crankshafts(count // 3, seed + 100)
+    throws = random_throws(count - count // 3, seed)
+    for number in range(count):
+        is_crank = number % 3 == 2
+        yield (Crankshaft, next(cranks)) if is_crank else (CrankThrow, next(throws))
+
+
 def possible(model: type[CadModel], parameters: dict[str, Any]) -> bool:
     """Whether a model accepts its parameters [SI]."""
     try:
@@ -86,6 +112,13 @@ def shaft_of(parameters: dict[str, Any]) -> tuple[bytes, Shaft]:
     """A throw's STEP file, and where it is held and loaded."""
     half = 500 * (parameters["pin_length"] + 2 * parameters["web_thickness"] + parameters["journal_length"])
     return regenerate("crank_throw", 1, parameters).step, Shaft(-half, half)
+
+
+def drawn(model: type[CadModel], parameters: dict[str, Any]) -> tuple[bytes, Shaft]:
+    """The STEP file of a shaft of any model, and where it is held and loaded."""
+    shaft = model.from_si(parameters).shaft()
+    assert shaft is not None
+    return regenerate(model.id, model.version, parameters).step, shaft
 
 
 Found = dict[str, float]
@@ -114,11 +147,11 @@ def truth(step: bytes, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> Foun
     return outputs_by(grid, SHARP_ORDER if grid.is_sharp else ORDER, shaft, outputs)
 
 
-def row(parameters: dict[str, Any]) -> dict[str, Any]:
-    """Results of each level for a throw, by themselves and against the truth."""
-    step, shaft = shaft_of(parameters)
+def row(model: type[CadModel], parameters: dict[str, Any]) -> dict[str, Any]:
+    """Results of each level for a shaft, by themselves and against the truth."""
+    step, shaft = drawn(model, parameters)
     true = truth(step, shaft)
-    kept: dict[str, Any] = {"parameters": parameters, **true}
+    kept: dict[str, Any] = {"model": model.id, "parameters": parameters, **true}
     for level in LEVELS:
         grid = make_grid(read_solid(step, shaft), level.fineness)
         low, high = (outputs_by(grid, order, shaft) for order in (level.order - 1, level.order))
@@ -159,8 +192,8 @@ def worst(level: Level, cases: list[dict[str, Any]], *, is_sharp: bool) -> dict[
 def main(count: int) -> None:
     """Measure, print and keep the table."""
     rows: list[dict[str, Any]] = [] if count else json.loads(RESULTS.read_text())["rows"]
-    for parameters in random_throws(count, SEED):
-        rows.append(row(parameters))
+    for model, parameters in random_shafts(count, SEED):
+        rows.append(row(model, parameters))
         keep(rows)
     keep(rows)
     print(json.dumps(summary(rows), indent=1))
@@ -168,7 +201,7 @@ def main(count: int) -> None:
 
 def keep(rows: list[dict[str, Any]]) -> None:
     """Write what is known so far."""
-    record = {"throws": len(rows), "summary": summary(rows), "rows": rows}
+    record = {"shafts": len(rows), "summary": summary(rows), "rows": rows}
     RESULTS.write_text(json.dumps(record, indent=1) + "\n")
 
 
