@@ -22,6 +22,7 @@ _WORDS: dict[str, tuple[Sort, ...]] = {
     "wall": ("gap",),
     "depth": ("gap", "length", "width"),
     "throw": ("offset",),
+    "spread": (),  # a difference of two shapes, of which one is drawn
 }
 _LENGTHS: tuple[Sort, ...] = ("length", "width", "offset", "gap")
 _ANY: tuple[Sort, ...] = (*_LENGTHS, "diameter", "radius")
@@ -103,7 +104,9 @@ def _sorts(name: str, is_angle: bool) -> tuple[Sort, ...]:
         return ("angle",)
     words = name.split("_")
     forms = next((_WORDS[word] for word in reversed(words) if word in _WORDS), None)
-    return forms or (_LENGTHS if {"length", "width", "thickness", "height"} & set(words) else _ANY)
+    if forms is not None:
+        return forms
+    return _LENGTHS if {"length", "width", "thickness", "height"} & set(words) else _ANY
 
 
 def _size(text: str) -> tuple[float, bool] | None:

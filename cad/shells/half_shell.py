@@ -46,7 +46,11 @@ class Flange:
 
 @dataclass(frozen=True)
 class HalfShell:
-    """What is drawn [mm]: radii about z; the joint is at y = -crush, the wall goes on straight so far."""
+    """What is drawn [mm]: radii about z; the joint is at y = -crush, the wall goes on straight so far.
+
+    Of a shell that nothing holds, the arc ends above the plane y = 0, by the angle `lift` on either side;
+    what is at a joint is drawn as at y = 0, and turned about z by so much.
+    """
 
     bore: float
     lining: float  # radius of the back of the lining
@@ -60,6 +64,12 @@ class HalfShell:
     hole: float
     tang: Tang | None
     flange: Flange | None
+    lift: float = 0.0  # [rad]
+
+    @property
+    def turn(self) -> float:
+        """The turn of its arc [rad]."""
+        return pi - 2 * self.lift
 
     @property
     def is_split(self) -> bool:
@@ -121,7 +131,7 @@ class HalfShell:
 
     def back(self) -> Shape:
         """The steel: the section turned, with legs and lip, less groove and hole."""
-        body = turned(self.back_section(), 0.0, 180.0)
+        body = turned(self.back_section(), degrees(self.lift), degrees(self.turn))
         if self.groove and self.groove.bottom > self.lining:
             body = cut(body, self._ring(self.groove))
         if self.hole > 0:
@@ -135,16 +145,23 @@ class HalfShell:
             return body
         for side in (1, -1):
             foot = face(polyline(*(Vector(side * r, 0.0, z) for r, z in joint)))
-            body = fuse(body, extrude(foot, (0, -self.crush, 0)))
+            body = fuse(body, self._at_joint(extrude(foot, (0, -self.crush, 0)), side))
         return body
+
+    def _at_joint(self, body: Shape, side: int) -> Shape:
+        """What was drawn at y = 0, where the joint is on that side."""
+        if self.lift == 0:
+            return body
+        return body.rotate(Vector(0, 0, 0), Vector(0, 0, 1), degrees(side * self.lift))
 
     def _lip(self, tang: Tang) -> Shape:
         """A box that grows out of the back."""
         foot = sqrt(self.outside**2 - tang.length**2) - 0.1 * (self.outside - self.lining)
-        return Solid.makeBox(
+        lip = Solid.makeBox(
             self.outside + tang.height - foot, tang.length + self.crush, tang.width,
             Vector(foot, -self.crush, tang.z - tang.width / 2),
         )  # fmt: skip
+        return self._at_joint(lip, 1)
 
     def _ring(self, groove: Groove) -> Shape:
         """What the groove takes, from within the bore on."""
@@ -178,15 +195,16 @@ class HalfShell:
 
     def _lining_face(self, z: float) -> Shape:
         """The lining across the shaft, with both reliefs."""
-        edges = [self._arc(self.lining, 0.0, pi, z)]
-        deep, inner = self.bore, [self._arc(self.bore, 0.0, pi, z)]
+        right, left = self.lift, pi - self.lift
+        edges = [self._arc(self.lining, right, left, z)]
+        deep, inner = self.bore, [self._arc(self.bore, right, left, z)]
         if self.relief:
             deep, angle = self.bore + self.relief.depth, self.relief.angle
             inner = [
-                self._arc(self.bore, angle, pi - angle, z),
-                *(self._relief_arc(self.relief, joint, sign, z) for joint, sign in ((0.0, 1), (pi, -1))),
+                self._arc(self.bore, right + angle, left - angle, z),
+                *(self._relief_arc(self.relief, joint, sign, z) for joint, sign in ((right, 1), (left, -1))),
             ]
-        edges += [segment(Vector(s * deep, 0, z), Vector(s * self.lining, 0, z)) for s in (1, -1)]
+        edges += [segment(self._at(deep, end, z), self._at(self.lining, end, z)) for end in (right, left)]
         return face(wire(*edges, *inner))
 
     def _relief_arc(self, relief: Relief, joint: float, sign: int, z: float) -> Shape:
@@ -207,7 +225,9 @@ class HalfShell:
 
     def back_volume(self) -> float:
         """The turned section, legs and lip, less groove and hole [mm³]."""
-        volume = turned_volume(self.back_section(), 180.0) + 2 * area(self.back_joint()) * self.crush
+        volume = (
+            turned_volume(self.back_section(), degrees(self.turn)) + 2 * area(self.back_joint()) * self.crush
+        )
         if self.tang:
             reach, length = self.outside + self.tang.height, self.tang.length
             lip = reach * length - sheet_under_arc(self.outside, length) / 2
@@ -218,7 +238,7 @@ class HalfShell:
     def lining_volume(self) -> float:
         """All of the lining, in one piece or two [mm³]."""
         r, s = self.bore, self.lining
-        volume = (s * s - r * r) * pi * self.half_width
+        volume = (s * s - r * r) * self.turn * self.half_width
         volume += 2 * area(self.lining_joint()) * self.crush * (2 if self.is_split else 1)
         volume -= self._groove_between(r, s) + self._hole(r, s) + 2 * self._chamfer()
         if self.relief:
@@ -230,7 +250,7 @@ class HalfShell:
     def _groove_between(self, inside: float, outside: float) -> float:
         if self.groove is None or self.groove.bottom <= inside:
             return 0.0
-        turn = pi if self.groove.is_whole else self.groove.turn
+        turn = self.turn if self.groove.is_whole else self.groove.turn
         return (min(self.groove.bottom, outside) ** 2 - inside**2) * self.groove.half_width * turn
 
     def _hole(self, inside: float, outside: float) -> float:
@@ -246,7 +266,7 @@ class HalfShell:
             return 0.0
         reach = min(c, self.lining - r)
         section = outline((r, 0.0), (r, c), (r + reach, c - reach), (r + reach, 0.0))
-        return turned_volume(section, 180.0)
+        return turned_volume(section, degrees(self.turn))
 
     def _relief_in_chamfer(self, relief: Relief) -> float:
         """What one chamfer and one relief both take [mm³]."""

@@ -111,7 +111,7 @@ def test_bytes_are_the_same_in_another_process(
     assert elsewhere[f"{model.id}_v{model.version}"] == hashlib.sha256(example.step).hexdigest()
 
 
-@slow_for(*LARGE, ("crank_throw", 1), ("plain_bearing", 2))
+@slow_for(*LARGE, ("crank_throw", 1), ("plain_bearing", 3))
 def test_bytes_are_the_same_each_time(model: type[CadModel], example: Build) -> None:
     # Six times: the order of three colours was once that of memory addresses, so two equal files were luck.
     colours = {part.colour for part in model.from_quantities(model.example).build()}
@@ -136,7 +136,7 @@ def test_hostile_numbers_are_refused_by_name(model: type[CadModel], example: Bui
         assert name in {fault.name for fault in refused.value.faults}
 
 
-@slow_for(*LARGE, ("plain_bearing", 2))
+@slow_for(*LARGE, ("plain_bearing", 3))
 def test_required_parameter_may_have_any_size_in_range(model: type[CadModel]) -> None:
     for share in (0.0, 0.25, 0.5, 0.75, 1.0):
         required = {n: _between(d, share) for n, d in model.inputs.items() if d.required}
@@ -195,7 +195,7 @@ def parameters(draw: st.DrawFn, cls: type[CadModel]) -> dict[str, Value]:
 QUICK = settings(max_examples=15, suppress_health_check=list(HealthCheck))
 
 
-@slow_for(*LARGE, BALLS, ("plain_bearing", 1), ("plain_bearing", 2))  # test_bearing_parts.py has random ones
+@slow_for(*LARGE, BALLS, ("plain_bearing", 1), ("plain_bearing", 3))  # test_bearing_parts.py has random ones
 @QUICK
 @given(data=st.data())
 def test_any_parameters_give_a_checked_solid_or_are_refused(

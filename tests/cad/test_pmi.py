@@ -25,7 +25,7 @@ from templates.core.units.fits import deviations
 QUICK = [("plain_bearing", 1)] * 6 + [("ball_bearing", 1)] * 3 + [("crank_throw", 1)]
 ALL = [
     ("plain_bearing", 1), ("ball_bearing", 1), ("flanged_bush", 1), ("thrust_washer", 2), ("crank_throw", 1),
-    ("crankshaft", 1), ("crankshaft", 2), ("plain_bearing", 2), ("bearing_housing", 1),
+    ("crankshaft", 1), ("crankshaft", 2), ("plain_bearing", 2), ("plain_bearing", 3), ("bearing_housing", 1),
     ("bearing_assembly", 1), ("connecting_rod", 1),
 ]  # fmt: skip
 ZONES = ("H6", "H7", "H8", "G7", "JS7", "P7", "h6", "g6", "f7", "js6", "k6", "p6")
@@ -76,6 +76,8 @@ def scaled(cls, rng):
             given[name] = raw
     if "shell" in cls.inputs:
         given["shell"] = str(rng.choice(["half", "full"]))
+    if "state" in cls.inputs:
+        given["state"] = "fitted"  # a free shell has no face of its bore's size
     return as_text(cls.from_quantities(given))
 
 

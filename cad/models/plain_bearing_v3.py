@@ -1,0 +1,221 @@
+"""Half shells of a thin-walled plain bearing, in their housing or free; see the class below.
+
+Beside version 2: the free spread, a shell drawn free, and a tang that by default keeps off the sides of the
+groove. Parameters and rules that versions share are in `cad.shells`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from cadquery import Location, Vector
+
+from cad.model import BRIGHT_STEEL, STEEL, Box, Part, mm
+from cad.shells.half_shell import Flange, Groove, HalfShell, Tang
+from cad.shells.reading import ShellSeen
+from cad.shells.relief import Relief
+from cad.shells.rules import ShellRules
+from cad.shells.spread import FreeShellSeen, half_angle, reach_of
+from cad.surfaces import Seen
+from templates.core.language.template import (
+    Array,
+    Truth,
+    choice,
+    derived,
+    formula,
+    require,
+    units,
+)
+
+LINING_DENSITY = 3110.0  # kg/m³, of AlSn20Cu: mixture of its elements by mass
+WHOLE = 3.14159  # rad; a groove of so much goes from joint to joint
+
+
+@units(None, returns="1")
+def is_fitted(state: str) -> Truth:
+    """Whether a shell is drawn as the housing holds it."""
+    return np.asarray(state == "fitted")
+
+
+class PlainBearing(ShellRules):
+    """Half shells of a thin-walled plain bearing, as the housing holds them or free: upper, lower, or both.
+
+    z is along the shaft, the joint in the plane y = 0, the crown of the upper shell at +y. The upper shell
+    has the oil groove and the oil hole, the lower one is plain. Back and lining are bodies of their own, the
+    back of steel, the lining of an aluminium-tin alloy; a groove deeper than the lining, from joint to joint,
+    parts it in two rings. The bore is the finished one: the caller adds the clearance.
+
+    - *Tang*: the lip at the back beside the joint on the side +x that locates the shell; its length is
+      along the wall, its middle at a quarter of the width, on the side -z. The lower shell mirrors the upper
+      one, so the tangs meet. The notch inside, where the tang was pressed out, is not drawn.
+    - *Relief*: beside each joint the bore opens gradually, to the relief's depth at the joint.
+    - *Chamfers* of 45°: of the bore at both ends, of the back at ends without a flange.
+    - *Groove angle*: the turn of the groove about the crown; 180° is from joint to joint.
+    - *Flanges*: collars of the back for thrust, one at +z or two.
+    - *Crush height*: by so much each end of the wall goes on straight beyond the half circle, as before the
+      cap is tightened. The upper shell's crown keeps its place; in a pair the shells stand apart by it.
+    - *Free spread*: by so much a shell that nothing holds is wider over the outer edges of its joints than
+      its outside in the housing. It is what holds a shell in its seat while the engine is put together.
+    - *State*: `fitted` draws the shell as its housing holds it, and the free spread is a number only. `free`
+      draws it as it lies on a table: an arc of larger radius and less than half a turn. The middle of its
+      wall is as long as in the housing, which makes the volume of a plain wall the same. Sizes at a joint
+      (tang, relief, crush height) are those beside that joint; the groove keeps its length along the wall.
+      Diameters and the groove's angle are given as in the housing for both states.
+
+    A tang, relief, hole, groove, flange or chamfer of no size is none.
+
+    Limits
+    ------
+    Which features a shell has, and what they are called, is as in ISO 3548-1; it gives no sizes of most of
+    them. Sizes by default are typical of engines and no standard's: the free spread is 1 % of the bore;
+    Cummins' manual states about 0.64 mm. The wall is of one thickness (no eccentric bore).
+
+    A free shell bends evenly: that a groove or a flange makes it stiffer or softer in places is left out, as
+    are the pressure of the seat and the spread that is lost when the engine is hot. A diameter of the bore,
+    and of a flange, carries no tolerance in the file of a free shell, because no face has it.
+
+    References
+    ----------
+    ISO 3548-1:2014, Plain bearings, thin-walled half bearings, part 1: tolerances, design features and
+        methods of test; 4.4, free spread.
+    TM 5-3820-256-24-5 (Cummins CGES-185-3), Connecting rods, pistons, rings and sleeves, figure 11: bearing
+        spread, the width over the open ends beyond the bore of rod or crankcase.
+    ISO 4383:2012, Plain bearings, multilayer materials for thin-walled plain bearings: AlSn20Cu on steel. Its
+        density here is that of the mixture of its elements.
+    """
+
+    example = {
+        "inner_diameter": "48 mm",
+        "wall": "2.4 mm",
+        "width": "24 mm",
+        "shells": "upper",
+        "lining_thickness": "0.6 mm",
+        "oil_hole_diameter": "4 mm",
+        "oil_groove_width": "5 mm",
+        "oil_groove_depth": "0.8 mm",
+        "oil_groove_angle": "120 deg",
+        "tang_width": "4 mm",
+        "tang_length": "4 mm",
+        "tang_height": "1 mm",
+        "relief_height": "6 mm",
+        "relief_depth": "0.02 mm",
+        "inner_chamfer": "0.2 mm",
+        "outer_chamfer": "0.5 mm",
+        "flange_diameter": "64 mm",
+        "flange_thickness": "2.5 mm",
+        "flanges": 1,
+        "crush_height": "0.06 mm",
+        "state": "free",
+        "free_spread": "0.6 mm",
+    }
+    film_bore = "inner_diameter"
+    toleranced = {
+        "inner_diameter": {
+            "of": ["upper_lining", "lower_lining"], "cylinders": "z", "datum": "A", "cylindricity": 0.5,
+        },
+        "lining_thickness": {"of": ["upper_lining", "lower_lining"], "walls": "z"},
+        "width": {"of": ["upper_back", "lower_back"], "planes": "z", "perpendicularity": 1, "to": "A"},
+        "flange_diameter": {"of": ["upper_back", "lower_back"], "cylinders": "z"},
+        "flange_thickness": {"of": ["upper_back", "lower_back"], "planes": "z", "levels": [[-2, -1]]},
+        "oil_hole_diameter": {"of": "upper_back", "along": "y"},
+    }  # fmt: skip
+
+    state: str = choice("fitted", "free", words="state", default="fitted")
+
+    @derived("mm", "free spread", symbol="s_f", ge=0, le=200)
+    def s_f(self) -> Array:
+        return 0.01 * self.d
+
+    @formula("mm", "length of the wall's middle from crown to leg", name="half_length", symbol="L_h")
+    def L_h(self) -> Array:
+        return np.pi / 4 * (self.d + self.t)
+
+    @formula("mm", "width over the joints, free", name="free_width", symbol="W_f")
+    def W_f(self) -> Array:
+        return self.D + self.s_f
+
+    @formula("deg", "angle from crown to joint, free", name="free_angle", symbol=r"\varphi_f")
+    def phi_f(self) -> Array:
+        return half_angle(self.L_h, self.t, self.a, self.W_f)
+
+    @formula("mm", "bore's radius, free", name="free_bore_radius", symbol="r_f")
+    def r_f(self) -> Array:
+        return self.L_h / self.phi_f - self.t / 2
+
+    @require("free_spread", "inner_diameter", remedy="make the free spread smaller")
+    def spread_is_small(self) -> Truth:
+        """The free spread is at most 10 % of the bore."""
+        return self.s_f <= 0.1 * self.d
+
+    @require("state", "free_spread", "inner_diameter",
+             remedy="make the free spread larger, or draw the shell fitted")  # fmt: skip
+    def a_free_shell_is_spread(self) -> Truth:
+        """A shell that is drawn free has a free spread of at least 0.05 % of the bore."""
+        return is_fitted(self.state) | (self.s_f >= 0.0005 * self.d)
+
+    def build(self) -> tuple[Part, ...]:
+        """Back and lining of each shell."""
+        parts = []
+        for which, side in (("upper", 1), ("lower", -1)):
+            if self.shells in ("pair", which):
+                parts += self._parts(which, self.drawn(which), side)
+        return tuple(parts)
+
+    def _parts(self, name: str, shell: HalfShell, side: int) -> list[Part]:
+        away = Location(Vector(0, side * shell.crush if self.shells == "pair" else 0, 0))
+        back, lining = shell.back(), shell.lining_piece()
+        if side < 0:
+            back, lining = (body.mirror("XZ") for body in (back, lining))
+        pieces = shell.lining_places()
+        places = tuple(away * place for place in pieces)
+        return [
+            Part(f"{name}_back", back, shell.back_volume(), STEEL, places=(away,)),
+            Part(
+                f"{name}_lining", lining, shell.lining_volume() / len(pieces), BRIGHT_STEEL, LINING_DENSITY,
+                places, material="AlSn20Cu",
+            ),
+        ]  # fmt: skip
+
+    def drawn(self, which: str) -> HalfShell:
+        """The parameters of one shell as radii and halves, in its state."""
+        upper, fitted = which == "upper", self.state == "fitted"
+        bore = mm(self.d / 2 if fitted else self.r_f)
+        angle = np.pi / 2 if fitted else float(self.phi_f)
+        wider = bore - mm(self.d) / 2
+        return HalfShell(
+            bore=bore,
+            lining=bore + mm(self.t_l),
+            outside=mm(self.D) / 2 + wider,
+            half_width=mm(self.B) / 2,
+            inner_chamfer=mm(self.c_i),
+            outer_chamfer=mm(self.c_o),
+            crush=mm(self.a),
+            relief=Relief(bore, mm(self.h_r), mm(self.d_r)) if self.d_r > 0 else None,
+            groove=Groove(
+                bore + mm(self.t_g), mm(self.w_g) / 2, float(self.phi_g) * angle / (np.pi / 2),
+                bool(self.phi_g > WHOLE),
+            ) if upper and self.w_g > 0 else None,
+            hole=mm(self.d_h) / 2 if upper else 0.0,
+            tang=Tang(mm(self.w_t), mm(self.l_t), mm(self.h_t), -mm(self.B) / 4) if self.w_t > 0 else None,
+            flange=Flange(mm(self.D_f) / 2 + wider, mm(self.b_f), round(float(self.n_f)))
+            if self.D_f > 0 else None,
+            lift=np.pi / 2 - angle,
+        )  # fmt: skip
+
+    def bounding_box(self) -> Box:
+        """The back or its flanges, the tang on the side +x, and the legs."""
+        shell = self.drawn("upper")
+        left, right, low = reach_of(shell)
+        high, b = shell.flange.radius if shell.flange else shell.outside, shell.half_width
+        far = high + shell.crush
+        bottom, top = {"pair": (-far, far), "upper": (low, high), "lower": (-high, -low)}[self.shells]
+        return Box((-left, bottom, -b), (right, top, b))
+
+    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+        """Every length that the shells have, of the upper one if it is there."""
+        which = "lower" if self.shells == "lower" else "upper"
+        shown = seen[f"{which}_back"], seen[f"{which}_lining"], self.drawn(which)
+        if self.state == "free":
+            return FreeShellSeen(*shown).free_sizes(with_oil=which == "upper")
+        return ShellSeen(*shown).sizes(with_oil=which == "upper", side=-1 if which == "lower" else 1)

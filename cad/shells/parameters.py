@@ -1,0 +1,132 @@
+"""Parameters of a half shell as the housing holds it, which versions of its model share, and what follows.
+
+The digest of a released model covers this file: what changes here needs a file of its own. Parameters that
+are 0 stand for what is not there: tang, relief, hole, groove, flange, chamfers, crush height.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cad.model import CadModel
+from templates.core.language.template import Array, choice, derived, formula, given, units
+
+
+@units("m", "m", returns="1")
+def clear_share(width: Array, groove: Array) -> Array:
+    """Share of the width [m] that a tang takes, its sides off those of a groove [m] of that width."""
+    half = groove / 2 / width
+    beside = np.minimum(abs(half - 0.19), abs(half - 0.31)) < 0.006  # 1/4 -+ 0.12/2
+    return np.where(beside, 0.09, 0.12)
+
+
+class ShellParameters(CadModel):
+    """What a half shell is made from."""
+
+    d: Array = given("mm", "inner diameter", symbol="d", ge=5, le=2000, also=("bearing diameter", "bore"))
+
+    @derived("mm", "wall", symbol="t", ge=0.2, le=200)
+    def t(self) -> Array:
+        """A twentieth of the bore."""
+        return 0.05 * self.d
+
+    @derived("mm", "width", symbol="B", ge=0.5, le=2000, also=("bearing width",))
+    def B(self) -> Array:
+        """Half the bore."""
+        return 0.5 * self.d
+
+    shells: str = choice("pair", "upper", "lower", words="shells", default="pair")
+
+    @derived("mm", "lining thickness", symbol="t_l", ge=0.02, le=50)
+    def t_l(self) -> Array:
+        """An eighth of the wall."""
+        return 0.125 * self.t
+
+    @derived("mm", "oil hole diameter", symbol="d_h", ge=0, le=500)
+    def d_h(self) -> Array:
+        """As far as the width leaves room for it."""
+        return np.minimum(0.08 * self.d, 0.2 * self.B)
+
+    @derived("mm", "oil groove width", symbol="w_g", ge=0, le=500)
+    def w_g(self) -> Array:
+        """A little wider than the hole."""
+        return np.minimum(1.25 * self.d_h, 0.5 * self.B)
+
+    @derived("mm", "oil groove depth", symbol="t_g", ge=0, le=100)
+    def t_g(self) -> Array:
+        """About a third of the wall, if there is a groove."""
+        return 0.35 * self.t * np.sign(self.w_g)
+
+    phi_g: Array = given("deg", "oil groove angle", symbol=r"\varphi_g", default="180 deg", ge=20, le=180)
+
+    @derived("mm", "tang width", symbol="w_t", ge=0, le=500)
+    def w_t(self) -> Array:
+        """0.12 of the width; 0.09 where a side would be in the plane of the groove's."""
+        return self.B * clear_share(self.B, self.w_g)
+
+    @derived("mm", "tang length", symbol="l_t", ge=0.05, le=500)
+    def l_t(self) -> Array:
+        """Along the wall."""
+        return 0.08 * self.d
+
+    @derived("mm", "tang height", symbol="h_t", ge=0.02, le=200)
+    def h_t(self) -> Array:
+        """Above the back."""
+        return 0.4 * self.t
+
+    @derived("mm", "relief height", symbol="h_r", ge=0.05, le=500)
+    def h_r(self) -> Array:
+        """Above the joint."""
+        return 0.12 * self.d
+
+    @derived("mm", "relief depth", symbol="d_r", ge=0, le=20)
+    def d_r(self) -> Array:
+        """At the joint: a tenth of the lining."""
+        return 0.1 * self.t_l
+
+    @derived("mm", "inner chamfer", symbol="c_i", ge=0, le=100)
+    def c_i(self) -> Array:
+        """Of the bore: a fifth of the wall."""
+        return 0.2 * self.t
+
+    @derived("mm", "outer chamfer", symbol="c_o", ge=0, le=100)
+    def c_o(self) -> Array:
+        """Of the back: a quarter of the wall."""
+        return 0.25 * self.t
+
+    @derived("mm", "flange diameter", symbol="D_f", ge=0, le=5000)
+    def D_f(self) -> Array:
+        """None."""
+        return 0 * self.d
+
+    @derived("mm", "flange thickness", symbol="b_f", ge=0.02, le=500)
+    def b_f(self) -> Array:
+        """As thick as the wall."""
+        return self.t
+
+    n_f: Array = given("1", "flanges", symbol="n_f", default="2", integer=True, ge=1, le=2)
+
+    @derived("mm", "crush height", symbol="a", ge=0, le=50)
+    def a(self) -> Array:
+        """None: as built in."""
+        return 0 * self.d
+
+    @formula("mm", "outer diameter", symbol="D")
+    def D(self) -> Array:
+        """Of the back, as the housing holds it."""
+        return self.d + 2 * self.t
+
+    @formula("mm", "length of the groove along the bore", name="groove_length", symbol="L_g")
+    def L_g(self) -> Array:
+        """An arc of the bore."""
+        return self.d / 2 * self.phi_g
+
+    @formula("mm", "steel back", name="back_thickness", symbol="t_s")
+    def t_s(self) -> Array:
+        """Without the lining."""
+        return self.t - self.t_l
+
+    @formula("mm", "width between flanges", name="seat_width", symbol="B_s")
+    def B_s(self) -> Array:
+        """The whole width if there is none."""
+        return self.B - np.sign(self.D_f) * self.n_f * self.b_f

@@ -1,0 +1,197 @@
+"""Rules for which a half shell is refused, always by the names of the parameters and with a way out.
+
+The digest of a released model covers this file: what changes here needs a file of its own. The rules are a
+little stricter than geometry requires, so that edges keep clear of each other and the kernel draws whatever
+they accept; and what they accept, the closed form of the volume covers.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cad.shells.parameters import ShellParameters
+from templates.core.language.template import Array, Truth, require, units
+
+
+@units("m", "1", returns="1")
+def drawable(length: Array, least: float) -> Truth:
+    """Whether a length [m] is none, or one that the kernel can tell from none, `least` in micrometres."""
+    return (length <= 0) | (length >= 1e-6 * least)
+
+
+class ShellRules(ShellParameters):
+    """Parameters that make a half shell."""
+
+    @require("lining_thickness", "wall", remedy="make the lining thinner or the wall thicker")
+    def back_is_steel(self) -> Truth:
+        """The lining takes at most 60 % of the wall."""
+        return self.t_l <= 0.6 * self.t
+
+    @require("wall", "inner_diameter", remedy="make the wall thinner")
+    def wall_is_thin(self) -> Truth:
+        """The wall is at most 20 % of the bore: the shell is thin."""
+        return self.t <= 0.2 * self.d
+
+    @require("oil_groove_width", "inner_chamfer", "width", remedy="make the groove narrower")
+    def groove_within_width(self) -> Truth:
+        """Oil groove and chamfers of the bore take at most 90 % of the width."""
+        return self.w_g + 2 * self.c_i <= 0.9 * self.B
+
+    @require("oil_hole_diameter", "inner_chamfer", "width", remedy="make the hole smaller or the shell wider")
+    def hole_within_width(self) -> Truth:
+        """Oil hole and chamfers of the bore take at most 90 % of the width."""
+        return self.d_h + 2 * self.c_i <= 0.9 * self.B
+
+    @require("oil_hole_diameter", "outer_chamfer", "flange_thickness", "flange_diameter", "width",
+             remedy="make the hole smaller or the shell wider")  # fmt: skip
+    def hole_within_seat(self) -> Truth:
+        """The oil hole keeps off the chamfers of the back and off flanges."""
+        edge = np.maximum(self.c_o, np.sign(self.D_f) * self.b_f)
+        return self.d_h + 2 * edge <= 0.95 * self.B
+
+    @require("oil_hole_diameter", "inner_diameter", remedy="make the hole smaller")
+    def hole_within_bore(self) -> Truth:
+        """The oil hole takes at most 40 % of the bore."""
+        return self.d_h <= 0.4 * self.d
+
+    @require("oil_groove_depth", "wall", remedy="make the groove shallower or the wall thicker")
+    def groove_within_wall(self) -> Truth:
+        """The oil groove takes at most 80 % of the wall."""
+        return self.t_g <= 0.8 * self.t
+
+    @require("oil_groove_depth", "oil_groove_width", remedy="give the groove both sizes, or neither")
+    def groove_has_a_section(self) -> Truth:
+        """An oil groove has a width and a depth, or neither."""
+        return ((self.t_g <= 0) & (self.w_g <= 0)) | ((self.t_g > 0) & (self.w_g > 0))
+
+    @require("oil_groove_depth", "lining_thickness",
+             remedy="end the groove within the lining or in the back, 5 % of the lining off")  # fmt: skip
+    def groove_ends_clearly(self) -> Truth:
+        """The bottom of the groove is off the back of the lining by 5 % of its thickness."""
+        return abs(self.t_g - self.t_l) >= 0.05 * self.t_l
+
+    @require("oil_groove_depth", "relief_depth", remedy="make the groove deeper, or the relief shallower")
+    def groove_is_deeper_than_relief(self) -> Truth:
+        """A groove is at least 10 % deeper than the joint relief."""
+        return (self.t_g <= 0) | (self.t_g >= 1.1 * self.d_r)
+
+    @require("oil_hole_diameter", "oil_groove_width",
+             remedy="make the hole as wide as the groove, or change it by 1 %")  # fmt: skip
+    def hole_clears_groove_edge(self) -> Truth:
+        """An oil hole wider than its groove is wider by 1 %; for less, OpenCASCADE returns wrong solids."""
+        return (self.w_g <= 0) | (self.d_h <= self.w_g) | (self.d_h >= 1.01 * self.w_g)
+
+    @require("oil_groove_angle", "oil_hole_diameter", remedy="make the groove longer or the hole smaller")
+    def groove_holds_the_hole(self) -> Truth:
+        """A groove over a part of the bore is longer than the oil hole is wide, by 10 %."""
+        return (self.w_g <= 0) | (self.d * np.sin(self.phi_g / 2) >= 1.1 * self.d_h)
+
+    @require("oil_groove_angle", "relief_height",
+             remedy="take 180°, or end the groove 5° above the relief")  # fmt: skip
+    def groove_ends_above_relief(self) -> Truth:
+        """A groove goes from joint to joint (180°), or ends 5° above the joint relief and at 160° at most."""
+        end = np.arcsin(np.minimum(2 * self.h_r / self.d, 1.0)) + np.pi / 36
+        return (self.w_g <= 0) | (self.phi_g > 3.14159) | (self.phi_g <= np.minimum(np.pi - 2 * end, 2.8))
+
+    @require("relief_height", "inner_diameter", remedy="make the relief lower")
+    def relief_is_low(self) -> Truth:
+        """The joint relief is at most 30 % of the bore high."""
+        return self.h_r <= 0.3 * self.d
+
+    @require("relief_depth", "lining_thickness", remedy="make the relief shallower")
+    def relief_within_lining(self) -> Truth:
+        """The joint relief takes at most 80 % of the lining."""
+        return self.d_r <= 0.8 * self.t_l
+
+    @require("relief_depth", "relief_height", remedy="make the relief shallower or higher")
+    def relief_is_shallow(self) -> Truth:
+        """The joint relief is at most a tenth as deep as it is high."""
+        return self.d_r <= 0.1 * self.h_r
+
+    @require("inner_chamfer", "outer_chamfer", "wall", remedy="make the chamfers smaller")
+    def chamfers_leave_a_face(self) -> Truth:
+        """The chamfers together take at most 80 % of the wall."""
+        return self.c_i + self.c_o <= 0.8 * self.t
+
+    @require("inner_chamfer", "lining_thickness", remedy="change the chamfer by 5 % of the lining")
+    def chamfer_clears_lining(self) -> Truth:
+        """The chamfer of the bore ends in the lining or in the back, 5 % of the lining's thickness off."""
+        return abs(self.c_i - self.t_l) >= 0.05 * self.t_l
+
+    @require("inner_chamfer", "relief_depth", remedy="make the chamfer larger, or 0 for none")
+    def chamfer_is_deeper_than_relief(self) -> Truth:
+        """A chamfer of the bore is at least 10 % deeper than the joint relief."""
+        return (self.c_i <= 0) | (self.c_i >= 1.1 * self.d_r)
+
+    @require(
+        "outer_chamfer",
+        "width",
+        "flange_thickness",
+        "flange_diameter",
+        remedy="make the chamfers or flanges smaller",
+    )
+    def seat_is_left(self) -> Truth:
+        """Chamfers and flanges leave at least 30 % of the width to the seat in the housing."""
+        return self.B_s - 2 * self.c_o >= 0.3 * self.B
+
+    @require("flange_diameter", "inner_diameter", "wall", remedy="make the flange larger, or 0 for none")
+    def flange_stands_out(self) -> Truth:
+        """A flange is at least 2 % larger than the outside of the shell, and at most twice as large."""
+        return (self.D_f <= 0) | ((self.D_f >= 1.02 * self.D) & (self.D_f <= 2 * self.D))
+
+    @require("flange_thickness", "flange_diameter", "inner_chamfer", "lining_thickness",
+             remedy="make the flange thicker or the chamfer smaller")  # fmt: skip
+    def flange_holds_chamfer(self) -> Truth:
+        """A flange is thicker than what the chamfer of the bore takes."""
+        return (self.D_f <= 0) | (self.b_f >= 1.02 * (self.c_i - self.t_l))
+
+    @require("tang_length", "wall", "lining_thickness", "inner_diameter", remedy="make the tang shorter")
+    def tang_grows_out_of_the_back(self) -> Truth:
+        """Along the tang the back bends away by at most 70 % of the thickness of its steel."""
+        R = self.D / 2
+        return (self.w_t <= 0) | (self.l_t <= np.sqrt(2 * R * 0.7 * self.t_s * (1 - 0.35 * self.t_s / R)))
+
+    @require("tang_width", "width", "outer_chamfer", "flange_thickness", "flange_diameter",
+             remedy="make the tang narrower")  # fmt: skip
+    def tang_within_seat(self) -> Truth:
+        """The tang keeps off the chamfers of the back and off flanges, by 2 % of the width."""
+        edge = np.maximum(self.c_o, np.sign(self.D_f) * self.b_f)
+        return (self.w_t <= 0) | (self.w_t / 2 <= 0.23 * self.B - edge)
+
+    @require("tang_width", "oil_groove_width", "width",
+             remedy="change the tang or the groove by 1 % of the width")  # fmt: skip
+    def tang_clears_groove_edge(self) -> Truth:
+        """No side of the tang is in the plane of a groove's side; 0.5 % of the width is between them."""
+        low, high, off = self.B / 4 - self.w_t / 2, self.B / 4 + self.w_t / 2, 0.005 * self.B
+        clear = (abs(low - self.w_g / 2) >= off) & (abs(high - self.w_g / 2) >= off)
+        return (self.w_t <= 0) | (self.w_g <= 0) | clear
+
+    @require("tang_height", "wall", remedy="make the tang lower")
+    def tang_is_low(self) -> Truth:
+        """The tang stands out by at most the thickness of the wall."""
+        return self.h_t <= self.t
+
+    @require("tang_height", "flange_diameter", "inner_diameter", "wall", remedy="make the tang lower")
+    def tang_is_lower_than_flange(self) -> Truth:
+        """Beside a flange the tang is lower, by 1 % of the diameter."""
+        return (self.D_f <= 0) | (self.w_t <= 0) | (self.D_f >= 1.01 * (self.D + 2 * self.h_t))
+
+    @require("crush_height", "inner_diameter", remedy="make the crush height smaller")
+    def crush_is_small(self) -> Truth:
+        """The crush height is at most 1 % of the bore."""
+        return self.a <= 0.01 * self.d
+
+    @require("oil_hole_diameter", "oil_groove_width", "oil_groove_depth", "tang_width", "inner_chamfer",
+             "outer_chamfer", "crush_height", remedy="use 0 for none")  # fmt: skip
+    def features_are_drawable(self) -> Truth:
+        """Features measure 0, or at least the 10 µm that the kernel draws reliably."""
+        sizes = (self.d_h, self.w_g, self.t_g, self.w_t, self.c_i, self.c_o)
+        fits = drawable(self.a, 1.0)
+        for size in sizes:
+            fits = fits & drawable(size, 10.0)
+        return fits
+
+    @require("relief_depth", remedy="use 0 for none")
+    def relief_is_drawable(self) -> Truth:
+        """The relief is 0 deep, or at least 1 µm."""
+        return drawable(self.d_r, 1.0)

@@ -1,0 +1,115 @@
+"""Free spread: the shape of a half shell that nothing holds, which is wider over its joints than its seat.
+
+The free shell is drawn as an arc of a larger radius: the middle of the wall keeps the length that it has in
+the housing, and each crush height stays a straight leg. So the curvature changes alike everywhere, as in a
+thin ring under a uniform moment; the seat forces the arc back to a half circle.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, cos, degrees, pi, sin
+
+import numpy as np
+
+from cad.shells.half_shell import HalfShell
+from cad.shells.reading import ShellSeen
+from cad.surfaces import Surface, X, Y, Z
+from cad.turned import nearest
+from templates.core.language.declare import on_paper
+from templates.core.language.template import Array, units
+
+_STEPS = 12  # of Newton's method, which doubles the digits with each
+
+
+@on_paper("solved by Newton's method from a quarter turn on")
+@units("m", "m", "m", "m", returns="rad")
+def half_angle(length: Array, wall: Array, crush: Array, width: Array) -> Array:
+    r"""Angle from the crown to a joint of a free shell [rad].
+
+    The outer edges of the joints are `width` apart: 2 ((s/φ + t/2) sin φ + a cos φ) = W.
+
+    Parameters
+    ----------
+    length
+        s, from the crown to where the straight leg begins, along the middle of the wall [m].
+    wall, crush
+        t and a, thickness of the wall and height of the leg [m].
+    width
+        W, over the joints [m].
+
+    Notes
+    -----
+    W falls as the angle grows up to a quarter turn, and bends downwards, so Newton's method comes from there
+    without a swing. Where no angle between 0.5 rad and a quarter turn fits, the result is one of these ends.
+    """
+    angle = np.full(np.broadcast_shapes(*map(np.shape, (length, wall, crush, width))), pi / 2)
+    for _ in range(_STEPS):
+        sine, cosine = np.sin(angle), np.cos(angle)
+        over = 2 * ((length / angle + wall / 2) * sine + crush * cosine) - width
+        slope = length * (angle * cosine - sine) / angle**2 + wall / 2 * cosine - crush * sine
+        angle = np.clip(angle - over / (2 * slope), 0.5, pi / 2)
+    return angle
+
+
+@dataclass(frozen=True)
+class FreeShellSeen(ShellSeen):
+    """A free half shell: the sizes in the housing follow from its arc, and its spread from its joints."""
+
+    @property
+    def angle(self) -> float:
+        """From the crown to a joint [rad]; the legs are along the tangent there."""
+        return nearest(map(_from_crown, self._joints()), pi / 2 - self.wanted.lift)
+
+    def _upright(self) -> list[Surface]:
+        return [plane for plane in self.back.planes if not plane.along(Z)]
+
+    def _joints(self) -> list[Surface]:
+        """The planes at the ends of the wall."""
+        away = nearest(map(_off_axis, self._upright()), self.wanted.crush)
+        return [plane for plane in self._upright() if abs(_off_axis(plane) - away) < 1e-6]
+
+    def free_sizes(self, *, with_oil: bool) -> dict[str, float]:
+        """Every parameter by name."""
+        angle, crush = self.angle, _off_axis(self._joints()[0])
+        fitted = (self.bore + self.wall / 2) * angle / (pi / 2)
+        width = 2 * (self.outside * sin(angle) + crush * cos(angle))
+        groove = self.groove() if with_oil else {}
+        if "oil_groove_angle" in groove and self.wanted.groove and not self.wanted.groove.is_whole:
+            groove["oil_groove_angle"] = degrees(self.groove_turn * (pi / 2) / angle)
+        flange = self.flange()
+        if self.wanted.flange:
+            flange["flange_diameter"] -= 2 * (self.bore + self.wall / 2 - fitted)
+        return {
+            "inner_diameter": 2 * fitted - self.wall,
+            "wall": self.wall,
+            "width": self.width(),
+            "lining_thickness": self.lining_wall,
+            "crush_height": crush,
+            "free_spread": width - (2 * fitted + self.wall),
+            **self.chamfers(),
+            **self.relief(),
+            **self.tang(),
+            **flange,
+            **groove,
+        }
+
+
+def reach_of(shell: HalfShell) -> tuple[float, float, float]:
+    """How far a shell reaches [mm]: to the side without a tang, to that with one, and its lowest height."""
+    lift, crush = shell.lift, shell.crush
+    collar = shell.flange.radius if shell.flange else shell.outside
+    lip = shell.outside + shell.tang.height if shell.tang else 0.0
+    inside = shell.bore + (shell.relief.depth if shell.relief else 0.0)
+    left, right = (radius * cos(lift) + crush * sin(lift) for radius in (collar, max(collar, lip)))
+    return left, right, inside * sin(lift) - crush * cos(lift)
+
+
+def _off_axis(plane: Surface) -> float:
+    """How far [mm] the shaft's axis is from a plane along it."""
+    return abs(plane.point.dot(plane.direction))
+
+
+def _from_crown(plane: Surface) -> float:
+    """The angle [rad] of a plane along the shaft, against the plane of crown and shaft."""
+    return atan2(abs(plane.direction.dot(Y)), abs(plane.direction.dot(X)))
