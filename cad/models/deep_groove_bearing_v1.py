@@ -44,8 +44,9 @@ class DeepGrooveBearing(CadModel):
     The standard leaves the inside to the maker. Ball size and number by default are common proportions; give
     the maker's for the maker's capacities, which they otherwise miss by up to a tenth. No seals, shields,
     snap rings, and no clearance between balls and grooves. Chamfers are in proportion, not those of ISO 582.
-    The tables of sizes and factors were typed without the standards at hand: six ratings of makers agree
-    within 1 %, and series 618 was compared with nothing. Compare them with your edition before you order.
+    The tables of sizes and factors were typed without the standards at hand. The factors agree with the
+    theory behind them, and with ratings of 16 bearings by their makers within 1 %. Of the sizes of series
+    618, only 61800 and 61801 were compared with a maker's. Compare them with your edition before you order.
 
     References
     ----------

@@ -29,6 +29,7 @@ from templates.core.language.template import (
 )
 
 LINING_DENSITY = 3110.0  # kg/m³, of AlSn20Cu: mixture of its elements by mass
+_ANGLE_DIGITS = 12  # decimals of an angle [rad], so that equal parameters give equal bytes
 WHOLE = 3.14159  # rad; a groove of so much goes from joint to joint
 
 
@@ -106,7 +107,7 @@ class PlainBearing(ShellRules):
         "flange_thickness": "2.5 mm",
         "flanges": 1,
         "crush_height": "0.06 mm",
-        "state": "free",
+        "state": "fitted",
         "free_spread": "0.6 mm",
     }
     film_bore = "inner_diameter"
@@ -181,7 +182,7 @@ class PlainBearing(ShellRules):
         """The parameters of one shell as radii and halves, in its state."""
         upper, fitted = which == "upper", self.state == "fitted"
         bore = mm(self.d / 2 if fitted else self.r_f)
-        angle = np.pi / 2 if fitted else float(self.phi_f)
+        angle = np.pi / 2 if fitted else round(float(self.phi_f), _ANGLE_DIGITS)
         wider = bore - mm(self.d) / 2
         return HalfShell(
             bore=bore,

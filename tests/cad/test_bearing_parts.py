@@ -112,6 +112,8 @@ def hostile(cls: type[CadModel]) -> list[dict[str, Any]]:
         name: value if isinstance(value, str) else float(value)
         for name, value in cls.from_quantities(cls.example).inputs_si().items()
     }
+    if "state" in example:
+        example["state"] = "free"
     numbers = [name for name, value in example.items() if not isinstance(value, str)]
     sets = [{**example, name: value} for name in numbers for value in HOSTILE_VALUES]
     lengths = [name for name in numbers if cls.inputs[name].meaning.unit == "mm"]

@@ -25,6 +25,8 @@ from templates.core.errors import InvalidInputs
 from templates.core.language.spec import Choice, Curve, Derived
 
 HOSTILE = [math.nan, math.inf, -math.inf, -1.0, 1e12]
+UNSEEN = {("plain_bearing", 3): {"free_spread"}}
+"""Numbers that the solid of the example does not show; test_free_shell.py reads the spread of free shells."""
 IN_ANOTHER_PROCESS = """
 import hashlib, json, sys
 from cad.regenerate import regenerate
@@ -43,7 +45,7 @@ def test_example_builds_and_shows_its_parameters(model: type[CadModel], example:
 
 def test_every_number_is_read_back(model: type[CadModel], example: Build) -> None:
     numbers = {name for name, declared in model.inputs.items() if not isinstance(declared, Choice)}
-    assert set(example.dimensions) == numbers
+    assert set(example.dimensions) == numbers - UNSEEN.get((model.id, model.version), set())
 
 
 def test_every_measure_is_a_finite_number(example: Build) -> None:

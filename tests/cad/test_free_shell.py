@@ -6,10 +6,11 @@ import pytest
 from cad.catalogue import models
 from cad.drafting.matching import matched
 from cad.drafting.measures import Measure
-from cad.regenerate import Build, as_text, regenerate_class
+from cad.regenerate import Build, as_text, regenerate, regenerate_class
 from cad.shells.spread import half_angle
 from cad.step import read_step
 from templates.core.errors import InvalidInputs
+from templates.core.language.spec import Choice
 
 CLS = models().get("plain_bearing", 3)
 PLAIN = {
@@ -52,6 +53,24 @@ def test_a_small_spread_approaches_the_shell_in_its_seat() -> None:
     for name, value in fitted.measures.items():
         if name in ("volume", "high_x", "high_y", "high_z", "inertia_zz"):
             assert free.measures[name] == pytest.approx(value, rel=1e-3), name
+
+
+def test_equal_parameters_give_equal_bytes() -> None:
+    """Once as typed, once from SI as rows hold them, whose last digits differ."""
+    model = CLS.from_quantities({**CLS.example, "state": "free"})
+    typed = regenerate_class(CLS, as_text(model))
+    assert regenerate("plain_bearing", 3, model.inputs_si()) == typed
+    assert regenerate("plain_bearing", 3, typed.parameters) == typed
+
+
+@pytest.mark.parametrize("shells", ["upper", "lower", "pair"])
+def test_every_number_is_read_back_from_a_free_shell(shells: str) -> None:
+    chosen = {**CLS.example, "state": "free", "shells": shells}
+    seen = regenerate_class(CLS, as_text(CLS.from_quantities(chosen))).dimensions
+    oil = {name for name in seen if name.startswith("oil_")}
+    numbers = {name for name, declared in CLS.inputs.items() if not isinstance(declared, Choice)}
+    assert set(seen) | {n for n in numbers if n.startswith("oil_")} == numbers
+    assert bool(oil) == (shells != "lower")
 
 
 def test_fitted_it_is_version_2() -> None:
