@@ -34,8 +34,8 @@ def download_command(
 ) -> None:
     """Save a file of DESIGN (an id) as {design}_{model}_r{revision}.KIND.
 
-    KIND is step, glb, stl, svg, png, drawing.svg, drawing.pdf or dxf; or zip, for the STEP files of all
-    variants. A file that the service still has to make is waited for.
+    KIND is step, validated.step, glb, stl, svg, png, drawing.svg, drawing.pdf or dxf; or zip, for the STEP
+    files of all variants. A file that the service still has to make is waited for.
     """
     place = url or f"http://127.0.0.1:{Settings().port}"
     try:

@@ -15,8 +15,13 @@ from cad.mesh import Mesh, closed_mesh, mesh
 from cad.picture import write_png
 from cad.step import Body, read_step
 from cad.stl import write_stl
+from cad.validated import with_validation
+
+VALIDATED = "validated.step"
+"""The kind of a STEP file that states volume, area and centroid of each part."""
 
 MEDIA_TYPES = {
+    VALIDATED: "model/step",
     "step": "model/step",
     "glb": "model/gltf-binary",
     "stl": "model/stl",
@@ -38,7 +43,7 @@ def derive(step: bytes, kind: str) -> bytes:
     Raises
     ------
     UnreadableStep
-        If the bytes are not a STEP file or hold no shape.
+        If the bytes are not a STEP file or hold no shape, or validation properties find no part of their own.
     KeyError
         If no such kind can be derived.
     InvalidInputs
@@ -46,6 +51,8 @@ def derive(step: bytes, kind: str) -> bytes:
     GeometryError
         If a mesh has a gap.
     """
+    if kind == VALIDATED:
+        return with_validation(step)
     bodies, header = read_step(step), read_header(step)
     if (deflection := deflection_of(kind, bodies)) is None:
         return _WRITERS[kind](bodies, header)
@@ -79,7 +86,7 @@ _WRITERS: dict[str, Writer] = {
     "drawing.pdf": lambda bodies, header: as_pdf(write_drawing(bodies, header)),
 }
 
-DERIVED = tuple(_WRITERS)
+DERIVED = (VALIDATED, *_WRITERS)
 """The kinds that are derived from the STEP file."""
 
 

@@ -131,6 +131,10 @@ class CadModel(Template):
         super().__init_subclass__()
         carried(cls)
 
+    rounds_noise: ClassVar[bool] = False
+    """Whether numbers nearer to zero than 1e-12 are written as zero: the kernel leaves such noise on faces that
+    stand askew, another in each run."""
+
     keeps_apart: ClassVar[bool] = False
     """Whether its parts are mated as in a machine, so that no two may overlap."""
 

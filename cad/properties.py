@@ -47,16 +47,30 @@ class PartProperties:
     density: float
 
 
+@dataclass(frozen=True)
+class Measures:
+    """What is measured of a solid: volume [mm³], area [mm²], centroid [mm]."""
+
+    volume: float
+    area: float
+    centroid: tuple[float, float, float]
+
+
 def properties_of(part: Part, solid: Shape) -> PartProperties:
     """The properties of a part on its solid, integrated as `cad.inspect.measure` does, to twelve digits."""
     material = part.made_of.rpartition(" (")[0] or part.made_of  # without its density
+    one = measured(solid)
+    return PartProperties(part.name, one.volume, one.area, one.centroid, material, _digits(part.density))
+
+
+def measured(solid: Shape) -> Measures:
+    """Volume, area and centroid of a solid, to twelve digits."""
     volume, area = GProp_GProps(), GProp_GProps()
     BRepGProp.VolumeProperties_s(solid.wrapped, volume, _ACCURACY, False)
     BRepGProp.SurfaceProperties_s(solid.wrapped, area, _ACCURACY, False)
     centre = volume.CentreOfMass()
     x, y, z = (round(value, 9) + 0.0 for value in (centre.X(), centre.Y(), centre.Z()))
-    measures = _digits(volume.Mass()), _digits(area.Mass()), (x, y, z)
-    return PartProperties(part.name, *measures, material, _digits(part.density))
+    return Measures(_digits(volume.Mass()), _digits(area.Mass()), (x, y, z))
 
 
 def _digits(value: float) -> float:
@@ -90,6 +104,22 @@ def entities(
             yield from _validation(numbers, products[part.part], part, units)
         for part in parts:
             yield from _material(numbers, products[part.part], part, units)
+
+
+def validations(data: str, first: int, measures: Mapping[str, Measures]) -> Iterator[str]:
+    """The entities, numbered from `first`, of the validation properties of products by name.
+
+    Raises
+    ------
+    KeyError
+        If the data section has no product of such a name.
+    """
+    products = _products(data)
+    numbers = iter(range(first, first + 10**6))
+    units = _Units(*(next(numbers) for _ in range(10)))
+    yield from units.entities()
+    for name, one in measures.items():
+        yield from _validation(numbers, products[name], one, units)
 
 
 def _products(data: str) -> dict[str, _Product]:
@@ -159,7 +189,7 @@ def _attributes(numbers: Iterator[int], root: _Product, attributes: Mapping[str,
 
 
 def _validation(
-    numbers: Iterator[int], product: _Product, part: PartProperties, units: _Units
+    numbers: Iterator[int], product: _Product, part: PartProperties | Measures, units: _Units
 ) -> Iterator[str]:
     measures = (
         ("volume", f"'volume measure',VOLUME_MEASURE({_real(part.volume)}),#{units.volume}"),

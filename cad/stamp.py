@@ -247,11 +247,12 @@ def _clipped(line: str) -> str:
 
 _WRITERS: dict[str, Callable[[str, Stamp], str]] = {
     "step": _stamped_step,
+    "validated.step": _stamped_step,
     "drawing.svg": _stamped_svg,
     "dxf": _stamped_dxf,
 }
 STAMPED = tuple(_WRITERS)
 """The kinds of files that carry a stamp."""
 
-_ENCODING = {"step": "latin-1", "drawing.svg": "utf-8", "dxf": "utf-8"}
+_ENCODING = {"step": "latin-1", "validated.step": "latin-1", "drawing.svg": "utf-8", "dxf": "utf-8"}
 _MARKS = {"drawing.svg": b'data-stamp="', "dxf": MARK.encode()}

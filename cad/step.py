@@ -30,7 +30,7 @@ from cad.model import STEEL, Colour, Part
 from cad.on_demand import once_loaded
 from cad.pmi import Annotations, Product, annotate
 from cad.properties import properties_of
-from cad.step_text import finished
+from cad.step_text import finished, without_noise
 from templates.core.arrays import Array
 
 
@@ -52,7 +52,13 @@ class Body:
     places: tuple[Location, ...]
 
 
-def write_step(parts: Sequence[Part], header: Header, annotations: Annotations | None = None) -> bytes:
+def write_step(
+    parts: Sequence[Part],
+    header: Header,
+    annotations: Annotations | None = None,
+    *,
+    rounds_noise: bool = False,
+) -> bytes:
     """The parts in millimetres, with product names and colours; equal parts, equal bytes.
 
     A single part at a single place is one product; several are an assembly. With `annotations` the file also
@@ -71,6 +77,8 @@ def write_step(parts: Sequence[Part], header: Header, annotations: Annotations |
     if writer.WriteStream(stream) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise RuntimeError("the kernel could not write the STEP file")
     text = stream.getvalue().decode("latin-1")
+    if rounds_noise:
+        text = without_noise(text)
     stated = [] if annotations is None else [properties_of(p, products[p.name].solid) for p in parts]
     names = [] if annotations is None else annotations.names
     return finished(text, header, [part.colour for part in parts], names, stated).encode("latin-1")

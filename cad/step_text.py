@@ -25,6 +25,8 @@ _TOKEN = re.compile(r"'(?:[^']|'')*',?|[^',)]+,?|\)")
 _WIDEST = 72  # a line of the kernel's writer [characters]
 _NAMELESS = re.compile(r"(SHAPE_DIMENSION_REPRESENTATION\(|CYLINDRICITY_TOLERANCE\(|GEOMETRIC_TOLERANCE\()''")
 _DEVIATION = re.compile(r"(= MEASURE_WITH_UNIT\()(?:-(?=0\.,))?(-?[0-9.][0-9.E+-]*),")
+_POINT = re.compile(r"^#\d+ = CARTESIAN_POINT\([^;]*;", re.MULTILINE)
+_NOISE = re.compile(r"-?\d+\.\d*E-(?:1[3-9]|[2-9]\d|\d{3})(?=[,)])")
 _NUMBER = re.compile(r"^#(\d+) = ", re.MULTILINE)
 _PRODUCT = re.compile(r"ADVANCED_BREP_SHAPE_REPRESENTATION\('[^']*',\(([^)]*)\),(#\d+)\)")
 _SOLID = re.compile(r"^(#\d+) = (?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\(", re.MULTILINE)
@@ -53,6 +55,11 @@ def finished(
         lines = entities(body, first, header.model, attributes, properties)
         body = _annotated(body, names) + "".join(f"{line}\n" for line in lines)
     return f"ISO-10303-21;\n{write_header(header, SCHEMA, KERNEL)}{body}{end}{rest}"
+
+
+def without_noise(text: str) -> str:
+    """The kernel's text with a zero for every coordinate nearer to it than 1e-12."""
+    return _POINT.sub(lambda point: _NOISE.sub("0.", point[0]), text)
 
 
 def _usage(start: str, number: int, rest: str) -> str:

@@ -111,6 +111,7 @@ class PlainBearing(ShellRules):
         "free_spread": "0.6 mm",
     }
     film_bore = "inner_diameter"
+    rounds_noise = True
     toleranced = {
         "inner_diameter": {
             "of": ["upper_lining", "lower_lining"], "cylinders": "z", "datum": "A", "cylindricity": 0.5,

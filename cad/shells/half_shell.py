@@ -143,10 +143,19 @@ class HalfShell:
         """With the crush height below both joints."""
         if self.crush == 0:
             return body
+        if self.lift > 0:
+            return fuse(body, *(self._leg(body, side) for side in (1, -1)))
         for side in (1, -1):
             foot = face(polyline(*(Vector(side * r, 0.0, z) for r, z in joint)))
-            body = fuse(body, self._at_joint(extrude(foot, (0, -self.crush, 0)), side))
+            body = fuse(body, extrude(foot, (0, -self.crush, 0)))
         return body
+
+    def _leg(self, body: Shape, side: int) -> Shape:
+        """The joint's own face drawn out: vertices of another one, 1e-15 mm off, make bytes that differ."""
+        normal = Vector(side * sin(self.lift), -cos(self.lift), 0)
+        feet = [f for f in body.Faces() if f.geomType() == "PLANE" and f.normalAt().dot(normal) > 1 - 1e-12]
+        foot = min(feet, key=lambda f: abs(f.Center().dot(normal)))
+        return extrude(foot, (normal * self.crush).toTuple())
 
     def _at_joint(self, body: Shape, side: int) -> Shape:
         """What was drawn at y = 0, where the joint is on that side."""

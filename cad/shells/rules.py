@@ -47,7 +47,8 @@ class ShellRules(ShellParameters):
     def hole_within_seat(self) -> Truth:
         """The oil hole keeps off the chamfers of the back and off flanges."""
         edge = np.maximum(self.c_o, np.sign(self.D_f) * self.b_f)
-        return self.d_h + 2 * edge <= 0.95 * self.B
+        taken: Array = self.d_h + 2 * edge
+        return taken <= 0.95 * self.B
 
     @require("oil_hole_diameter", "inner_diameter", remedy="make the hole smaller")
     def hole_within_bore(self) -> Truth:
