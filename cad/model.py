@@ -132,8 +132,8 @@ class CadModel(Template):
         carried(cls)
 
     rounds_noise: ClassVar[bool] = False
-    """Whether numbers nearer to zero than 1e-12 are written as zero: the kernel leaves such noise on faces that
-    stand askew, another in each run."""
+    """Whether coordinates nearer to zero than 1e-12 mm are written as zero: the kernel leaves such noise on
+    faces that stand askew, another in each run."""
 
     keeps_apart: ClassVar[bool] = False
     """Whether its parts are mated as in a machine, so that no two may overlap."""

@@ -198,8 +198,9 @@ def build(key: str) -> Exchange[Build]:
 
 
 def model(id: str, kind: str = "step", *, on_progress: Progress | None = None) -> Exchange[bytes]:
-    """A file of the design's newest good model: step, validated.step, glb, stl, svg, png, drawing.svg,
-    drawing.pdf or dxf.
+    """A file of the design's newest good model.
+
+    It is step, validated.step, glb, stl, svg, png, drawing.svg, drawing.pdf or dxf.
     """
     return _file(f"/designs/{id}/model.{kind}", on_progress)
 

@@ -86,7 +86,7 @@ def toleranced(cls, rng):
         try:
             texts, limits = scaled(cls, rng), {}
             for name in cls.toleranced:
-                number = float(texts[name].split(" ")[0])
+                number = round(float(texts[name].split(" ")[0]), 9)  # decimals of mm in which models draw
                 if number > 0 and rng.random() < 0.7:
                     text, ends = typed(rng, number)
                     limits[name] = (number, *ends)
