@@ -6,8 +6,9 @@ import hashlib
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-from sqlalchemy import select, update
+from sqlalchemy import bindparam, insert, select, update
 from sqlalchemy.orm import Session
+from sqlalchemy.orm.util import identity_key
 
 from app.designs.errors import DesignReleased, StaleRevision
 from app.designs.filtering import DesignFilter, conditions
@@ -18,7 +19,20 @@ from app.identity.audit import record
 from app.plain import JsonObject
 from app.storage.errors import NotFound
 from app.storage.identity import new_id, now
-from app.storage.tables import BuildRow, DesignRow, RevisionModelRow, RevisionRow, canonical_json
+from app.storage.tables import Base, BuildRow, DesignRow, RevisionModelRow, RevisionRow, canonical_json
+
+_DESIGNS = Base.metadata.tables[DesignRow.__tablename__]
+_DESIGN = insert(_DESIGNS)
+_REVISION = insert(Base.metadata.tables[RevisionRow.__tablename__])
+_APPENDED = (
+    update(_DESIGNS)
+    .where(
+        _DESIGNS.c.id == bindparam("of"), _DESIGNS.c.head == bindparam("base"), _DESIGNS.c.deleted.is_(None)
+    )
+    .values(head=bindparam("number"), name=bindparam("named"))
+    .returning(_DESIGNS.c.head)
+)
+"""Statements of every save, written once: to build one costs more than to run it."""
 
 
 @dataclass(frozen=True)
@@ -139,10 +153,9 @@ def revisions(session: Session, id: str, limit: int, before: int | None) -> list
 
 def create(session: Session, name: str, written: Written) -> tuple[str, int]:
     """A new design with its first revision; its id and the revision's number."""
-    row = DesignRow(id=new_id(session), name=name, created=now(), deleted=None, head=0)
-    session.add(row)
-    session.flush()
-    return row.id, append(session, row.id, 0, written)
+    id = new_id(session)
+    session.connection().execute(_DESIGN, {"id": id, "name": name, "created": now(), "head": 0})
+    return id, append(session, id, 0, written)
 
 
 def append(session: Session, id: str, base: int, written: Written) -> int:
@@ -157,30 +170,32 @@ def append(session: Session, id: str, base: int, written: Written) -> int:
     NotFound
         If there is no such design, or it is deleted.
     """
-    same = DesignRow.id == id, DesignRow.head == base, DesignRow.deleted.is_(None)
-    values = {"head": base + 1, "name": written.document["name"]}
-    if session.scalar(update(DesignRow).where(*same).values(values).returning(DesignRow.head)) is None:
-        raise StaleRevision(f'"{base}"', design(session, id).head)
-    at = now()
-    session.add(
-        RevisionRow(
-            design_id=id,
-            number=base + 1,
-            note=written.note,
-            created=at,
-            document=written.document,
-            results=written.results,
-            state=written.state,
-            problem=None,
-            author=acting().id,
-            supersedes=session.scalar(NEWEST_RELEASED, {"design": id}),
-        )
-    )
     session.flush()
+    connection = session.connection()
+    values = {"of": id, "base": base, "number": base + 1, "named": written.document["name"]}
+    if connection.scalar(_APPENDED, values) is None:
+        raise StaleRevision(f'"{base}"', design(session, id).head)
+    if (row := session.identity_map.get(identity_key(DesignRow, id))) is not None:
+        session.refresh(row)
+    at = now()
+    revision = {
+        "design_id": id,
+        "number": base + 1,
+        "note": written.note,
+        "created": at,
+        "document": written.document,
+        "results": written.results,
+        "state": written.state,
+        "problem": None,
+        "author": acting().id,
+        "supersedes": session.scalar(NEWEST_RELEASED, {"design": id}),
+    }
+    connection.execute(_REVISION, revision)
     digest = hashlib.sha256(canonical_json(written.document).encode()).hexdigest()
     record(session, written.action, f"designs/{id}/revisions/{base + 1}", digest, at)
-    session.add_all(_model_row(id, base + 1, state) for state in written.models)
-    session.flush()
+    if written.models:
+        session.add_all(_model_row(id, base + 1, state) for state in written.models)
+        session.flush()
     return base + 1
 
 

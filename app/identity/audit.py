@@ -10,7 +10,9 @@ from sqlalchemy.orm import Session
 
 from app.identity.acting import acting
 from app.storage.identity import now
-from app.storage.tables import AuditRow
+from app.storage.tables import AuditRow, Base
+
+_RECORDED = insert(Base.metadata.tables[AuditRow.__tablename__])
 
 
 def record(
@@ -44,4 +46,4 @@ def record(
         "object": object,
         "digest": digest,
     }
-    session.execute(insert(AuditRow).values(row))
+    session.connection().execute(_RECORDED, row)

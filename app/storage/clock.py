@@ -25,7 +25,7 @@ from sqlalchemy.sql import func
 from sqlalchemy.sql.compiler import SQLCompiler
 from sqlalchemy.sql.functions import GenericFunction
 
-from app.storage.tables import CounterRow
+from app.storage.tables import Base, CounterRow
 from app.storage.units import Writer
 
 logger = logging.getLogger(__name__)
@@ -125,12 +125,13 @@ def operated(session: Session) -> int:
 
     On PostgreSQL it is exact everywhere.
     """
-    counter = select(CounterRow.value).where(CounterRow.name == NAME)
     if session.get_bind().dialect.name == "sqlite":
-        return session.scalar(counter) or 0
+        return session.connection().scalar(_COUNTED) or 0
     return session.scalar(_OPERATED) or 0
 
 
+_COUNTER = Base.metadata.tables[CounterRow.__tablename__]
+_COUNTED = select(_COUNTER.c.value).where(_COUNTER.c.name == NAME)
 _THEN = select(CounterRow.value).where(CounterRow.name == TICKED).scalar_subquery()
 _SINCE = func.least(func.greatest(func.floor(present()) - _THEN, 0), LONGEST)
 _OPERATED = select(cast(CounterRow.value + _SINCE, BigInteger)).where(CounterRow.name == NAME)

@@ -9,17 +9,30 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from sqlalchemy import bindparam, select
 from sqlalchemy.orm import Session
 
 from app.plain import JsonObject
 from app.storage.clock import operated
 from app.storage.errors import KeyReused
 from app.storage.identity import now
-from app.storage.tables import IdempotencyRow
+from app.storage.tables import Base, IdempotencyRow
 from app.storage.units import repeatable
 from app.storage.upserts import insert_new, upsert
 
 BEFORE_CLIENTS = ""  # the client of keys that version 0.1 kept, which asked for none
+
+
+_ROWS = Base.metadata.tables[IdempotencyRow.__tablename__]
+_KEPT = (
+    select(_ROWS.c.client, _ROWS.c.fingerprint, _ROWS.c.location)
+    .where(
+        _ROWS.c.key == bindparam("of"),
+        _ROWS.c.scope == bindparam("within"),
+        _ROWS.c.client.in_((bindparam("by"), BEFORE_CLIENTS)),
+    )
+    .order_by(_ROWS.c.client.desc())  # that of version 0.1 is empty, the last
+)
 
 
 @dataclass(frozen=True)
@@ -41,8 +54,8 @@ class Once:
         """
         if not self.key:
             return None
-        row = self._row(session, self.client) or self._row(session, BEFORE_CLIENTS)
-        return None if row is None else self._answer(row)
+        kept = self._kept(session)
+        return self._answer(*next(iter(kept.values()))) if kept else None
 
     def begin(self, session: Session) -> JsonObject | None:
         """The stored answer of an equal earlier request; else reserve its key and let `keep` follow.
@@ -57,8 +70,9 @@ class Once:
         if not self.key:
             return None
         repeatable(session)
-        if self.client != BEFORE_CLIENTS and (old := self._row(session, BEFORE_CLIENTS)):
-            return self._answer(self._row(session, self.client) or old)
+        kept = self._kept(session)
+        if self.client != BEFORE_CLIENTS and BEFORE_CLIENTS in kept:
+            return self._answer(*next(iter(kept.values())))
         mine = self._new(operated(session), status=0, location={})
         if insert_new(session, mine):
             return None
@@ -81,10 +95,14 @@ class Once:
             operated=operated,
         )
 
-    def _answer(self, row: IdempotencyRow) -> JsonObject:
-        if row.fingerprint != self.fingerprint:
-            raise KeyReused(row.key)
-        return row.location
+    def _answer(self, fingerprint: str, location: JsonObject) -> JsonObject:
+        if fingerprint != self.fingerprint:
+            raise KeyReused(self.key or "")
+        return location
 
-    def _row(self, session: Session, client: str) -> IdempotencyRow | None:
-        return session.get(IdempotencyRow, (self.key, self.scope, client))
+    def _kept(self, session: Session) -> dict[str, tuple[str, JsonObject]]:
+        """Fingerprint and answer by client: of this client first, then of version 0.1."""
+        asked = {"of": self.key, "within": self.scope, "by": self.client}
+        return {
+            row.client: (row.fingerprint, row.location) for row in session.connection().execute(_KEPT, asked)
+        }

@@ -10,14 +10,15 @@ from datetime import UTC, datetime
 from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session
 
-from app.storage.tables import CounterRow
+from app.storage.tables import Base, CounterRow
 
 IDENTITY = "identity"
+_COUNTER = Base.metadata.tables[CounterRow.__tablename__]
 _RAISED = (
-    update(CounterRow)
-    .where(CounterRow.name == IDENTITY)
-    .values(value=CounterRow.value + 1)
-    .returning(CounterRow.value)
+    update(_COUNTER)
+    .where(_COUNTER.c.name == IDENTITY)
+    .values(value=_COUNTER.c.value + 1)
+    .returning(_COUNTER.c.value)
 )
 _NEXT = select(func.nextval(IDENTITY))
 _TEXT = "%Y-%m-%dT%H:%M:%S.%fZ"
@@ -29,7 +30,7 @@ def new_id(session: Session) -> str:
     It is counted up in the unit of work that uses it.
     """
     is_sqlite = session.get_bind().dialect.name == "sqlite"
-    number: int | None = session.scalar(_RAISED if is_sqlite else _NEXT)
+    number: int | None = session.connection().scalar(_RAISED if is_sqlite else _NEXT)
     assert number is not None, "a migrated database has its counters"
     return f"{number:014x}{secrets.token_hex(5)}"
 
