@@ -77,7 +77,15 @@ def admitted(cls: type[Template], typed: Mapping[str, Typed | str]) -> Intake:
     for name, declared in cls.inputs.items():
         source = typed.get(name) or (None if isinstance(declared, Derived) else declared.default)
         if isinstance(source, Typed):
-            value, remark = _bounded(declared, source)
+            value, remark = (
+                (np.float64(source.si), None)
+                if isinstance(source.si, float)
+                and source.tolerance is None
+                and not isinstance(declared, (Curve, Table))
+                and declared.meaning.interval[0] <= source.si <= declared.meaning.interval[1]
+                and not declared.meaning.integer
+                else _bounded(declared, source)  # most inputs are one number within its bounds
+            )
             intake.values[declared.attribute] = value
             intake.faults.extend([remark] if isinstance(remark, Fault) else [])
             intake.masks.extend([remark] if isinstance(remark, Mask) else [])
@@ -94,10 +102,6 @@ def admitted(cls: type[Template], typed: Mapping[str, Typed | str]) -> Intake:
 
 def _bounded(declared: Input, typed: Typed) -> tuple[Any, Fault | Mask | None]:
     """The value and what is wrong with it; a faulty point of an array is masked, and is not a fault."""
-    if isinstance(typed.si, float) and typed.tolerance is None and not isinstance(declared, (Curve, Table)):
-        low, high = declared.meaning.interval  # most inputs are one number within its bounds
-        if low <= typed.si <= high and not declared.meaning.integer:
-            return np.float64(typed.si), None
     if isinstance(declared, Table):
         return _rows(declared, typed.si)
     if isinstance(typed.si, np.ndarray) and is_single(declared):
