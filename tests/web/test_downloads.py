@@ -79,3 +79,36 @@ def test_why_a_file_cannot_be_made_is_said_and_nothing_is_saved(watched, http):
     link(page, "DXF").click()
     expect(page.locator("[data-download-status]")).to_contain_text("no room for a title block")
     assert saved == []
+
+
+def test_fields_of_a_title_block_are_typed_before_a_download(watched, http):
+    page = watched.page
+    page.goto(f"{watched.url}/designs/{design(http, 'typed')}")
+    page.get_by_label("Identification number").fill("4711-08")
+    page.get_by_label("Checked by").fill("Bo & Co")
+    with page.expect_download(timeout=PATIENCE) as download:
+        page.locator("[data-buttons]").get_by_role("button", name="DXF").click()
+    assert download.value.suggested_filename == "typed_shell_r1.dxf"
+    lines = Path(download.value.path()).read_text().splitlines()
+    assert "4711-08" in lines
+    assert "Bo & Co" in lines
+    page.get_by_label("Document status").fill("released")
+    page.locator("[data-buttons]").get_by_role("button", name="SVG").click()
+    status = page.locator("[data-buttons] [data-download-status]")
+    expect(status).to_contain_text("approval", timeout=PATIENCE)
+
+
+def test_the_page_of_a_model_shows_its_drawing(watched):
+    page = watched.page
+    page.goto(f"{watched.url}/models/plain_bearing/1")
+    picture = page.get_by_alt_text("Technical drawing of the part", exact=False)
+    picture.scroll_into_view_if_needed(timeout=PATIENCE)
+    page.wait_for_function(
+        "picture => picture.complete && picture.naturalWidth > 0",
+        arg=picture.element_handle(),
+        timeout=PATIENCE,
+    )
+    section = page.locator(".technical-drawing")
+    with page.expect_download(timeout=PATIENCE) as download:
+        section.get_by_role("link", name="DXF").click()
+    assert download.value.suggested_filename == "plain_bearing_v1.dxf"
