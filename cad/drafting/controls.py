@@ -11,6 +11,7 @@ from math import cos, pi, radians, sin
 
 from cad.drafting.curves import Point
 from cad.drafting.declared import Control, Declared
+from cad.drafting.formats import FORMATS
 from cad.drafting.lettering import width_of
 from cad.drafting.page import Page
 from cad.drafting.placing import TEXT, NoRoom, Placed
@@ -116,7 +117,7 @@ class Controls:
         """The nearest free place about a target, which is taken."""
         tries = (
             _beside(target, away, radians(turn), width)
-            for away in range(8, 150, 4)
+            for away in range(8, round(150 * self.plan.format.width / FORMATS[0].width), 4)
             for turn in range(0, 360, 20)
         )
         free = [place for place in tries if self.room.is_free(box_at(*place))]

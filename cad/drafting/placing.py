@@ -12,6 +12,7 @@ from itertools import pairwise
 from math import atan2, cos, hypot, pi, radians, sin
 
 from cad.drafting.curves import Point
+from cad.drafting.formats import FORMATS
 from cad.drafting.labels import Label, label_of
 from cad.drafting.lanes import Lane
 from cad.drafting.matching import Dimension
@@ -27,7 +28,7 @@ _TAIL = 6.5  # of a line with its arrows outside [mm on paper]
 _FIRST = 10.0  # from the view to its first dimension line [mm on paper]
 _MOST_LANES = 40
 _MOST_ALIKE = 8  # other arcs that are tried
-_NEAREST, _FARTHEST, _STEP = 5.0, 150.0, 3.0  # from what is measured to its words [mm on paper]
+_NEAREST, _FARTHEST, _STEP = 5.0, 150.0, 3.0  # from what is measured to its words [mm on A3]
 
 
 @dataclass(frozen=True)
@@ -171,7 +172,7 @@ class Placing:
         turns = sorted(range(-180, 180, 15), key=abs) if whole else (0, 10, -10, 20, -20)
         width, height = label.width(TEXT), label.height(TEXT)
         arcs = [replace(one, measure=measure) for measure in (one.measure, *one.alike[:_MOST_ALIKE])]
-        for away in _distances():
+        for away in self._distances():
             for arc in arcs:
                 centre, on = self._on_paper(arc, right)
                 radius = hypot(on[0] - centre[0], on[1] - centre[1])
@@ -196,7 +197,7 @@ class Placing:
         shortest = min(hypot(x - corner[0], y - corner[1]) for x, y in legs)
         size = max(label.width(TEXT), 2 * TEXT)
         start = max(0.5 * shortest, 8.0)
-        for away in _distances():
+        for away in self._distances():
             radius = start + away
             beyond = radius + GAP + TEXT / 2
             words = corner[0] + beyond * cos(middle), corner[1] + beyond * sin(middle)
@@ -209,12 +210,19 @@ class Placing:
             placed = Placed(one, label, self.plan.at(*base), None, right)
             yield around(words, width, height), placed, lines[:1] + _nearest(lines[1:])
 
+    def _distances(self) -> Iterator[float]:
+        """From what is measured to its words [mm on paper]: on a large sheet views are large too."""
+        away, farthest = _NEAREST, _FARTHEST * self.plan.format.width / FORMATS[0].width
+        while away < farthest:
+            yield away
+            away += _STEP
+
     def _around(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
         """Words at any place around an oblique dimension."""
         points = self._on_paper(one, right)
         middle = (points[0][0] + points[1][0]) / 2, (points[0][1] + points[1][1]) / 2
         width, height = label.width(TEXT), label.height(TEXT)
-        for away in _distances():
+        for away in self._distances():
             for turn in range(90, 450, 15):
                 x = middle[0] + (away + width / 2) * cos(radians(turn))
                 y = middle[1] + (away + height / 2) * sin(radians(turn))
@@ -235,10 +243,3 @@ def _middle(low: float, high: float, width: float, others: list[float]) -> float
 def _nearest(lines: list[list[Point]]) -> list[list[Point]]:
     """The shorter half of lines: extension lines from each leg to its own end of the arc."""
     return sorted(lines, key=lambda line: hypot(line[0][0] - line[1][0], line[0][1] - line[1][1]))[:2]
-
-
-def _distances() -> Iterator[float]:
-    away = _NEAREST
-    while away < _FARTHEST:
-        yield away
-        away += _STEP
