@@ -158,7 +158,7 @@ def _life() -> dict[str, JsonValue]:
         },
         "limits": {"required_safety_factor": 1.3, "required_cycles": 1e9},
         "outputs": [
-            "safety_factor", "load_use", "damage", "life", "governing_point", "endurance_limit",
+            "safety_factor", "load_use", "damage", "life", "governing_point",
             "equivalent_amplitude", "greatest_von_mises",
         ],
     }  # fmt: skip
