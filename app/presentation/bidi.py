@@ -23,8 +23,11 @@ def bare(text: str) -> str:
 
 def balanced(text: str) -> str:
     """Return a text that ends no isolation that it has not begun."""
+    text = text.translate(_WITHOUT_BREAKS)
+    if POP_ISOLATE not in text:
+        return text
     kept, isolates = [], 0
-    for sign in text.translate(_WITHOUT_BREAKS):
+    for sign in text:
         if sign == POP_ISOLATE and isolates == 0:
             continue
         isolates += (sign in ISOLATES) - (sign == POP_ISOLATE)

@@ -6,7 +6,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from typing import NamedTuple, Protocol, runtime_checkable
+
+from pydantic import BaseModel
 
 from templates.core.paper.mathml import unit_symbol
 
@@ -37,6 +40,7 @@ def plain(value: float) -> str:
     return "".join(aligned(value))
 
 
+@lru_cache(maxsize=1024)
 def unit(text: str | None) -> str:
     """A unit as it is printed: `mm**2/s` → `mm²/s`; nothing for a pure number or a text."""
     return unit_symbol(text) if text else ""
@@ -79,6 +83,8 @@ def in_line(quantity: object) -> str:
         return ""
     if isinstance(quantity, Mapping):
         return _line(quantity)
+    if isinstance(quantity, BaseModel) and "value" in (fields := vars(quantity)):
+        return _line(fields)  # to ask for a field that its class lacks takes ten times as long
     if hasattr(quantity, "value"):  # a quantity; to ask by the protocol takes ten times as long
         return _line({name: getattr(quantity, name, None) for name in PARTS})
     return _written(quantity)
@@ -148,6 +154,8 @@ def _flat(values: object) -> Iterator[object]:
 def tolerance(more: Mapping[str, object]) -> str:
     """A tolerance after its value: `H7 (+0.025 −0.0)`, `+10 −5 uniform`."""
     given = {name: more[name] for name in (*SIGNS, "zone", "distribution") if more.get(name) is not None}
+    if not given:
+        return ""
     signed = [_deviation(name, given[name]) for name in SIGNS if name in given]
     is_even = "plus" in given and given["plus"] == given.get("minus")
     limits = signed[0].replace("+", "±", 1) if is_even else " ".join(signed)

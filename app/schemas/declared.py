@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import cached_property, lru_cache
+
 from pydantic import BaseModel, Field, JsonValue, TypeAdapter
 
 from app.schemas.templates import Schema
@@ -27,7 +30,7 @@ class Declared(BaseModel):
         """Whether a value stands for an empty field."""
         return "default" in self.model_fields_set
 
-    @property
+    @cached_property
     def is_list(self) -> bool:
         """Whether it is a list of values or a curve, as its forms say, or its example."""
         has_list = any(_holds_list(example) for example in self.examples)
@@ -50,9 +53,29 @@ _PROPERTIES = TypeAdapter(dict[str, Declared])
 _NAMES = TypeAdapter(frozenset[str])
 
 
-def properties(schema: Schema) -> dict[str, Declared]:
-    """The declarations in a schema, by name, in its order."""
-    return _PROPERTIES.validate_python(schema.get("properties", {}))
+class _Same:
+    """A schema, equal to itself alone: to compare or digest its text would cost as much as to read it."""
+
+    __slots__ = ("schema",)
+
+    def __init__(self, schema: Schema) -> None:
+        self.schema = schema
+
+    def __hash__(self) -> int:
+        return id(self.schema)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and self.schema is other.schema
+
+
+def properties(schema: Schema) -> Mapping[str, Declared]:
+    """The declarations in a schema, by name, in its order; read once while steps share the schema."""
+    return _read(_Same(schema))
+
+
+@lru_cache(maxsize=64)
+def _read(same: _Same) -> Mapping[str, Declared]:
+    return _PROPERTIES.validate_python(same.schema.get("properties", {}))
 
 
 def required(schema: Schema) -> frozenset[str]:

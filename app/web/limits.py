@@ -84,7 +84,10 @@ def _rows(
 
 def with_rows(fields: Sequence[Field], tables: Sequence[LibraryTable]) -> list[Field]:
     """The fields of inputs, with the rows of the library that may fill them as suggestions."""
-    return [replace(one, suggestions=dict(_filling(_tail(one.name), tables))) for one in fields]
+    filling = [dict(_filling(_tail(one.name), tables)) for one in fields]
+    return [
+        replace(one, suggestions=rows) if rows else one for one, rows in zip(fields, filling, strict=True)
+    ]
 
 
 def _tail(name: str) -> str:

@@ -41,6 +41,8 @@ def test_property_evaluate_needs_neither_kernel_nor_service_nor_other_templates(
     modules, output = loaded("evaluate", "oil_film", "--version", "1", *INPUTS)
     assert "3.24491 µm" in output
     assert modules.isdisjoint(HEAVY)
+    assert "pint" in modules
+    assert "dask" not in modules  # Pint imports Dask where that is installed
     assert {name for name in modules if name.startswith("templates.oil_film.")} == {
         "templates.oil_film.oil_film_v1"
     }
