@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from typing import Annotated
+from unicodedata import normalize
 
 from fastapi import Depends, Query
 
@@ -34,7 +35,7 @@ class TitleBlock:
         InvalidInputs
             If the kind of file has no title block, or a text contradicts the approval.
         """
-        typed = {name: text.strip() for name, text in self.texts.items() if text.strip()}
+        typed = {name: plain for name, text in self.texts.items() if (plain := _shown(text))}
         if typed and kind not in DRAWINGS:
             detail = f"only {', '.join(DRAWINGS)} have a title block; leave it out for {kind}"
             raise InvalidInputs(Fault(name, "not_offered", detail) for name in typed)
@@ -62,12 +63,22 @@ def _contradictions(typed: dict[str, str], stamp: Stamp) -> list[Fault]:
             detail = f"this revision has {signed!r} here, from its record; leave it out"
             faults.append(Fault(name, "signed_otherwise", detail))
     status = typed.get("document_status", stamp.status)
-    if status != stamp.status and (stamp.status in ORDER or status.lower() in ORDER):
+    if status != stamp.status and (stamp.status in ORDER or _letters(status) in ORDER):
         detail = (
             f"the approval of this revision says {stamp.status!r}; only a step of the approval changes it"
         )
         faults.append(Fault("document_status", "signed_otherwise", detail))
     return faults
+
+
+def _shown(text: str) -> str:
+    """A text as a drawing shows it, without room about it: signs that do not print are spaces there."""
+    return "".join(sign if sign.isprintable() else " " for sign in text).strip()
+
+
+def _letters(text: str) -> str:
+    """The small Latin letters of a text: a reader sees `released` in `Released.` and in `ｒeleased` too."""
+    return "".join(sign for sign in normalize("NFKD", text).lower() if "a" <= sign <= "z")
 
 
 def title_block(

@@ -7,6 +7,7 @@ is declared for them, and nothing is stored.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -123,12 +124,11 @@ def _uses(
         use = _array(step, USE)
         if step.template.id != "fatigue_life" or not _takes(step, f"{name}.{UNIT_LOADS}."):
             continue
-        if use is None or points is None or use.shape != points.shape[:1]:
+        if use is None or points is None or use.shape != points.shape[:1] or np.isnan(use).all():
             continue
         title = f"Share of the endurance limit that is used (1 / safety factor), {called}"
-        yield FilletUse(
-            f"{called}.{USE}", title, "1", float(use.min()), float(use.max()), sizes, places, points, use
-        )
+        low, high = float(np.nanmin(use)), float(np.nanmax(use))  # a point that breaks has none
+        yield FilletUse(f"{called}.{USE}", title, "1", low, high, sizes, places, points, use)
 
 
 def _points(session: Session, model: RevisionModel) -> Array | None:
@@ -184,8 +184,9 @@ def ends_of(step: RevisionStep, throws: int) -> tuple[list[int], int, int] | Non
 
 
 def _takes(step: RevisionStep, prefix: str) -> bool:
-    """Whether a relation of a step uses what begins so."""
-    return any(prefix in str(relation) for relation in step.relations.values())
+    """Whether a relation of a step uses what begins so; `big_shaft.chain.` does not begin with `shaft.`."""
+    begins = re.compile(rf"(?<![\w.]){re.escape(prefix)}")
+    return any(begins.search(str(relation)) for relation in step.relations.values())
 
 
 def _array(step: RevisionStep, name: str) -> Array | None:

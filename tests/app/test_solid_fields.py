@@ -6,13 +6,15 @@ The solver is replaced by rows that it would have written.
 import io
 import json
 from math import cos, pi, sin
+from types import SimpleNamespace
 
 import numpy as np
 import pypdf
 import pytest
 from PIL import Image
-from serving import API, created, revision
+from serving import API, created, problem, revision
 
+from app.designs import solid_fields
 from app.designs.solid_fields import ends_of
 from app.schemas.designs import RevisionStep
 from app.solids import analysis_rows as repository
@@ -159,6 +161,39 @@ def test_what_is_not_there_is_refused(http, base, tail):
     assert answer.status_code in (404, 422), answer.text
     if tail.startswith(("nothing", "train")):
         assert "life.load_use" in answer.json()["detail"]
+
+
+def test_no_option_is_left_aside(http, base):
+    answer = http.get(f"{base}/life.load_use.glb", params={"deflection": "0.05 mm"})
+    assert [one["name"] for one in problem(answer, 422, "invalid-inputs")["errors"]] == ["deflection"]
+
+
+def life_of(use, source="shaft"):
+    step = {
+        "template": {"id": "fatigue_life", "version": 2, "digest": "0"},
+        "inputs": {},
+        "outputs": {"load_use": {"value": use, "unit": "1"}},
+        "relations": {"stress_of_force_1": f"= {source}.unit_loads.stress_of_force_1"},
+    }
+    return RevisionStep.model_validate(step)
+
+
+def uses(monkeypatch, life):
+    monkeypatch.setattr(solid_fields, "_points", lambda session, model: np.zeros((3, 3)))
+    models = {"shaft": None, "big_shaft": None}
+    revision = SimpleNamespace(models=models, steps={"life": life})
+    return [*solid_fields._uses(None, revision, "shaft", None, [])]
+
+
+def test_a_point_without_a_value_leaves_the_range_of_the_others(monkeypatch):
+    (field,) = uses(monkeypatch, life_of([None, 0.5, 0.25]))
+    assert (field.low, field.high) == (0.25, 0.5)
+    assert uses(monkeypatch, life_of([None, None, None])) == []
+
+
+def test_a_model_whose_name_ends_another_does_not_take_its_fields(monkeypatch):
+    assert len(uses(monkeypatch, life_of([0.1, 0.5, 0.25]))) == 1
+    assert uses(monkeypatch, life_of([0.1, 0.5, 0.25], "big_shaft")) == []
 
 
 def test_a_model_that_is_no_crank_has_none(http):

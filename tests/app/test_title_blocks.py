@@ -60,6 +60,19 @@ def test_only_an_approval_gives_its_states(http, place):
     assert "only a step of the approval" in detail[0]["detail"]
 
 
+@pytest.mark.parametrize(
+    "status", ["released\u2028", "\u200breleased", "released\ufe0f", "ｒeleased", "Released.", "re\u00adleased"]
+)
+def test_no_sign_that_is_not_seen_makes_an_approval(http, place, status):
+    answer = http.get(f"{place}.drawing.svg", params={"document_status": status})
+    assert problem(answer, 422, "invalid-inputs")["errors"][0]["code"] == "signed_otherwise"
+
+
+def test_a_text_of_signs_that_do_not_print_leaves_the_field_as_it_is(http, place):
+    plain = http.get(f"{place}.drawing.svg", params={"drawing_title": "\u202e\x01\u2028"})
+    assert plain.content == http.get(f"{place}.drawing.svg").content
+
+
 def test_only_drawings_have_a_title_block(http, place):
     answer = http.get(f"{place}.step", params={"drawing_number": "1"})
     assert "have a title block" in problem(answer, 422, "invalid-inputs")["errors"][0]["detail"]

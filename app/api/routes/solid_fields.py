@@ -25,6 +25,7 @@ from cad.export import MEDIA_TYPES
 from cad.naming import name as wide_name
 from cad.naming import plain_name
 from cad.painting import Glb
+from templates.core.errors import Fault, InvalidInputs
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
 
@@ -78,6 +79,9 @@ async def read_painted_solid(
     Where the field has no value the part is grey. The title of the field and the values of the first and
     the last colour stand in the GLB file's root node, and in the list of fields.
     """
+    if request.deflection is not None:
+        detail = "a field is painted on the mesh of the model's GLB file; leave deflection out"
+        raise InvalidInputs([Fault("deflection", "not_offered", detail)])
     database, store = request.database, request.store
     chosen = await run_in_threadpool(_chosen, database, catalogues, (id, number, name), field)
     plain = replace(request, if_none_match=None, deflection=None)
