@@ -140,12 +140,10 @@ def _of_model(session: Session, fixed: Fixed) -> _Source:
     numbers = repository.numbers(session, id)
     number = fixed.version or max(numbers, default=0)
     if number not in numbers:
-        have = (
-            f"it has versions {', '.join(map(str, numbers[-10:]))}"
-            if numbers
-            else "no file was brought under it"
-        )
-        raise UnreadableModel("component", f"{fixed.name}: there is no model {id} version {number}; {have}")
+        there_is = f"version {number}; it has versions {', '.join(map(str, numbers[-10:]))}"
+        nothing = "that was brought as a file"
+        detail = f"{fixed.name}: there is no model {id} {there_is if numbers else nothing}"
+        raise UnreadableModel("component", detail)
     about = description_of(repository.version(session, id, number).description)
     if about.program != "step":
         detail = (

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
 import numpy as np
 from pydantic import ConfigDict, Field, ValidationError, model_validator
@@ -53,7 +53,7 @@ class Fixed(Bounded):
     turn_x: str = Field("0 deg", max_length=60)
     turn_y: str = Field("0 deg", max_length=60)
     turn_z: str = Field("0 deg", max_length=60)
-    may_overlap: list[str] = Field(
+    may_overlap: list[Annotated[str, Field(max_length=200, pattern=_LINE)]] = Field(
         [], max_length=50, description="parts whose space it may take: a press fit"
     )
     density: str = Field(f"{STEEL_DENSITY:g} kg/m**3", max_length=60)

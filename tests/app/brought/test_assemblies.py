@@ -181,7 +181,8 @@ def test_fixed_parts_alone_are_an_assembly(http, bolt):
 @pytest.mark.parametrize(
     ("component", "said"),
     [
-        ({"model": "no_such"}, "there is no model no_such"),
+        ({"model": "no_such"}, "there is no model no_such that was brought as a file"),
+        ({"model": "m8_bolt", "may_overlap": ["cap\x1b"]}, "may_overlap.0: String should match pattern"),
         ({"model": "m8_bolt", "version": 99}, "it has versions 1"),
         ({"design": "nobodys"}, "there is no design 'nobodys'"),
         ({"model": "bearing_assembly"}, "there is no model bearing_assembly"),
