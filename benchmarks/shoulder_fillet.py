@@ -35,14 +35,14 @@ LOADS: dict[Kind, tuple[Measure, float]] = {
 """What is looked at under each load, and its nominal value [MPa] under 1 N·mm."""
 
 
-def shoulder(fillet: float, end: float = END) -> bytes:
+def shoulder(
+    fillet: float, end: float = END, wide: float = WIDE, narrow: float = NARROW, at: float = SHOULDER
+) -> bytes:
     """A stepped shaft as a STEP file; a fillet of 0 leaves the corner sharp."""
-    side = (
-        Workplane("XZ").lineTo(WIDE / 2, 0).lineTo(WIDE / 2, SHOULDER).lineTo(NARROW / 2 + fillet, SHOULDER)
-    )
+    side = Workplane("XZ").lineTo(wide / 2, 0).lineTo(wide / 2, at).lineTo(narrow / 2 + fillet, at)
     if fillet > 0:
-        side = side.radiusArc((NARROW / 2, SHOULDER + fillet), fillet)
-    shape = side.lineTo(NARROW / 2, end).lineTo(0, end).close().revolve(360, (0, 0, 0), (0, 1, 0)).val()
+        side = side.radiusArc((narrow / 2, at + fillet), fillet)
+    shape = side.lineTo(narrow / 2, end).lineTo(0, end).close().revolve(360, (0, 0, 0), (0, 1, 0)).val()
     assert isinstance(shape, Shape)
     return write_step((Part("shaft", shape, 1.0),), Header("shaft", 1, {}, "0" * 64))
 

@@ -24,13 +24,13 @@ ATTRIBUTE = "user defined attribute"
 
 _ACCURACY = 1e-11  # relative, as in `cad.inspect.measure`
 _STRING = r"'((?:[^']|'')*)'"
-_SHAPE = re.compile(
-    r"SHAPE_DEFINITION_REPRESENTATION\((#\d+),(#\d+)\)|"
-    r"^(#\d+) = PRODUCT_DEFINITION_SHAPE\([^#]*(#\d+)\)|"
-    r"^(#\d+) = PRODUCT_DEFINITION\([^#]*(#\d+),#\d+\)|"
-    r"^(#\d+) = PRODUCT_DEFINITION_FORMATION\([^#]*(#\d+)\)|"
+_SHAPE = re.compile(  # the kernel breaks lines between any two tokens
+    r"SHAPE_DEFINITION_REPRESENTATION\(\s*(#\d+)\s*,\s*(#\d+)\s*\)|"
+    r"^(#\d+) = PRODUCT_DEFINITION_SHAPE\([^#]*(#\d+)\s*\)|"
+    r"^(#\d+) = PRODUCT_DEFINITION\([^#]*(#\d+)\s*,\s*#\d+\s*\)|"
+    r"^(#\d+) = PRODUCT_DEFINITION_FORMATION\([^#]*(#\d+)\s*\)|"
     rf"^(#\d+) = PRODUCT\(\s*{_STRING}\s*,\s*{_STRING}|"
-    r"^(#\d+) = (?:ADVANCED_BREP_)?SHAPE_REPRESENTATION\('[^']*',\([^)]*\),(#\d+)\)",
+    r"^(#\d+) = (?:ADVANCED_BREP_)?SHAPE_REPRESENTATION\(\s*'[^']*'\s*,\s*\([^)]*\)\s*,\s*(#\d+)\s*\)",
     re.MULTILINE,
 )
 

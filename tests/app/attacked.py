@@ -26,7 +26,7 @@ BUILD = {"parameters": {"size": "23 mm"}, "artifacts": ["step", "glb"]}
 BAR = {"parameters": {"diameter": "26 mm", "length": "41 mm"}, "level": "coarse", "outputs": ["surface"]}
 VARY = {"length": {"between": ["1 mm", "3 mm"]}}
 GRID = {"method": "grid", "vary": VARY, "steps": 3, "outputs": ["double.twice_the_length"]}
-KINDS = {"report": "html", "model": "step", "worksheet": "json"}
+KINDS = {"report": "html", "model": "step", "worksheet": "json", "field": "glb"}
 
 
 def document(**changes):
@@ -77,7 +77,7 @@ class Scene:
         def named(place):
             before, name = place[1], place[2].partition(":")[0]
             if name == "kind" and before.endswith("."):
-                return before + KINDS[before.strip("/.")]
+                return before + KINDS[before.strip("/.") or "field"]
             if name == "id":
                 return before + names.get(name, self.ids[before.strip("/")])
             return before + names.get(name, self.ids.get(before.strip("/"), self.ids.get(name, "")))
@@ -127,7 +127,7 @@ def objects(scene):
         "artifacts": built["artifacts"]["step"], "principals": scene.principals["author"],
         "comments": comment["id"], "keys": scene.team.keys["author"][3:13],
         "library": "surface_finish", "problems": "not-found", "explain": "block.size",
-        "versions": "1", "revisions": "1", "variants": "small",
+        "versions": "1", "revisions": "1", "variants": "small", "fields": "life",
     }  # fmt: skip
 
 

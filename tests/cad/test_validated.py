@@ -73,3 +73,10 @@ def test_the_copy_of_a_design_carries_its_stamp() -> None:
     mine = stamped(step, VALIDATED, Stamp("Engine", "block", 2, "2026-01-01T00:00:00"))
     assert b"design Engine" in mine
     assert stated(mine) == stated(step)
+
+
+def test_a_file_whose_lines_the_kernel_breaks_between_tokens() -> None:
+    # nine parts, as a bearing with bolts: the representation of the whole ends on its second line
+    step = write_step([box(f"block_{n}") for n in range(1, 9)], Header("box", 1, {}, ""))
+    assert re.search(rb"\(#11(?:,#\d+)+\),#\d+\s+\);", step)
+    assert len(stated(derive(step, VALIDATED))) == 3 * 8

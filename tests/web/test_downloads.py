@@ -84,6 +84,7 @@ def test_why_a_file_cannot_be_made_is_said_and_nothing_is_saved(watched, http):
 def test_fields_of_a_title_block_are_typed_before_a_download(watched, http):
     page = watched.page
     page.goto(f"{watched.url}/designs/{design(http, 'typed')}")
+    page.get_by_text("Title block of a drawing").click()
     page.get_by_label("Identification number").fill("4711-08")
     page.get_by_label("Checked by").fill("Bo & Co")
     with page.expect_download(timeout=PATIENCE) as download:

@@ -1,5 +1,7 @@
 """The pages of worksheets without scripts: everything is a form, and faults stand under their lines."""
 
+import re
+
 from playwright.sync_api import expect
 
 HOSTILE = "<script>alert(1)</script>&\"'"
@@ -41,9 +43,8 @@ def test_a_worksheet_lives_its_life_by_forms_alone(plain):
     page.get_by_role("button", name="Delete version 2").click()
     expect(page.locator("[data-sheet-state]")).to_have_text("released")
     page.get_by_role("button", name="Use it in a design").click()
-    expect(page).to_have_url(
-        f"{plain.url}/designs/new?design_name=by_forms&template=by_forms%2F1&model=plain_bearing%2F2"
-    )
+    start = f"{plain.url}/designs/new?design_name=by_forms&template=by_forms%2F1&model=plain_bearing%2F"
+    expect(page).to_have_url(re.compile(rf"{re.escape(start)}\d+"))
 
 
 def test_a_text_that_somebody_else_changed_is_kept_beside_theirs(http):
