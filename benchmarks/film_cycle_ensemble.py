@@ -8,7 +8,7 @@
     python -m benchmarks.film_cycle_ensemble page           the tables of docs/oil_film_cycle.md
     python -m benchmarks.film_cycle_ensemble again          compares kept marches with a changed cheap level
 
-`run`, `more` and `check` take 1 to 2 s a duty in the mean, some 20 s; each duty is one line of
+`run`, `more` and `check` take 1 to 4 s a duty in the mean, some 45 s; each duty is one line of
 benchmarks/results/film_cycle_ensemble.jsonl, written when it is done, and a run goes on where it was stopped.
 `run half_groove` does one kind of supply alone, `more half_groove 0,1` one band of it (row of load, column of
 B/D). `write` prints how often the bounds hold with the other seed.

@@ -1,12 +1,26 @@
 """What stands behind the bounds of `oil_film_cycle` 3: order statistics, samples that have every supply."""
 
+import json
 from collections import Counter
 
 import numpy as np
 import pytest
 
-from benchmarks.film_cycle_duties import MARCH, band, drawn, fed, kept, wanted
-from benchmarks.film_cycle_ensemble import admitted, bound, rounded_up
+from benchmarks.film_cycle_duties import (
+    FRESH,
+    KEPT,
+    LOADS,
+    MARCH,
+    OTHER_SEED,
+    SEED,
+    WIDTHS,
+    band,
+    drawn,
+    fed,
+    kept,
+    wanted,
+)
+from benchmarks.film_cycle_ensemble import FILE, HOLDS, admitted, bound, coverage, rounded_up, tables
 from benchmarks.supplied_duties import SUPPLIES
 from benchmarks.supplied_orbits import DUTIES, sampled
 
@@ -45,6 +59,47 @@ def test_example_a_bound_that_holds_too_seldom_with_the_other_seed_is_withdrawn(
     assert left["film"] == [[0.5, None]]
     assert left["loss"] == [[None, None], [None, None]]
     assert left["flow"] == [[0.1, 0.1]]
+
+
+class TestFile:
+    """The bounds that the service states are those of the kept duties."""
+
+    def test_golden_bounds_and_counts_follow_from_the_kept_lines(self):
+        lines, stated = kept(), json.loads(FILE.read_text(encoding="utf-8"))
+        first = [line for line in lines if line["seed"] == SEED]
+        held = coverage(tables(first), [line for line in lines if line["seed"] == OTHER_SEED])
+        assert stated["held_with_another_seed"] == held
+        assert stated["cases"] == admitted(tables(first), held)
+
+    @pytest.mark.parametrize("kind", ["half_groove", "full_groove"])
+    def test_property_every_bound_of_grooves_holds_for_93_of_100_fresh_duties(self, kind):
+        stated = json.loads(FILE.read_text(encoding="utf-8"))
+        assert sum(line["kind"] == kind and line["seed"] == OTHER_SEED for line in kept()) == FRESH
+        counts = stated["held_with_another_seed"][kind]
+        assert len(counts) == 3
+        for level, outputs in counts.items():
+            for output, (good, of) in outputs.items():
+                assert of == FRESH, (level, output)
+                assert good >= HOLDS * FRESH, (level, output)
+                assert None not in np.ravel(stated["cases"][kind][level][output]), (level, output)
+
+    @pytest.mark.parametrize("kind", ["pin_hole", "sleeve_hole"])
+    def test_property_too_few_duties_bound_nothing(self, kind):
+        stated = json.loads(FILE.read_text(encoding="utf-8"))
+        assert all(count < 59 for count in stated["duties"][kind].values())
+        values = [np.ravel(table) for level in stated["cases"][kind].values() for table in level.values()]
+        assert set(np.concatenate(values)) == {None}
+
+    def test_property_the_record_is_small(self):
+        assert KEPT.stat().st_size < 1e6
+
+
+def test_property_no_duty_counts_twice_or_outside_the_bands():
+    lines = kept()
+    named = Counter((line["seed"], line["kind"], line["number"]) for line in lines)
+    assert set(named.values()) == {1}
+    assert all(LOADS[0] <= line["S"] <= LOADS[-1] for line in lines)
+    assert all(WIDTHS[0] <= line["b"] <= WIDTHS[-1] for line in lines)
 
 
 def test_example_one_band_alone_has_the_same_duties_as_in_all_bands():
