@@ -1,6 +1,5 @@
 """The calculations: knows no HTTP, no database, no CAD. `get` is the way in from Python."""
 
-import templates.core.units  # noqa: F401  # imports Pint; before all that does
 from templates.door import Calculation, NoValue, Version, get
 from templates.library.choices import register_choices
 
