@@ -8,6 +8,7 @@ from math import pi
 HYDROSTATIC, THRUST, MIXED = ("hydrostatic_pad", 1), ("thrust_bearing", 1), ("mixed_friction", 1)
 GIVEN_OIL = {"supply_temperature": None, "dynamic_viscosity": "1 mPa*s"}
 ELASTIC, HEAT, HEAT_2 = ("elastic_film", 1), ("cycle_heat_balance", 1), ("cycle_heat_balance", 2)
+ELASTIC_2 = ("elastic_film", 2)
 WARM = ("thermal_film", 1)
 TINY = {
     "dynamic_viscosity": "0.1 mPa*s", "diametral_clearance": "0.005 mm", "bearing_diameter": "5 mm",
@@ -95,3 +96,4 @@ CASES = [
     (MIXED, "wear", {}, {"permissible_wear_intensity": "1 MPa*m/s"}, "met", 0.014497377, 1),
     (MIXED, "wear", {}, {"permissible_wear_intensity": "0.01 MPa*m/s"}, "not_met", 0.014497377, 0.01),
 ]  # fmt: skip
+CASES += [(ELASTIC_2, *case[1:]) for case in CASES if case[0] == ELASTIC]  # the same without a matrix

@@ -143,6 +143,7 @@ def test_property_the_templates_that_read_by_a_string_are_those_known():
         "cycle_heat_balance1": {"eta", "a_V", "b_V"},
         "cycle_heat_balance2": {"eta", "a_V", "b_V"},
         "elastic_film1": {"a_V", "b_V"},
+        "elastic_film2": {"a_V", "b_V"},
         "mixed_friction1": {"a_V", "b_V"},
         "thermal_film1": {"eta", "a_V", "b_V"},
         "thrust_bearing1": {"eta", "a_V", "b_V"},
