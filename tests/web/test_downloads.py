@@ -1,11 +1,14 @@
 """Downloads in Chromium: a file that has to be made is waited for, and what is not a file is never saved."""
 
 import json
+import re
 from pathlib import Path
 
 from patience import patient, until
 from playwright.sync_api import expect
 from serving import API
+
+from cad.export import MEDIA_TYPES
 
 PATIENCE = patient(60.0) * 1000  # ms
 SHELL = {"id": "plain_bearing", "version": 1, "parameters": {"inner_diameter": "37.5 mm"}}
@@ -36,6 +39,13 @@ def test_a_drawing_that_is_not_made_yet_is_waited_for(watched, http):
     assert download.value.suggested_filename == "Käfig_2_shell_r1.dxf"
     assert Path(download.value.path()).read_text().startswith("  0\nSECTION")
     expect(page.locator("[data-download-status]")).to_be_empty()
+
+
+def test_the_step_file_is_the_first_of_the_downloads(http):
+    page = http.get(f"/designs/{design(http, 'first')}").text
+    offered = re.findall(r"data-download>([^<]+)</a>", page.partition('aria-label="Downloads"')[2].partition("</p>")[0])
+    assert offered[:2] == ["STEP", "STEP with volume and area"]
+    assert len(offered) == len({*offered}) == len(MEDIA_TYPES) - 1  # all kinds but the picture
 
 
 def test_a_job_is_followed_and_its_answer_is_not_saved(watched, http):

@@ -166,6 +166,24 @@ def test_a_job_that_is_cancelled_says_so(watched):
     expect(page.get_by_role("button", name="Analyse")).to_be_enabled()
 
 
+def test_an_analysis_offers_only_what_it_takes(watched):
+    page = watched.page
+    watched.open(PAGE)
+    panel = page.locator("[data-elements]")
+    kind = panel.get_by_label("Analysis")
+    kind.wait_for(timeout=PATIENCE)
+    of_stress = ("Load", "Loaded end", "greatest stress as well")
+    for words in of_stress:
+        expect(panel.get_by_label(words)).to_be_visible()
+    kind.select_option("unit_loads")
+    for words in of_stress:
+        expect(panel.get_by_label(words)).to_be_hidden()
+    expect(panel.get_by_label("Level")).to_be_visible()
+    kind.select_option("bending")
+    for words in of_stress:
+        expect(panel.get_by_label(words)).to_be_visible()
+
+
 @pytest.mark.slow
 def test_a_design_is_analysed_as_it_declares(watched, http):
     analyses = {"torsion": {"tolerance": 0.05, "boundary": "guided_end", "load": "500 N*m"}}

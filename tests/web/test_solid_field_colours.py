@@ -51,3 +51,8 @@ def test_the_fillets_of_a_throw_take_the_colours_of_its_life(http, watched):
     expect(page.locator(".solid .colours")).to_have_count(0, timeout=PATIENCE)
     assert page.evaluate(MOST_YELLOW) < 30
     assert watched.faults() == []
+    problem = '{"detail": "the store is away"}'
+    lost = {"status": 503, "content_type": "application/problem+json", "body": problem}
+    page.route("**/fields/*.glb", lambda route: route.fulfill(**lost))
+    page.get_by_label("Colours show").select_option(index=1)
+    expect(page.get_by_role("alert").filter(has_text="the store is away")).to_be_visible(timeout=PATIENCE)

@@ -3,6 +3,7 @@ import { percent, quantityText } from "./numbers.js";
 import { cells, numberOf, warning } from "./results.js";
 
 const LOADED = ["torsion", "bending"]; // kinds that a load belongs to
+const HELD = [...LOADED, "chain"]; // kinds whose loaded end has a choice
 const HEADS = ["Quantity", "Value", "Unit", "Error, estimated", "Elements / degrees of freedom"];
 
 // Put an analysis into a list of them: in the place of its own table, else first. A surface alone has none.
@@ -13,11 +14,12 @@ export function showAnalysis(list, analysis) {
 }
 
 function table(analysis) {
-  const kind = capital(analysis.kind);
+  const kind = capital(words(analysis.kind));
   const place = element("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: kind });
   place.dataset.analysis = analysis.id;
   const asked = analysis.tolerance === null ? `level ${analysis.level}` : `within ${percent(analysis.tolerance)}`;
-  const caption = element("caption", {}, `${kind} `, element("span", { className: "muted" }, `${words(analysis.boundary)}, ${asked}${LOADED.includes(analysis.kind) ? `; under ${quantityText(analysis.load)}` : ""}`));
+  const held = HELD.includes(analysis.kind) ? `${words(analysis.boundary)}, ` : "";
+  const caption = element("caption", {}, `${kind} `, element("span", { className: "muted" }, `${held}${asked}${LOADED.includes(analysis.kind) ? `; under ${quantityText(analysis.load)}` : ""}`));
   const head = element("thead", {}, element("tr", {}, ...HEADS.map((text) => element("th", { scope: "col" }, text))));
   const rows = Object.entries(analysis.outputs).filter(([name]) => name !== "surface").flatMap(rowsOf);
   place.append(element("table", { className: "results elements-results" }, caption, head, element("tbody", {}, ...rows)));

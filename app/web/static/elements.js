@@ -40,6 +40,15 @@ function asDeclared(place) {
   if (boundary) ask(place, "boundary").value = boundary;
   if (level) ask(place, "level").value = level;
   if (load) ask(place, "load").value = load;
+  const { isTable, hasStress } = optionsOf(place);
+  for (const [name, applies] of Object.entries({ boundary: !isTable, load: hasStress, [EXTRA]: hasStress })) ask(place, name).closest("label").hidden = !applies;
+  for (const within of ask(place, "level").options) within.hidden = isTable && Boolean(Number(within.value));
+}
+
+// What the chosen kind takes: tables are under unit loads, held in one way; a load belongs to stress.
+function optionsOf(place) {
+  const { outputs, tables } = ask(place, "kind").selectedOptions[0].dataset, names = outputs.split(" ");
+  return { names, isTable: tables !== undefined, hasStress: names.includes(EXTRA) };
 }
 
 function tell(place, words) {
@@ -59,15 +68,14 @@ async function analysed(place) {
 }
 
 function asked(place, parameters) {
-  const level = ask(place, "level").value, kind = ask(place, "kind").selectedOptions[0].dataset;
+  const level = ask(place, "level").value, { names, isTable, hasStress } = optionsOf(place);
   const load = ask(place, "load").value.replaceAll("·", "*"), boundary = ask(place, "boundary").value;
-  const outputs = kind.outputs.split(" ");
   return {
     parameters: Object.fromEntries(Object.entries(parameters).map(([name, { value, unit }]) => [name, unit ? { value, unit } : value])),
-    ...("tables" in kind ? {} : { boundary }), // tables are under unit loads, held in one way
-    ...(outputs.includes(EXTRA) ? { load } : {}), // a load belongs to stress
+    ...(isTable ? {} : { boundary }),
+    ...(hasStress ? { load } : {}),
     ...(Number(level) ? { tolerance: Number(level) } : { level }),
-    outputs: outputs.filter((name) => name !== EXTRA || ask(place, EXTRA).checked),
+    outputs: names.filter((name) => name !== EXTRA || ask(place, EXTRA).checked),
   };
 }
 

@@ -1,4 +1,5 @@
 // Starts the 3-D views of a page when they come into view, the choice of a field that colours them, and the switch that paints the film pressure.
+import { isolated } from "./isolated.js";
 import { whenSeen } from "./pictures.js";
 
 export function startSolids(stepsNow) {
@@ -12,7 +13,12 @@ export function startSolids(stepsNow) {
     choice?.addEventListener("change", async () => {
       await shown;
       const { colourBy } = await import("./solid.js");
-      await colourBy(place, choice.selectedOptions[0]);
+      try {
+        await colourBy(place, choice.selectedOptions[0]);
+        tell(choice, "");
+      } catch (error) {
+        tell(choice, `The colours cannot be shown: ${error.message}`);
+      }
     });
     const box = place.closest("section").querySelector("[data-paint]");
     box?.addEventListener("change", async () => {
@@ -22,4 +28,11 @@ export function startSolids(stepsNow) {
       await paint(place, picture, { ...step.inputs, ...step.outputs }, box.checked);
     });
   }
+}
+
+// What went wrong, below a choice.
+function tell(choice, words) {
+  const line = choice.closest("p"), said = line.querySelector("[data-said]") ?? line.appendChild(Object.assign(document.createElement("span"), { role: "alert" }));
+  said.dataset.said = "";
+  said.replaceChildren(...(words ? [" ", isolated(words)] : []));
 }
