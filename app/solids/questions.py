@@ -31,6 +31,7 @@ from cad.analysis.kinds import (
     Boundary,
     Level,
 )
+from cad.assemblies import AssemblyModel
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText
 from templates.core.units.quantity import read
@@ -189,6 +190,8 @@ def in_order(kind: str, outputs: Container[str]) -> tuple[str, ...]:
 
 def no_shaft(cls: type[CadModel]) -> str | None:
     """Why solids of a model cannot be analysed as shafts; None if they can."""
+    if issubclass(cls, AssemblyModel):
+        return f"{cls.id} is an assembly: finite elements take one solid"
     if cls.shaft is not CadModel.shaft:
         return None
     return f"{cls.id} is not a shaft: it does not say by which ends it is held and loaded"

@@ -6,6 +6,7 @@ small end.
 
 from __future__ import annotations
 
+from cad.brought import BroughtModel
 from cad.model import CadModel
 from cad.shaft import CAST_IRON_MATERIAL, STEEL_MATERIAL, BorePlace
 from cad.shells.housing import Housing
@@ -13,7 +14,12 @@ from cad.shells.rod import Rod
 
 
 def has_split_bore(cls: type[CadModel]) -> bool:
-    """Whether a model is a housing or a rod: its `drawn` answers a `Housing` or a `Rod`."""
+    """Whether a model is a housing or a rod: its `drawn` answers a `Housing` or a `Rod`.
+
+    An assembly on one of them is not: parts that stand beside it are none of its bore.
+    """
+    if issubclass(cls, BroughtModel):
+        return False
     declared = getattr(getattr(cls, "drawn", None), "__annotations__", {})
     return declared.get("return") in (Housing, Rod, Housing.__name__, Rod.__name__)
 

@@ -3,6 +3,7 @@ import { CONFIG, plotly, scale } from "./plots.js";
 
 const AXES = ["x", "y", "z"];
 const DIAGONAL = 2.5; // of the box about a part, in units of which the view shows 2.8: it fits, however it is turned
+const ROOM = 1e-3; // of a length, beyond either end of a range: what rounding puts outside of it is not drawn, and a flat end had holes
 const HEIGHT = 380; // px, where the place of a view reserves none
 const CAMERA = { eye: { x: 1.1, y: -1.3, z: 0.95 }, projection: { type: "orthographic" } };
 
@@ -27,7 +28,7 @@ function reserved(place) {
 function box(traces) {
   const ranges = AXES.map((axis) => rangeOf(traces.flatMap((trace) => Array.from(trace[axis])).filter((value) => value !== null)));
   const lengths = ranges.map(({ low, high }) => high - low), unit = DIAGONAL / Math.hypot(...lengths);
-  const hidden = ({ low, high }) => ({ visible: false, showbackground: false, range: [low, high] });
+  const hidden = ({ low, high }) => ({ visible: false, showbackground: false, range: [low - ROOM * (high - low), high + ROOM * (high - low)] });
   const [xaxis, yaxis, zaxis] = ranges.map(hidden), [x, y, z] = lengths.map((length) => length * unit);
   return { aspectmode: "manual", aspectratio: { x, y, z }, xaxis, yaxis, zaxis };
 }

@@ -109,6 +109,12 @@ def test_the_step_file_holds_it_with_its_own_name_colour_and_place(http, design)
     assert turn[:, 2] == pytest.approx([0, -1, 0], abs=1e-12)
 
 
+def test_an_assembly_has_no_finite_elements_though_its_model_has_them(http, bolt):
+    assert http.get(f"{API}/models/bearing_housing/versions/1").json()["analyses"]
+    brought(http, "bolted_housing", manifest(below(z="6 mm"), base="bearing_housing"))
+    assert http.get(f"{API}/models/bolted_housing/versions/1").json()["analyses"] == {}
+
+
 def test_an_interference_is_refused_by_names_and_volume(http, assembly):
     design = design_with(http, bolt_z="-5 mm")
     assert design["state"] == "failed"
