@@ -43,7 +43,8 @@ def test_a_drawing_that_is_not_made_yet_is_waited_for(watched, http):
 
 def test_the_step_file_is_the_first_of_the_downloads(http):
     page = http.get(f"/designs/{design(http, 'first')}").text
-    offered = re.findall(r"data-download>([^<]+)</a>", page.partition('aria-label="Downloads"')[2].partition("</p>")[0])
+    links = page.partition('aria-label="Downloads"')[2].partition("</p>")[0]
+    offered = re.findall(r"data-download>([^<]+)</a>", links)
     assert offered[:2] == ["STEP", "STEP with volume and area"]
     assert len(offered) == len({*offered}) == len(MEDIA_TYPES) - 1  # all kinds but the picture
 
