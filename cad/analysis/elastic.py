@@ -48,23 +48,15 @@ class System:
     Elements are as much curved as their order allows. The mesh stays so until the next system is built on it.
     It is factorised, or solved for each force by itself where there are few: by conjugate gradients with
     balanced domain decomposition (Dohrmann 2003), which at 200 000 unknowns takes half the time and memory.
-    `held` names the faces whose displacement is prescribed.
     """
 
     def __init__(
-        self,
-        grid: Grid,
-        order: int,
-        material: Material,
-        load: Kind,
-        *,
-        few_forces: bool = False,
-        held: str = HELD,
+        self, grid: Grid, order: int, material: Material, load: Kind, *, few_forces: bool = False
     ) -> None:
         self.grid, self.order, self.material, self.load = grid, order, material, load
         self.deformation = curve(grid.mesh, order)
         locked = _locked(grid.solid.mirror, load)
-        where = {axis: f"{held}|{MIRROR}" if axis in locked else held for axis in "xyz"}
+        where = {axis: f"{HELD}|{MIRROR}" if axis in locked else HELD for axis in "xyz"}
         self.space = ng.VectorH1(
             grid.mesh, order=order, dirichletx=where["x"], dirichlety=where["y"], dirichletz=where["z"]
         )
@@ -92,23 +84,6 @@ class System:
         u.data = self._inverted(outer)
         u.data += form.harmonic_extension * u
         u.data += form.inner_solve * force
-        return u
-
-    def relaxed(self, prescribed: Any) -> Any:
-        """What has to be added to a displacement whose prescribed part is right, so that no force is left.
-
-        Raises
-        ------
-        AnalysisError
-            `solver` if conjugate gradients do not converge.
-        """
-        form = self.form
-        force, u = prescribed.CreateVector(), prescribed.CreateVector()
-        force.data = -1 * (form.mat * prescribed)
-        u.data = self._inverted(force)
-        whole = prescribed.CreateVector()
-        whole.data = prescribed + u
-        u.data += form.harmonic_extension * whole
         return u
 
     def _inverted(self, force: Any) -> Any:

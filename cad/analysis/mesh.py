@@ -28,6 +28,7 @@ from cad.errors import AnalysisError
 
 MOST_ELEMENTS = 60_000
 
+_GRADING = 0.5  # how fast elements grow from one to the next
 _SAMPLES = 16  # of an edge, to see how far it turns
 
 
@@ -39,7 +40,6 @@ class Fineness:
     curvature: float  # elements for each radius of curvature
     turn: float  # [rad], the most that one segment of an edge turns
     sharp: float = 0.15  # of elements at sharp inner edges, in the edge's radius or the scale
-    grading: float = 0.5  # how fast elements grow from one to the next
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def make_grid(solid: Solid, fineness: Fineness, near: Iterable[Near] = ()) -> Gr
     """
     bound_sizes(solid, fineness)
     parameters = MeshingParameters(
-        maxh=fineness.size * solid.scale, grading=fineness.grading, curvaturesafety=fineness.curvature
+        maxh=fineness.size * solid.scale, grading=_GRADING, curvaturesafety=fineness.curvature
     )
     for place in near:
         for point in _ball(place):

@@ -1,12 +1,12 @@
 """The greatest stress of random stepped shafts on their solids, against solutions in the half plane.
 
-    python -m benchmarks.stress_parts [COUNT] [SEED]
+    python -m benchmarks.random_shoulders [COUNT] [SEED]
 
 Draws stepped shafts: the narrow end 30 to 60 mm, the wide one 1.1 to 2 times that, the fillet 0.04 to 0.2 of
 the narrow diameter. Every other one is twisted, every other one bent. The stress on the solid is computed as
 for the output `maximum_stress`. Its stated error is compared with the difference from
 `benchmarks.first_harmonic`. A shaft takes about 10 s of processor time. Results in
-benchmarks/results/stress_parts.json.
+benchmarks/results/random_shoulders.json.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from cad.analysis.solid import read_solid
 from cad.analysis.stress import first_principal, greatest_stress, von_mises
 from cad.shaft import STEEL_MATERIAL, Shaft
 
-RESULTS = Path("benchmarks/results/stress_parts.json")
+RESULTS = Path("benchmarks/results/random_shoulders.json")
 COUNT, SEED = 24, 11
 MEASURES = {"torsion": von_mises, "bending": first_principal}
 LOADS: tuple[Kind, ...] = ("torsion", "bending")
