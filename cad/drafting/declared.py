@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
+from cad.assemblies import AssemblyModel
 from cad.catalogue import models
 from cad.drafting.title import TEXTURE, roughness
 from cad.header import Header
@@ -82,4 +83,4 @@ def _controls(model: type[CadModel], limits: Mapping[str, Limits]) -> Iterator[C
 
 
 def _is_shaft(model: type[CadModel]) -> bool:
-    return model.is_throw() or model.shaft is not CadModel.shaft
+    return model.is_throw() or model.shaft not in (CadModel.shaft, AssemblyModel.shaft)

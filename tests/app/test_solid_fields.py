@@ -12,7 +12,7 @@ import numpy as np
 import pypdf
 import pytest
 from PIL import Image
-from serving import API, created, problem, revision
+from serving import API, created, revision
 
 from app.designs import solid_fields
 from app.designs.solid_fields import ends_of
@@ -163,9 +163,12 @@ def test_what_is_not_there_is_refused(http, base, tail):
         assert "life.load_use" in answer.json()["detail"]
 
 
-def test_no_option_is_left_aside(http, base):
-    answer = http.get(f"{base}/life.load_use.glb", params={"deflection": "0.05 mm"})
-    assert [one["name"] for one in problem(answer, 422, "invalid-inputs")["errors"]] == ["deflection"]
+def test_the_description_offers_no_option_of_other_files(http):
+    (path,) = [
+        path for path in http.get("/openapi.json").json()["paths"] if path.endswith("/fields/{field}.{kind}")
+    ]
+    asked = {one["name"] for one in http.get("/openapi.json").json()["paths"][path]["get"]["parameters"]}
+    assert not asked & {"deflection", "drawing_title"}
 
 
 def life_of(use, source="shaft"):

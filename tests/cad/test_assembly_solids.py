@@ -9,6 +9,7 @@ from cadquery import Location, Solid, Vector, Workplane
 
 from cad.assemblies import Component, described
 from cad.brought import Drawn, class_of, description_of
+from cad.catalogue import models
 from cad.errors import GeometryError
 from cad.export import DERIVED, derive
 from cad.header import Header
@@ -159,3 +160,12 @@ def test_what_the_kernel_does_not_intersect_is_not_taken_for_free_space(monkeypa
         list(clearances([body("a", box, Vector()), body("b", box, Vector(5, 5, 5))], str))
     (touching,) = clearances([body("a", box, Vector()), body("b", box, Vector(10, 0, 0))], str)
     assert touching.overlap == 0
+
+
+def test_a_drawing_of_an_assembly_cuts_its_parts():
+    """Shafts are drawn whole; an assembly that answers no finite elements is none."""
+    from cad.drafting.declared import _is_shaft
+
+    cls, _ = assembly()
+    assert not _is_shaft(cls)
+    assert _is_shaft(models().get("crankshaft", 2))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Header, Query, Response
@@ -166,7 +166,7 @@ class FileRequest:
         return MemoryFile(content, MEDIA_TYPES[kind], {**headers, "Last-Modified": http_time(stamp.date)})
 
 
-async def file_request(
+async def plain_file_request(
     database: TheDatabase,
     store: TheStore,
     models: TheModels,
@@ -178,9 +178,6 @@ async def file_request(
     accept: Accept = None,
     prefer: Prefer = None,
     if_none_match: IfNoneMatch = None,
-    *,
-    title_block: TheTitleBlock,
-    deflection: Deflection = None,
 ) -> FileRequest:
     """The parts of a request that all routes of files have in common."""
     return FileRequest(
@@ -195,9 +192,19 @@ async def file_request(
         accept,
         prefer,
         if_none_match,
-        deflection,
-        title_block,
+        deflection=None,
+        title_block=TitleBlock({}),
     )
+
+
+ThePlainFileRequest = Annotated[FileRequest, Depends(plain_file_request)]
+
+
+async def file_request(
+    plain: ThePlainFileRequest, title_block: TheTitleBlock, deflection: Deflection = None
+) -> FileRequest:
+    """The same, with the options of a mesh and of a drawing."""
+    return replace(plain, deflection=deflection, title_block=title_block)
 
 
 TheFileRequest = Annotated[FileRequest, Depends(file_request)]

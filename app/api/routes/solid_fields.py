@@ -12,7 +12,7 @@ from app.api.attachments import MemoryFile, disposition, is_at_hand, tag, unchan
 from app.api.dependencies import TheCatalogues, TheDatabase
 from app.api.designs import Id, Number
 from app.api.reading import StrictRoute
-from app.api.routes.design_files import TheFileRequest
+from app.api.routes.design_files import ThePlainFileRequest
 from app.api.stored import UNAVAILABLE, UNCHANGED
 from app.api.waiting import LATER
 from app.designs import views
@@ -25,7 +25,6 @@ from cad.export import MEDIA_TYPES
 from cad.naming import name as wide_name
 from cad.naming import plain_name
 from cad.painting import Glb
-from templates.core.errors import Fault, InvalidInputs
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
 
@@ -71,7 +70,7 @@ async def read_painted_solid(
     name: Id,
     field: Id,
     kind: Painted,
-    request: TheFileRequest,
+    request: ThePlainFileRequest,
     catalogues: TheCatalogues,
 ) -> Response:
     """A model with a field as the colours of its surface: a GLB file, or a picture.
@@ -79,12 +78,9 @@ async def read_painted_solid(
     Where the field has no value the part is grey. The title of the field and the values of the first and
     the last colour stand in the GLB file's root node, and in the list of fields.
     """
-    if request.deflection is not None:
-        detail = "a field is painted on the mesh of the model's GLB file; leave deflection out"
-        raise InvalidInputs([Fault("deflection", "not_offered", detail)])
     database, store = request.database, request.store
     chosen = await run_in_threadpool(_chosen, database, catalogues, (id, number, name), field)
-    plain = replace(request, if_none_match=None, deflection=None)
+    plain = replace(request, if_none_match=None)
     answer = await plain.answer(lambda session: views.good_model(session, id, name, number), "glb")
     if answer.status_code != 200:  # it is still being made, or cannot be
         return answer
