@@ -81,18 +81,13 @@ class System:
         form = self.form
         outer, u = force.CreateVector(), force.CreateVector()
         outer.data = force + form.harmonic_extension_trans * force
-        u.data = self._inverted(outer)
-        u.data += form.harmonic_extension * u
-        u.data += form.inner_solve * force
-        return u
-
-    def _inverted(self, force: Any) -> Any:
-        u = force.CreateVector()
-        u.data = self.inverse * force
+        u.data = self.inverse * outer
         if getattr(self.inverse, "iterations", 0) >= _MOST_STEPS:
             raise AnalysisError(
                 "solver", f"the solver did not converge in {_MOST_STEPS} steps; try another level"
             )
+        u.data += form.harmonic_extension * u
+        u.data += form.inner_solve * force
         return u
 
     def traction(self, field: Any) -> Any:

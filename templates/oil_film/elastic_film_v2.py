@@ -21,6 +21,7 @@ from templates.core.language.template import (
     text,
 )
 from templates.groups.journal import ISO, Journal
+from templates.groups.journal_criteria import CRITERIA
 from templates.groups.oil import Oil
 from templates.physics.elastic.bore_journal import (
     ALL_LEVELS,
@@ -127,28 +128,9 @@ class ElasticFilm(Oil, Journal):
             "source": "an estimate of the deformation at the largest pressure; see the limits",
             "warning": "elasticity_matters",
         },
-        "own_film": {
-            "require": "minimum_film_thickness >= permissible_film",
-            "words": "the smallest film is not thinner than its user permits",
-            "limits": {"permissible_film": {"unit": "um", "words": "smallest film that its user permits"}},
-        },
-        "film_exists": {
-            "require": "minimum_film_thickness >= 0.05 um",
-            "words": "the film is not thinner than the finest surfaces are rough",
-            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-            "warning": "film_too_thin",
-        },
-        "pressure": {
-            "require": "maximum_pressure <= permissible_pressure",
-            "words": "the pressure of the film is within what the bearing material bears",
-            "limits": {
-                "permissible_pressure": {
-                    "unit": "MPa",
-                    "words": "largest pressure of the film that the bearing material bears",
-                    "from": "bearing_material",
-                }
-            },
-        },
+        "own_film": CRITERIA["own_film"],
+        "film_exists": CRITERIA["film_exists"],
+        "pressure": CRITERIA["pressure"],
     }
 
     T_film: Array = given("degC", "oil temperature", symbol="T", alternative=True, ge=-100, le=500)
