@@ -45,7 +45,7 @@ def test_the_step_file_is_the_first_of_the_downloads(http):
     page = http.get(f"/designs/{design(http, 'first')}").text
     links = page.partition('aria-label="Downloads"')[2].partition("</p>")[0]
     offered = re.findall(r"data-download>([^<]+)</a>", links)
-    assert offered[:2] == ["STEP", "STEP with volume and area"]
+    assert offered[:2] == ["STEP", "STEP with checks"]
     assert len(offered) == len({*offered}) == len(MEDIA_TYPES) - 1  # all kinds but the picture
 
 
