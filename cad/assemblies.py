@@ -9,7 +9,7 @@ This module imports the kernel only where it draws.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -17,8 +17,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from cad.brought import BroughtModel, Description, Parameter, attribute_of, parts_of_step
 from cad.catalogue import models
 from cad.errors import GeometryError, UnreadableStep
-from cad.model import Box, CadModel, Dimension, Part
+from cad.model import Box, CadModel, Dimension, Part, names_at
 from cad.shaft import STEEL_DENSITY
+from templates.core.errors import listed, plain
+from templates.core.nearest import nearest
 
 if TYPE_CHECKING:
     from cad.fillets import Crank
@@ -92,7 +94,9 @@ class AssemblyModel(BroughtModel):
     def build(self) -> tuple[Part, ...]:
         """The parts of its model, and its fixed parts where they stand."""
         if _PARTS not in vars(self):
-            vars(self)[_PARTS] = tuple(self._built())
+            built = tuple(self._built())
+            self._require_known(built)
+            vars(self)[_PARTS] = built
         parts: tuple[Part, ...] = vars(self)[_PARTS]
         return parts
 
@@ -141,9 +145,38 @@ class AssemblyModel(BroughtModel):
         return None
 
     def _allows(self, one: str, other: str) -> bool:
-        names = {one, self.component_of(one)}
-        component = next((c for c in self.brought.components if c.name in names), None)
-        return component is not None and bool({other, self.component_of(other)} & {*component.may_overlap})
+        """Whether the fixed part of one solid may take space of the other, by part or by solid."""
+        name = self.component_of(one)
+        component = next((c for c in self.brought.components if c.name == name), None)
+        if component is None:
+            return False
+        parts = (part.name for part in self.build() if other in names_at(part.name, len(part.places)))
+        return not {other, self.component_of(other), *parts}.isdisjoint(component.may_overlap)
+
+    def _require_known(self, parts: Sequence[Part]) -> None:
+        """Refuse a `may_overlap` that names no part, but for a part of the model with usual parameters.
+
+        Raises
+        ------
+        GeometryError
+            `may_overlap`, with the nearest names and all that there are.
+        """
+        wanted = {name: one.name for one in self.brought.components for name in one.may_overlap}
+        known = dict.fromkeys(one.name for one in self.brought.components)
+        for part in parts:
+            known |= dict.fromkeys((part.name, *names_at(part.name, len(part.places))))
+        if not (unknown := wanted.keys() - known.keys()):
+            return
+        if self.brought.base:
+            cls = base_of(self.brought.base)
+            usual = {part.name for part in cls.from_quantities(cls.example).build()}
+            unknown -= usual
+        for name in sorted(unknown)[:1]:
+            near = nearest(name, list(known))
+            meant = f"Did you mean {', '.join(near)}? " if near else ""
+            there = listed([part.name for part in parts])
+            wrong = f"{wanted[name]}: may_overlap names {plain(name)!r}, which is no part"
+            raise GeometryError("may_overlap", f"{wrong}. {meant}There are {there}")
 
     def _built(self) -> Iterator[Part]:
         from cad.placing import frame_of

@@ -11,7 +11,7 @@ import numpy as np
 from cad.errors import GeometryError
 from cad.inspect import Measured
 from cad.model import Box, CadModel, Dimension, Part
-from cad.overlaps import Clearance, overlaps
+from cad.overlaps import Clearance, Report, clearances, overlaps
 from cad.step import Body, is_single, rigid
 from cad.surfaces import Seen
 
@@ -74,6 +74,21 @@ def check_overlaps(model: CadModel, bodies: Sequence[Body]) -> None:
         raise GeometryError("interference", detail, model.inputs)
 
 
+def compared(model: CadModel, bodies: Sequence[Body], report: Report) -> tuple[Clearance, ...]:
+    """What lies between the fixed parts of an assembly and all other parts.
+
+    Where more than `MOST_NAMED` pairs interfere, the rest is not compared: `check_clearances` refuses them.
+    """
+    between = list[Clearance]()
+    wrong = 0
+    for one in clearances(bodies, model.component_of, report):
+        between.append(one)
+        wrong += _interferes(model, one)
+        if wrong > MOST_NAMED:
+            break
+    return tuple(between)
+
+
 def check_clearances(model: CadModel, between: Sequence[Clearance]) -> None:
     """No fixed part of an assembly takes space of another part, unless the assembly allows it.
 
@@ -82,11 +97,15 @@ def check_clearances(model: CadModel, between: Sequence[Clearance]) -> None:
     GeometryError
         `interference`, naming the parts and the volume that they share.
     """
-    wrong = [one for one in between if one.overlap and not model.may_overlap(one.one, one.other)]
+    wrong = [one for one in between if _interferes(model, one)]
     if wrong:
         listed = "; ".join(map(str, wrong[:MOST_NAMED]))
-        more = f"; and {len(wrong) - MOST_NAMED} more" if len(wrong) > MOST_NAMED else ""
+        more = "; and more, which are not compared" if len(wrong) > MOST_NAMED else ""
         raise GeometryError("interference", f"parts of {model.id} interfere: {listed}{more}", model.inputs)
+
+
+def _interferes(model: CadModel, one: Clearance) -> bool:
+    return bool(one.overlap) and not model.may_overlap(one.one, one.other)
 
 
 def check_places(model: CadModel, parts: Sequence[Part], bodies: Sequence[Body]) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,17 +25,18 @@ from cad.checks import (
     check_dimensions,
     check_overlaps,
     check_places,
+    compared,
 )
 from cad.errors import GeometryError
 from cad.header import Header
 from cad.inspect import bounding_box, look_at, measure, summarise
 from cad.lists import rounded, written
 from cad.model import CadModel, Dimension, arrays_of_points, mm
-from cad.overlaps import Clearance, clearances
+from cad.overlaps import Clearance, Report, require_few_meeting
 from cad.pmi import Annotations
 from cad.stated import check_statements
 from cad.statements import read_statements
-from cad.step import read_step, write_step
+from cad.step import Body, read_step, write_step
 from cad.step_text import KERNEL
 from cad.toleranced import Limits, carried, in_unit, limits, limits_of
 from cad.toleranced import written as with_limits
@@ -50,8 +51,6 @@ __all__ = [
 
 Value = float | str | list[float]
 """A parameter: a number, a word, or a list; beside it its limit deviations and their zone."""
-
-Report = Callable[[float, str], None]
 
 RECIPE = 3
 """Raised whenever this package makes other bytes or other measures of the same parameters."""
@@ -187,13 +186,15 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
     with _kernel(model):
         report(0.0, "building")
         parts = model.build()
+        standing = [Body(part.name, part.solid, part.colour, part.places) for part in parts]
+        require_few_meeting(standing, model.component_of)
         report(0.4, "exporting")
         annotations = _annotations(model, {part.name for part in parts})
         header = Header(cls.id, cls.version, texts, key)
         step = write_step(parts, header, annotations, rounds_noise=model.rounds_noise)
         report(0.6, "reading back")
         bodies = read_step(step)
-        report(0.8, "measuring")
+        report(0.7, "measuring")
         measured = [measure(body) for body in bodies]
         box = bounding_box(bodies)
     check_bodies(model, parts, bodies, measured)
@@ -201,7 +202,7 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
     check_places(model, parts, bodies)
     check_overlaps(model, bodies)
     with _kernel(model):
-        between = tuple(clearances(bodies, model.component_of))
+        between = compared(model, bodies, lambda done, what: report(0.8 + 0.2 * done, what))
     check_clearances(model, between)
     dimensions = check_dimensions(model, look_at(bodies))
     if annotations is not None:

@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 from cadquery import Location, Solid, Vector, Workplane
 
+from cad import overlaps
 from cad.assemblies import Component, described
 from cad.brought import Drawn, class_of, description_of
 from cad.catalogue import models
+from cad.checks import MOST_NAMED
 from cad.errors import GeometryError
 from cad.export import DERIVED, derive
 from cad.header import Header
@@ -36,8 +38,8 @@ def assembly(step=BOLT, base=("bearing_assembly", 1), **component):
     return class_of(text, "with_bolt", 1), Drawn(fixed={sha: step})
 
 
-def built(step=BOLT, base=("bearing_assembly", 1), datum="cap.low_y", **parameters):
-    cls, drawn = assembly(step, base, datum=datum)
+def built(step=BOLT, base=("bearing_assembly", 1), datum="cap.low_y", may_overlap=(), **parameters):
+    cls, drawn = assembly(step, base, datum=datum, may_overlap=may_overlap)
     shape = cls.from_quantities({**cls.example, **parameters} if base else parameters)
     shape.take(drawn)
     return regenerate_shape(shape, as_text(shape))
@@ -169,3 +171,87 @@ def test_a_drawing_of_an_assembly_cuts_its_parts():
     cls, _ = assembly()
     assert not _is_shaft(cls)
     assert _is_shaft(models().get("crankshaft", 2))
+
+
+def many(number, apart=0.0):
+    """A file of balls that stand on one line."""
+    return step_of(*(Solid.makeBox(1, 1, 1, Vector(n * apart, 0, 0)) for n in range(number)))
+
+
+def two_components(step, **of_second):
+    """The same file twice, with nothing beside it."""
+    sha = hashlib.sha256(step).hexdigest()
+    parts = {Component("one", sha, "a file"): {}, Component("two", sha, "a file", **of_second): {}}
+    cls = class_of(described("Twice", "0" * 64, "a.json", None, parts).text, "twice", 1)
+    shape = cls.from_quantities({})
+    shape.take(Drawn(fixed={sha: step}))
+    return shape
+
+
+def test_too_many_pairs_that_meet_are_refused_before_a_file_is_written(monkeypatch):
+    def written(*_, **__):
+        raise AssertionError("it was written first")
+
+    monkeypatch.setattr("cad.regenerate.write_step", written)
+    monkeypatch.setattr("cad.overlaps.MOST_MEETING", 8)
+    shape = two_components(many(3))
+    with pytest.raises(
+        GeometryError, match=r"9 pairs of solids .* at most 8 .* of one \(9\), two \(9\)"
+    ) as refused:
+        regenerate_shape(shape, as_text(shape))
+    assert refused.value.code == "too_large"
+
+
+def test_many_interferences_are_named_and_the_rest_is_not_compared(monkeypatch):
+    compared = []
+    between = overlaps._between
+    monkeypatch.setattr("cad.overlaps._between", lambda *two: compared.append(two) or between(*two))
+    shape = two_components(many(8))
+    said = []
+    with pytest.raises(
+        GeometryError, match=r"one:part0 and two:part0 overlap by 1 mm³; .*; and more"
+    ) as refused:
+        regenerate_shape(shape, as_text(shape), report=lambda done, what: said.append((done, what)))
+    assert refused.value.code == "interference"
+    assert len(compared) == MOST_NAMED + 1 < 64
+    assert (0.8, "comparing one:part0 with two:part0, pair 1 of 64") in said
+
+
+def test_every_pair_that_may_overlap_is_measured_and_counted():
+    shape = two_components(many(5, apart=2.0), may_overlap=("one",))
+    build = regenerate_shape(shape, as_text(shape))
+    overlapping = [one for one in build.clearances if one.overlap]
+    assert [(one.one, one.other) for one in overlapping] == [
+        (f"one:part{n}", f"two:part{n}") for n in range(5)
+    ]
+    assert len(build.clearances) == 25
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("capp", "bolt: may_overlap names 'capp', which is no part. Did you mean cap? There are journal"),
+        (
+            "zz",
+            "which is no part. There are journal, upper_back, upper_lining, lower_back, lower_lining, block",
+        ),
+    ],
+)
+def test_a_part_that_is_not_there_may_not_be_overlapped(name, said):
+    with pytest.raises(GeometryError, match=said.replace(".", "[.]").replace("?", "[?]")) as refused:
+        built(bolt_z="2 mm", may_overlap=(name,))
+    assert refused.value.code == "may_overlap"
+
+
+def test_a_part_may_be_named_that_the_model_has_for_other_parameters():
+    """Without a cage the bearing has no part of that name, and its user may switch it on."""
+    cls = models().get("deep_groove_bearing", 1)
+    usual = cls.from_quantities(cls.example)
+    assert "cage" in {part.name for part in usual.build()}
+    step = BOLT
+    shape, drawn = assembly(step, ("deep_groove_bearing", 1), may_overlap=("cage", "ball"), datum="origin")
+    without = shape.from_quantities({**shape.example, "cage_width": "0 mm", "bolt_x": "200 mm"})
+    without.take(drawn)
+    assert "cage" not in {part.name for part in without.build()}
+    assert without.may_overlap("bolt", "ball_3")  # one of its places
+    assert not without.may_overlap("bolt", "inner_ring")
