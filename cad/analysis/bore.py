@@ -20,7 +20,7 @@ Oh, Goenka 1985: The elastohydrodynamic solution of journal bearings under dynam
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
@@ -171,11 +171,12 @@ def compliance_on(
     *,
     spring: float = 0.0,
     report: Callable[[float], None] = lambda done: None,
+    functions: Sequence[Any] = (),
 ) -> tuple[Array, int]:
     """The matrix C [mm/MPa] of a half solid in elements of an order, and how many unknowns there were.
 
     A solid that nothing holds rests on a soft spring [N/mm⁴] at each of its points, which bears the load as
-    the inertia of a free body does.
+    the inertia of a free body does. Other functions in space than the modes may be given, scaled alike.
     """
     curve(mesh, order)
     space = ng.VectorH1(mesh, order=order, dirichletx=HELD, dirichlety=HELD, dirichletz=f"{HELD}|{MIRROR}")
@@ -188,7 +189,7 @@ def compliance_on(
     inverse = form.mat.Inverse(space.FreeDofs(True), inverse="sparsecholesky")
     outward = ng.CF((ng.x, ng.y, 0)) / place.radius
     loads, moved = [], []
-    functions = mode_functions(place)
+    functions = functions or mode_functions(place)
     for number, function in enumerate(functions):
         force = ng.LinearForm(space)
         force += function * ng.InnerProduct(outward, v.Trace()) * ng.ds(BORE, bonus_intorder=6)
