@@ -16,6 +16,9 @@ class BoundedClient(Client):
     connection; a client that does not begin, or does not end in time, leaves a thread behind. Here the
     constructor raises, and the thread ends.
 
+    It ends with its scheduler. Dask's own would go on with the next one, which knows neither its tasks nor
+    the addresses of the machines that it has seen.
+
     Raises
     ------
     OSError, TimeoutError
@@ -45,6 +48,10 @@ class BoundedClient(Client):
             self.close(timeout=_END)
         finally:
             self._abandon()
+
+    async def _reconnect(self) -> None:
+        """Close; Dask calls it when the connection to the scheduler breaks."""
+        await self._close()
 
     def _abandon(self) -> None:
         """End the thread of the connection; as a closed client, garbage collection leaves it alone then."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 import logging
 import queue
 import threading
+import time
 import uuid
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
-from typing import cast
 
 from distributed import Future, KilledWorker, Security
 
@@ -19,6 +19,7 @@ from app.workers.errors import JobCancelled, WorkerLost
 from app.workers.messages import Outcome
 from app.workers.remote.client import BoundedClient
 from app.workers.remote.label import label
+from app.workers.remote.strays import Strays
 from app.workers.remote.wire import Order, Places, carry_out, places
 from templates.core.progress import Reporter
 
@@ -51,6 +52,7 @@ class Cluster:
         self._listeners: dict[str, Messages] = {}  # by the key of a task
         self._client: BoundedClient | None = None
         self._places: dict[Lane, dict[str, Places]] = {}
+        self._strays = Strays()
         self._own: Counter[tuple[Lane, str]] = Counter()
         self._changed = threading.Condition()
         self._closed = threading.Event()
@@ -103,7 +105,7 @@ class Cluster:
                     raise
                 if self._closed.is_set():  # it is this server that has gone
                     raise JobCancelled from None
-                if isinstance(error, WorkerLost):
+                if client.status == "running":
                     raise
                 raise WorkerLost("the scheduler has gone") from error
 
@@ -148,8 +150,7 @@ class Cluster:
             pure=False,
             retries=0,
             resources={self._labels[lane]: 1},
-            workers=[machine],
-            allow_other_workers=True,  # if it goes before the task has begun
+            workers=[machine],  # no other: Dask would take any, even of another program
         )
 
     def _follow(
@@ -166,6 +167,8 @@ class Cluster:
                 raise JobCancelled
             if client.status != "running" or future.status in ("lost", "cancelled"):
                 raise WorkerLost("the scheduler has gone")
+            if why := self._strays.why(str(future.key)):
+                raise WorkerLost(why)
             try:
                 message = messages.get(timeout=_GLANCE)
             except queue.Empty:
@@ -242,11 +245,15 @@ class Cluster:
             listener.put((fraction, text))
 
     def _look_around(self, client: BoundedClient) -> None:
-        async def look() -> dict[Lane, dict[str, Places]]:
+        async def look() -> tuple[dict[Lane, dict[str, Places]], dict[str, str | None]]:
+            if (scheduler := client.scheduler) is None:
+                raise ConnectionError("the connection is lost")
+            keys = list(self._listeners)
             seen = await client.run_on_scheduler(places, labels=self._labels, own=self._name)
-            return cast(dict[Lane, dict[str, Places]], seen)
+            return seen, await scheduler.get_task_status(keys=keys) if keys else {}
 
-        seen = client.sync(look, callback_timeout=_PATIENCE)
+        seen, states = client.sync(look, callback_timeout=_PATIENCE)
+        self._strays.note(states, time.monotonic())
         with self._changed:
             self._places = seen
             self._changed.notify_all()

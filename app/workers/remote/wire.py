@@ -53,13 +53,14 @@ class Places:
 def places(labels: Mapping[Lane, str], own: str, dask_scheduler: Scheduler) -> dict[Lane, dict[str, Places]]:
     """The places of each lane by the address of the machine; runs in the scheduler.
 
-    `own` is part of the keys of tasks of who asks, and counts them itself without delay.
+    A machine that says farewell has none, as it takes no more tasks. `own` is part of the keys of tasks of
+    who asks, and counts them itself without delay.
     """
     return {
         lane: {
             machine.address: Places(int(machine.resources[label]), _of_others(machine.processing, label, own))
             for machine in dask_scheduler.workers.values()
-            if label in machine.resources
+            if label in machine.resources and machine in dask_scheduler.running
         }
         for lane, label in labels.items()
     }

@@ -1,0 +1,90 @@
+"""Functions for machines that have gone before they came there: none is waited for without end."""
+
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from types import SimpleNamespace
+
+import pytest
+import victims
+from dask_processes import Network
+from patience import patient, until
+
+from app.workers.base import Limits
+from app.workers.errors import WorkerLost
+
+distributed = pytest.importorskip("distributed", reason="Dask is not installed")
+strays = pytest.importorskip("app.workers.remote.strays")
+wire = pytest.importorskip("app.workers.remote.wire")
+
+LONG = Limits(deadline=patient(100), memory_mb=512)
+GONE = "tcp://127.0.0.1:9"  # nobody listens there
+
+
+@pytest.fixture
+def network(tmp_path):
+    network = Network(tmp_path, workers=1)
+    yield network
+    network.stop()
+
+
+@pytest.fixture
+def engine(network):
+    engine = network.engine()
+    yield engine
+    engine.close()
+
+
+def test_a_machine_that_says_farewell_has_no_place():
+    machine, leaving = (
+        SimpleNamespace(address=address, resources={"label": 2.0}, processing={}) for address in ("a", "b")
+    )
+    scheduler = SimpleNamespace(workers={"a": machine, "b": leaving}, running=[machine])
+    assert wire.places({"geometry": "label"}, "own", scheduler) == {"geometry": {"a": wire.Places(2, 0)}}
+
+
+@pytest.mark.slow
+def test_a_function_for_a_machine_that_has_gone_is_lost_and_no_other_gets_it(engine, monkeypatch):
+    with monkeypatch.context() as patch:
+        patch.setattr(engine._cluster, "_best", lambda lane, preferred: GONE)
+        with pytest.raises(WorkerLost, match="the machine that should run it has gone"):
+            engine.run(victims.process_id, limits=LONG)
+    assert engine.run(victims.double, 2, limits=LONG) == 4
+
+
+@pytest.mark.slow
+def test_a_function_that_never_comes_to_the_scheduler_is_lost(engine, monkeypatch):
+    monkeypatch.setattr(strays, "_ON_ITS_WAY", 1.0)
+    monkeypatch.setattr(
+        engine._cluster, "_submit", lambda client, lane, key, *_: distributed.Future(key, client)
+    )
+    with pytest.raises(WorkerLost, match="the scheduler does not have it"):
+        engine.run(victims.process_id, limits=LONG)
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_is_back_before_anybody_looked_gets_nothing_for_the_machines_of_the_old_one(
+    network, engine, monkeypatch
+):
+    cluster, client = engine._cluster, engine._cluster._client
+    looking, looked = threading.Event(), threading.Event()
+
+    def look(client):
+        looking.set()
+        looked.wait(patient(60))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(cluster, "_look_around", look)
+        assert looking.wait(patient(10))
+        network.workers[0].kill()
+        network.scheduler.kill()
+        until(lambda: client.status, lambda status: status != "running")
+        network.start_scheduler()
+        network.until_listening()
+        until(lambda: client.status, lambda status: status in ("running", "closed"))
+        with ThreadPoolExecutor(1) as threads:
+            answer = threads.submit(engine.run, victims.double, 21, limits=LONG)
+            network.workers[0] = network.start_worker("another")
+            patch.undo()
+            looked.set()
+            assert answer.result(patient(60)) == 42
+    assert client.status == "closed"
