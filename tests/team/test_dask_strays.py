@@ -66,7 +66,7 @@ def test_a_scheduler_that_is_back_before_anybody_looked_gets_nothing_for_the_mac
     network, engine, monkeypatch
 ):
     cluster, client = engine._cluster, engine._cluster._client
-    looking, looked = threading.Event(), threading.Event()
+    looking, looked, cancelled = (threading.Event() for _ in range(3))
 
     def look(client):
         looking.set()
@@ -82,9 +82,12 @@ def test_a_scheduler_that_is_back_before_anybody_looked_gets_nothing_for_the_mac
         network.until_listening()
         until(lambda: client.status, lambda status: status in ("running", "closed"))
         with ThreadPoolExecutor(1) as threads:
-            answer = threads.submit(engine.run, victims.double, 21, limits=LONG)
+            answer = threads.submit(engine.run, victims.double, 21, limits=LONG, cancelled=cancelled)
             network.workers[0] = network.start_worker("another")
             patch.undo()
             looked.set()
-            assert answer.result(patient(60)) == 42
+            try:
+                assert answer.result(patient(100)) == 42
+            finally:
+                cancelled.set()  # if it waits, so does the end of its thread
     assert client.status == "closed"
