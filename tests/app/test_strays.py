@@ -1,6 +1,9 @@
 """Tasks of a scheduler that no machine works on, by its answers."""
 
-from app.workers.remote.strays import Strays
+import pytest
+
+from app.workers.errors import WorkerLost
+from app.workers.remote.strays import NeverBegun, Strays
 
 TIME = 1000.0  # of the first look [s]
 
@@ -10,24 +13,26 @@ def test_a_task_on_a_machine_is_never_lost():
     for state in ("processing", "memory", "erred"):
         strays.note({"task": state}, TIME)
         strays.note({"task": state}, TIME + 1e6)
-        assert strays.why("task") is None
-    assert strays.why("another") is None
+        strays.check("task")
+    strays.check("another")
 
 
-def test_a_task_without_a_machine_is_lost_at_once():
+def test_a_task_without_a_machine_never_begins():
     strays = Strays()
     strays.note({"here": "processing", "gone": "no-worker"}, TIME)
-    assert strays.why("here") is None
-    assert strays.why("gone") == "the machine that should run it has gone"
+    strays.check("here")
+    with pytest.raises(NeverBegun):
+        strays.check("gone")
 
 
 def test_a_task_has_time_to_come_to_the_scheduler():
     strays = Strays()
     strays.note({"task": None}, TIME)
     strays.note({"task": None}, TIME + 119)
-    assert strays.why("task") is None
+    strays.check("task")
     strays.note({"task": None}, TIME + 121)
-    assert strays.why("task") == "the scheduler does not have it"
+    with pytest.raises(WorkerLost, match="the scheduler does not have it"):
+        strays.check("task")
 
 
 def test_the_time_begins_again_once_a_task_was_on_a_machine():
@@ -35,13 +40,14 @@ def test_the_time_begins_again_once_a_task_was_on_a_machine():
     strays.note({"task": None}, TIME)
     strays.note({"task": "processing"}, TIME + 100)
     strays.note({"task": None}, TIME + 200)
-    assert strays.why("task") is None
+    strays.check("task")
     strays.note({"task": None}, TIME + 321)
-    assert strays.why("task") is not None
+    with pytest.raises(WorkerLost):
+        strays.check("task")
 
 
 def test_what_has_ended_is_forgotten():
     strays = Strays()
     strays.note({"task": "no-worker"}, TIME)
     strays.note({}, TIME + 1)
-    assert strays.why("task") is None
+    strays.check("task")

@@ -19,7 +19,7 @@ from app.workers.errors import JobCancelled, WorkerLost
 from app.workers.messages import Outcome
 from app.workers.remote.client import BoundedClient
 from app.workers.remote.label import label
-from app.workers.remote.strays import Strays
+from app.workers.remote.strays import NeverBegun, Strays
 from app.workers.remote.wire import Order, Places, carry_out, places
 from templates.core.progress import Reporter
 
@@ -95,19 +95,22 @@ class Cluster:
             The machine or the scheduler has gone while it ran.
         """
         cancelled = cancelled or threading.Event()
-        with self._place(lane, preferred, cancelled) as (client, machine):
-            try:
-                return self._run_there(client, lane, order, machine, on_progress, cancelled), machine
-            except JobCancelled:
-                raise
-            except Exception as error:
-                if client.status == "running" and not isinstance(error, WorkerLost):
+        while True:
+            with self._place(lane, preferred, cancelled) as (client, machine):
+                try:
+                    return self._run_there(client, lane, order, machine, on_progress, cancelled), machine
+                except JobCancelled:
                     raise
-                if self._closed.is_set():  # it is this server that has gone
-                    raise JobCancelled from None
-                if client.status == "running":
-                    raise
-                raise WorkerLost("the scheduler has gone") from error
+                except NeverBegun:
+                    continue  # on another machine, which this server sees at its next look
+                except Exception as error:
+                    if client.status == "running" and not isinstance(error, WorkerLost):
+                        raise
+                    if self._closed.is_set():  # it is this server that has gone
+                        raise JobCancelled from None
+                    if client.status == "running":
+                        raise
+                    raise WorkerLost("the scheduler has gone") from error
 
     def close(self) -> None:
         """Leave the scheduler; what still runs is killed there."""
@@ -167,8 +170,7 @@ class Cluster:
                 raise JobCancelled
             if client.status != "running" or future.status in ("lost", "cancelled"):
                 raise WorkerLost("the scheduler has gone")
-            if why := self._strays.why(str(future.key)):
-                raise WorkerLost(why)
+            self._strays.check(str(future.key))
             try:
                 message = messages.get(timeout=_GLANCE)
             except queue.Empty:

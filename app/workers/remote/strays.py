@@ -8,31 +8,43 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from app.workers.errors import WorkerLost
+
 _HELD = ("processing", "memory", "erred")  # on a machine, or at its end
 _WITHOUT_MACHINE = "no-worker"
 _ON_ITS_WAY = 120.0  # how long a task of 1 GiB may take to the scheduler [s]
 
 
+class NeverBegun(Exception):
+    """The machine of a task has gone before the task came there; another machine may run it."""
+
+
 class Strays:
-    """Which tasks are lost, and why."""
+    """Which tasks are on no machine, and since when."""
 
     def __init__(self) -> None:
         self._since: dict[str, float] = {}  # when the scheduler was first seen without a task [s]
-        self._why: dict[str, str] = {}
+        self._without_machine: frozenset[str] = frozenset()
+        self._lost: frozenset[str] = frozenset()
 
     def note(self, states: Mapping[str, str | None], now: float) -> None:
         """Judge all tasks by their states at a look; None is one that the scheduler does not know."""
         outside = [key for key, state in states.items() if state not in _HELD]
         self._since = {key: self._since.get(key, now) for key in outside}
-        self._why = {
-            key: why for key in outside if (why := self._reason(states[key], now - self._since[key]))
-        }
+        self._without_machine = frozenset(key for key in outside if states[key] == _WITHOUT_MACHINE)
+        self._lost = frozenset(key for key, since in self._since.items() if now - since > _ON_ITS_WAY)
 
-    def why(self, key: str) -> str | None:
-        """The reason why a task is lost; None if it is not."""
-        return self._why.get(key)
+    def check(self, key: str) -> None:
+        """Return if a task is on a machine, or may be on its way there.
 
-    def _reason(self, state: str | None, seconds: float) -> str | None:
-        if state == _WITHOUT_MACHINE:
-            return "the machine that should run it has gone"
-        return "the scheduler does not have it" if seconds > _ON_ITS_WAY else None
+        Raises
+        ------
+        NeverBegun
+            Its machine has gone before the task came there.
+        WorkerLost
+            The scheduler does not have it.
+        """
+        if key in self._without_machine:
+            raise NeverBegun
+        if key in self._lost:
+            raise WorkerLost("the scheduler does not have it")
