@@ -85,6 +85,9 @@ class Settings(BaseSettings):
     creoson_exports: str | None = Field(
         None, description="the same folder as Creo names it; as `creoson_folder` if not given"
     )
+    creo_version: int | None = Field(
+        None, ge=7, le=99, description="main version of Creo, from Creo 7 on: CREOSON has to know it"
+    )
     wait_seconds: float = Field(2.0, ge=0, description="how long an answer waits for its job [s]")
     queue_limit: int = Field(1000, gt=0, description="jobs that may be queued before new ones are refused")
     client_queue_limit: int = Field(50, gt=0, description="jobs of one client that may be queued")

@@ -17,7 +17,7 @@ from app.settings import Settings
 from app.storage.artifacts import Artifacts
 from app.workers.base import Limits, Runner
 from cad.brought import BroughtModel, Description, Drawn, Parameter, Program
-from cad.errors import ProgramMissing
+from cad.errors import GeometryError, ProgramMissing, UnreadableModel
 
 Values = dict[str, float]
 """By API name, in the unit of each parameter; those that are as in the file may be left out."""
@@ -58,7 +58,10 @@ class CreoModels:
 
     def draw(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
         """The STEP file that Creo exports; see `Drawing.draw`."""
-        manifest = read(self._store.read(described.file))
+        try:
+            manifest = read(self._store.read(described.file))
+        except UnreadableModel as error:  # an older program took it
+            raise GeometryError(error.code, error.detail) from None
         return self.drawing.draw_manifest(manifest, described, values, cancelled)
 
 
@@ -134,6 +137,6 @@ def assembled(settings: Settings, store: Artifacts) -> Programs:
     by_name["assembly"] = AssemblyFiles(store)
     if settings.creoson_url and settings.creoson_folder:
         exports = settings.creoson_exports or str(settings.creoson_folder)
-        creoson = Creoson(settings.creoson_url, exports, settings.creoson_folder)
+        creoson = Creoson(settings.creoson_url, exports, settings.creoson_folder, settings.creo_version)
         by_name["creo"] = CreoModels(store, CreoDrawing(creoson, settings.job_deadline))
     return Programs(freecad, by_name)

@@ -14,6 +14,7 @@ LONGEST = 2**18
 """Of a manifest [bytes]."""
 _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 _LINE = r"^[^\x00-\x1f\x7f]*$"
+_PARAMETER = r"^[A-Za-z][A-Za-z0-9_-]*$"  # others CREOSON refuses
 _TITLE = r"^[^\x00-\x1f\x7f]*[^\x00-\x1f\x7f .][^\x00-\x1f\x7f]*$"
 MM: dict[str, float] = {"mm": 1.0, "inch": 25.4}
 
@@ -31,7 +32,7 @@ class Driven(Bounded):
         None, min_length=1, max_length=80, pattern=_LINE, description="its symbol in Creo: `D`"
     )
     parameter: str | None = Field(
-        None, min_length=1, max_length=80, pattern=_LINE, description="its name in Creo: `SCALE`"
+        None, max_length=31, pattern=_PARAMETER, description="its name in Creo: `SCALE`"
     )
     unit: Literal["mm", "inch", "deg", "1"] = Field(description="in which Creo has it")
     value: float = Field(description="in the model as it is stored")
@@ -52,6 +53,11 @@ class Driven(Bounded):
         """
         if (self.dimension is None) == (self.parameter is None):
             raise ValueError("give either the dimension or the parameter of Creo")
+        if self.dimension in ("d", "D"):
+            raise ValueError(
+                f"CREOSON takes the name {self.dimension!r} for d and a number that is missing: give the "
+                "dimension's number, such as d12, or another name"
+            )
         if not self.low <= self.value <= self.high:
             raise ValueError(f"the value {self.value:g} is not from {self.low:g} to {self.high:g}")
         if self.check and self.unit not in MM:
@@ -81,7 +87,8 @@ class Manifest(Bounded):
     program: Literal["creo"]
     title: str = Field(max_length=100, pattern=_TITLE)
     file: str = Field(
-        pattern=r"^[A-Za-z0-9_-]{1,80}\.(prt|asm)$", description="the model in Creo: `bearing.prt`"
+        pattern=r"^[A-Za-z0-9_][A-Za-z0-9_-]{0,30}\.(prt|asm)$",
+        description="the model in Creo: `bearing.prt`",
     )
     length_unit: Literal["mm", "inch"] = Field("mm", description="of the model: mass properties are in it")
     parameters: list[Driven] = Field(min_length=1, max_length=100)

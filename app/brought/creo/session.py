@@ -5,8 +5,8 @@ CREOSON answers a POST of JSON, `{"sessionId", "command", "function", "data"}`, 
 
 References
 ----------
-SimplifiedLogic, CREOSON: Web Service Help, functions of `connection`, `file`, `dimension`, `parameter` and
-    `interface`.
+SimplifiedLogic, CREOSON 3.0.1: Web Service Help, functions of `connection`, `creo`, `file`, `dimension`,
+    `parameter` and `interface`; its source, as decision 081 names the files.
 """
 
 from __future__ import annotations
@@ -30,6 +30,8 @@ from cad.errors import GeometryError, ProgramMissing
 Fields = Mapping[str, object]
 """An object of JSON, whose values are checked where they are used."""
 LARGEST_STEP = 256 * 2**20
+LONGEST_NAME = 31
+"""Of a file in Creo, without its ending; CREOSON refuses longer ones (`JlinkUtils.validateFilename`)."""
 _GLANCE = 0.05  # [s]
 
 
@@ -40,6 +42,7 @@ class Creoson:
     url: str
     exports: str
     folder: Path
+    version: int | None = None  # of Creo, from 7 on: its regeneration takes other options
 
 
 def unreachable(reason: str) -> ProgramMissing:
@@ -63,10 +66,13 @@ class CreoSession:
     def connect(self) -> None:
         """Connect; raises ProgramMissing if nobody answers, or Creo does not run."""
         answer = self._post({"command": "connection", "function": "connect"}, "creo_unreachable", ())
-        self.id = str(answer.get("sessionId", ""))
+        self.id = str(answer.get("sessionId") or "")
         running = self.ask("connection", "is_creo_running", {}, "creo_unreachable")
         if not self.id or running.get("running") is not True:
             raise unreachable("CREOSON answers, and Creo does not run")
+        if self.creoson.version is not None:
+            data = {"version": self.creoson.version}
+            self.ask("creo", "set_creo_version", data, "creo_unreachable")
 
     def ask(
         self, command: str, function: str, data: Fields, code: str, names: tuple[str, ...] = ()
@@ -130,7 +136,7 @@ class CreoDrawing:
             for one in described.parameters:
                 kind, key = one.source.split(".", 1)
                 value = values.get(one.name, one.value)
-                typed = {"type": "DOUBLE"} if kind == "parameter" else {}
+                typed = {"type": "DOUBLE", "no_create": True} if kind == "parameter" else {}
                 data = {**file, "name": key, "value": value, **typed}
                 session.ask(kind, "set", data, f"creo_{kind}", (one.name,))
             names = tuple(one.name for one in described.parameters)
@@ -140,7 +146,7 @@ class CreoDrawing:
         return Drawn(step=step, mass_volume=volume * MM[manifest.length_unit] ** 3)
 
     def _exported(self, session: CreoSession, manifest: Manifest, names: tuple[str, ...]) -> bytes:
-        wanted = f"crankwright_{uuid4().hex}.stp"
+        wanted = f"{f'crankwright_{uuid4().hex}'[:LONGEST_NAME]}.stp"
         data = {"file": manifest.file, "type": "STEP", "filename": wanted, "dirname": self.creoson.exports}
         answer = session.ask("interface", "export_file", data, "creo_export", names)
         name = PurePath(str(answer.get("filename", wanted)).replace("\\", "/")).name or wanted

@@ -1,7 +1,7 @@
 """A server that replays a session of CREOSON: it expects the recorded calls in their order, and answers them.
 
-The session was written after CREOSON's documentation, not recorded from a licensed Creo. What Creo calculates
-in it, volume and STEP file, follows here from the values that were set.
+The session was written after CREOSON's documentation and source (3.0.1), not recorded from a licensed Creo.
+What Creo calculates in it, volume and STEP file, follows here from the values that were set.
 """
 
 import json
@@ -22,7 +22,7 @@ class Replay:
 
     def __init__(self, folder):
         self.folder, self.calls, self.strange = Path(folder), [], []
-        self.values = {"D": 50.0, "SCALE": 1.0}
+        self.values = {"BORE": 50.0, "SCALE": 1.0}
         self.wrong = {}  # answers in place of the recorded ones, by function
         self.lock, self.sessions, self.most = threading.Lock(), 0, 0
 
@@ -45,6 +45,9 @@ class Replay:
         if function == "massprops":
             answer["data"]["volume"] = self.volume()
         if function == "export_file":
+            if len(Path(data["filename"]).stem) > 31:  # as `JlinkUtils.validateFilename` says
+                message = "File name must be less than 32 characters before the extension"
+                return json.dumps({"status": {"error": True, "message": message}, "data": None})
             answer["data"]["filename"] = data["filename"]
             (self.folder / data["filename"]).write_bytes(self.step())
         return json.dumps(answer)
@@ -60,11 +63,11 @@ class Replay:
         return None
 
     def volume(self):
-        bore = self.values["D"] * self.values["SCALE"]
+        bore = self.values["BORE"] * self.values["SCALE"]
         return pi / 4 * ((bore + 2 * WALL) ** 2 - bore**2) * WIDTH
 
     def step(self):
-        bore = self.values["D"] * self.values["SCALE"]
+        bore = self.values["BORE"] * self.values["SCALE"]
         ring = Solid.makeCylinder(bore / 2 + WALL, WIDTH).cut(Solid.makeCylinder(bore / 2, WIDTH))
         place = self.folder / "drawn.step"
         exporters.export(Workplane(ring), str(place), exporters.ExportTypes.STEP)

@@ -20,8 +20,8 @@ MANIFEST = {
     "title": "Bearing of the paper",
     "file": "bearing.prt",
     "parameters": [
-        {"name": "bearing_diameter", "dimension": "D", "unit": "mm", "value": 50.0, "low": 10.0, "high": 200,
-         "check": "diameter"},
+        {"name": "bearing_diameter", "dimension": "BORE", "unit": "mm", "value": 50.0, "low": 10.0,
+         "high": 200, "check": "diameter"},
         {"name": "scale", "parameter": "SCALE", "unit": "1", "value": 1.0, "low": 0.1, "high": 9.0},
     ],
 }  # fmt: skip
@@ -60,10 +60,18 @@ def test_the_recorded_session_sets_regenerates_measures_and_exports(replay):
     drawn = draw(drawing(replay), bearing_diameter=48.0)
     assert replay.calls == [(one["request"]["command"], one["request"]["function"]) for one in RECORDED]
     assert replay.strange == []
-    assert replay.values["D"] == 48.0
+    assert replay.values["BORE"] == 48.0
     assert drawn.mass_volume == pytest.approx(replay.volume())
     assert drawn.step.startswith(b"ISO-10303-21;")
     assert not list(replay.folder.glob("crankwright_*"))  # nothing is left in the folder for exports
+
+
+def test_the_version_of_creo_is_said_where_the_operator_sets_it(replay):
+    newer = CreoDrawing(Creoson(replay.url, "C:/exports", replay.folder, version=9), 20.0)
+    replay.wrong["set_creo_version"] = json.dumps({"status": {"error": False}, "data": None})
+    draw(newer)
+    assert replay.calls[2] == ("creo", "set_creo_version")
+    assert replay.strange[0]["data"] == {"version": 9}
 
 
 @pytest.mark.parametrize("function", FAILURES)
@@ -139,6 +147,9 @@ def test_who_waits_for_a_session_may_give_up(replay):
         ({"parameters": [{**MANIFEST["parameters"][0], "words": "two\nlines"}]}, "parameters.0.words"),
         ({"parameters": [{**MANIFEST["parameters"][0], "dimension": "D\0"}]}, "parameters.0.dimension"),
         ({"url": "http://elsewhere"}, "url"),
+        ({"file": f"{32 * 'a'}.prt"}, "file"),
+        ({"parameters": [{**MANIFEST["parameters"][0], "dimension": "D"}]}, "such as d12"),
+        ({"parameters": [{**MANIFEST["parameters"][1], "parameter": "two words"}]}, "parameters.0.parameter"),
         ({"parameters": [{**MANIFEST["parameters"][0], "value": 5.0}]}, "not from 10 to 200"),
         ({"parameters": [{**MANIFEST["parameters"][0], "parameter": "X"}]}, "either the dimension"),
         ({"parameters": 2 * MANIFEST["parameters"][:1]}, "two parameters are called bearing_diameter"),
@@ -170,7 +181,7 @@ def test_a_design_drives_creo_and_keeps_its_last_good_model(http, driven):
     assert design["state"] == "current"
     place = f"{API}/designs/{design['id']}"
     measured = http.get(f"{place}/measurements").json()["model"]
-    assert measured["dimensions"]["bearing_diameter"]["value"] == driven.values["D"] == 48
+    assert measured["dimensions"]["bearing_diameter"]["value"] == driven.values["BORE"] == 48
     assert measured["volume"]["value"] == pytest.approx(driven.volume(), rel=1e-9)
     assert "lower: Creo drew the shape" in measured["trust"]
     good = http.get(f"{place}/model.step")
