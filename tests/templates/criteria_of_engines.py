@@ -8,7 +8,7 @@ from math import cos, pi, sqrt
 from templates.bearing_load.engine_v2 import Engine as EngineOfCrankpins
 
 ENGINE, ROLLING, BURNT = ("engine", 2), ("rolling_bearing_life", 1), ("combustion_cycle", 1)
-TWIST = ("forced_torsion", 1)
+TWIST, BESIDE = ("forced_torsion", 1), ("measured_curves", 2)
 # One inertia on a shaft to the ground in resonance at 200 rad/s: 1 N m over a loss factor of 0.01.
 TONE = {
     **dict.fromkeys([
@@ -48,7 +48,29 @@ IN_LINE = {
 }  # fmt: skip
 """The in-line four of engine 2, as inputs of engine 3."""
 
+# The example of measured_curves, measured at the calculated angles: differences of 0.3 and −0.4 um, by hand.
+AT_ANGLES = {
+    "measured_shift": "-10 deg",
+    "calculated_film": {"value": [3, 4, 6, 5, 2, 3, 4, 4], "unit": "um"},
+    "measured_film": {"value": [3.3, 3.6, 6, 5, 2, 3, 4, 4], "unit": "um"},
+    "calculated_speed": {"value": [1500] * 8, "unit": "rpm"},
+    "measured_speed": {"value": [1503, 1496, *[1500] * 6], "unit": "rpm"},
+    "calculated_strain": {"value": [0] * 8, "unit": "1"},
+    "measured_strain": {"value": [3e-4, -4e-4, *[0] * 6], "unit": "1"},
+}
+RMS = sqrt((0.3**2 + 0.4**2) / 8)
+COMPARED = [
+    (BESIDE, f"{by}_{what}", AT_ANGLES, {f"permissible_{by}_{what}_difference": limit}, verdict, value, bound)
+    for by, value_of in (("rms", RMS), ("largest", 0.4))
+    for what, unit, scale in (("film", "um", 1), ("speed", "rpm", 10), ("strain", "1", 1e-3))
+    for share, verdict in ((1.1, "met"), (0.9, "not_met"))
+    for value in (value_of * scale,)
+    for bound in (share * value,)
+    for limit in (f"{bound:.12g} {unit}",)
+]
+
 CASES = [
+    *COMPARED,
     (ENGINE, "crankpin_load", NO_GAS, {"permissible_crankpin_load": "14 kN"}, "met", PIN, 14e3),
     (ENGINE, "crankpin_load", NO_GAS, {"permissible_crankpin_load": "5 kN"}, "not_met", PIN, 5e3),
     (ENGINE, "main_load", NO_GAS, {"permissible_main_load": "14 kN"}, "met", MAIN, 14e3),
