@@ -25,6 +25,27 @@ ABOUT = {
         *("app/brought/*.py", "cad/brought.py", "cad/freecad/*.py"),
         *("app/api/routes/brought_models.py", "app/*workers/*.py"),
     ),
+    "tests/app/brought/test_assemblies.py": ("app/brought/*.py", "cad/brought.py", "cad/assembl*.py"),
+    "tests/app/brought/test_assembly_page.py": ("app/brought/*.py", *WEB),
+    "tests/app/calculations/test_calculations_in_processes.py": (
+        "app/*calculations/*.py",
+        "app/*workers/*.py",
+    ),
+    "tests/app/test_analysis_bore.py": ("app/solids/*.py", "cad/analysis/*.py"),
+    "tests/app/test_bidi.py": WEB,
+    "tests/app/test_design_files.py": ("app/solids/*.py", "app/api/routes/design_files.py"),
+    "tests/app/test_design_revisions.py": ("app/designs/*.py", "app/solids/*.py"),
+    "tests/app/test_elastic_bore.py": ("app/solids/*.py", "app/designs/*.py", "cad/analysis/*.py"),
+    "tests/app/test_guard.py": ("app/api/gate/*.py", "app/hosts.py"),
+    "tests/app/test_hosts.py": ("app/hosts.py", "app/api/gate/*.py", "app/settings.py"),
+    "tests/app/test_linear_input_http.py": ("app/api/reading.py", "app/api/problems.py", "app/designs/*.py"),
+    "tests/app/test_models_api.py": ("app/solids/*.py", "app/api/routes/models.py"),
+    "tests/app/test_sheet_check.py": ("app/worksheets/*.py", "templates/core/sheets/*.py"),
+    "tests/app/test_sign_in_oidc.py": ("app/identity/*.py",),
+    "tests/app/test_solid_fields.py": ("app/solids/*.py", "app/api/routes/solid_fields.py"),
+    "tests/app/test_study_cancels.py": ("app/studies/*.py", "app/*jobs/*.py"),
+    "tests/app/test_study_cancels_builds.py": ("app/studies/*.py", "app/*jobs/*.py"),
+    "tests/app/test_variants_http.py": ("app/designs/*.py", "app/solids/*.py"),
     "tests/app/test_analysis_lists.py": (
         *("app/solids/*.py", "app/designs/*.py", "cad/analysis/*.py", "cad/cranks/*.py"),
         "app/api/routes/analyses.py",
@@ -111,6 +132,7 @@ ALWAYS = ("tests/physics/test_mobility_map.py", "tests/cad/analysis/test_torsion
 """What runs if nobody can say what changed: one file for each kind of solver."""
 CATALOGUE = "tests/templates/test_catalogue_properties.py"
 VERSION = re.compile(r"^(?:templates|cad)/\w+/(\w+)_v\d+\.py$")  # found by name, not by an import
+SLOW = re.compile(r"\bmark\.(?:slow|sampled)\b")  # a test with cases in the slow lane
 EVERYWHERE = ("constraints.txt", "pyproject.toml", "tests/conftest.py", "tests/*/conftest.py")
 """Files that all tests depend on."""
 
@@ -136,7 +158,7 @@ def git(*arguments: str) -> str:
 def slow_files() -> list[str]:
     """Return the test files that hold slow tests, but for those of a team, which have a lane of their own."""
     files = (file for file in (ROOT / "tests").rglob("test_*.py") if file.parent.name != "team")
-    return sorted(name(file) for file in files if "mark.slow" in file.read_text(encoding="utf-8"))
+    return sorted(name(file) for file in files if SLOW.search(file.read_text(encoding="utf-8")))
 
 
 def name(file: Path) -> str:

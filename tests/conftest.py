@@ -18,7 +18,7 @@ import forked  # noqa: E402
 import pytest  # noqa: E402
 from components import cluster, object_store, own_postgres, postgres, s3  # noqa: E402, F401 - for all folders
 from hypothesis import settings  # noqa: E402
-from lanes import group_of, name_group, rank, require_distinct  # noqa: E402
+from lanes import group_of, left_out, name_group, rank, require_distinct  # noqa: E402
 from patience import BUDGET, FACTOR, SLOW_TEST, TEST  # noqa: E402
 from seeds import CHOSEN, SEED  # noqa: E402
 
@@ -60,6 +60,8 @@ def pytest_runtest_setup(item):
 
 @pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the groups
 def pytest_collection_modifyitems(config, items):
+    for item in left_out(items):
+        item.add_marker(pytest.mark.slow)
     for item in items:
         item.add_marker(pytest.mark.xdist_group(group_of(item)))
         if getattr(config.option, "loadgroup", False):  # in a worker

@@ -5,7 +5,7 @@ longest come first, so that both workers end at about the same time. The order i
 a wrong order costs some balance and nothing else.
 """
 
-from collections import Counter
+from collections import Counter, defaultdict
 
 import pytest
 
@@ -63,6 +63,22 @@ def require_distinct(items):
     shared = [id for id, count in Counter(item.nodeid for item in items).items() if count > 1]
     if shared:
         raise pytest.UsageError(f"{len(shared)} ids belong to several tests: {', '.join(shared[:3])}")
+
+
+def left_out(items):
+    """The cases of `sampled` tests that belong to the slow lane: all but as many as the marker says."""
+    cases = defaultdict(list)
+    for item in items:
+        if item.get_closest_marker("sampled") and not item.get_closest_marker("slow"):
+            cases[item.path, item.parent.name, item.originalname].append(item)
+    return [item for each in cases.values() for item in unsampled(each)]
+
+
+def unsampled(cases):
+    """The cases of one test that are slow; the quick ones, with the first, are spread evenly over all."""
+    (count,) = cases[0].get_closest_marker("sampled").args
+    quick = {len(cases) * number // count for number in range(count)}
+    return [case for number, case in enumerate(cases) if number not in quick]
 
 
 def rank(group):

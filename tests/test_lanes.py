@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import patience
 import pytest
-from lanes import MODELS, PAGES, SERVED, TOGETHER, group_of, rank
+from lanes import MODELS, PAGES, SERVED, TOGETHER, group_of, rank, unsampled
 from patience import until
 
 from benchmarks.mutation.related import changed
@@ -50,6 +50,14 @@ def test_the_scheduler_reads_the_group(request):
 def test_servers_begin_first():
     groups = ["tests/physics/test_oil.py", SERVED, PAGES]
     assert sorted(groups, key=rank) == [PAGES, SERVED, "tests/physics/test_oil.py"]
+
+
+@pytest.mark.parametrize(("cases", "count", "quick"), [(7, 3, "024"), (3, 1, "0"), (2, 5, "01"), (1, 1, "0")])
+def test_the_quick_cases_of_a_sampled_test_are_spread_over_all(cases, count, quick):
+    marker = SimpleNamespace(args=(count,))
+    each = [SimpleNamespace(name=str(n), get_closest_marker=lambda _: marker) for n in range(cases)]
+    slow = unsampled(each)
+    assert "".join(case.name for case in each if case not in slow) == quick
 
 
 @pytest.mark.parametrize(

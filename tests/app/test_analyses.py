@@ -85,6 +85,7 @@ class TestAnswer:
         assert torsion["outputs"].keys() == {"stiffness", "torsional_frequency"}  # the stress is expensive
         assert asked(http, outputs=["stiffness"])["outputs"].keys() == {"stiffness"}
 
+    @pytest.mark.slow
     def test_boundary(self, http, torsion):
         """The ends of a bar stay on its axis by themselves."""
         guided = asked(http, boundary="guided_end", outputs=["stiffness"])
@@ -93,6 +94,7 @@ class TestAnswer:
         free = torsion["outputs"]["stiffness"]["value"]
         assert guided["outputs"]["stiffness"]["value"] == pytest.approx(free, rel=1e-3)
 
+    @pytest.mark.slow
     def test_default_level_and_tolerance(self, http):
         thick = bar(40, 40)
         default = ask(http, thick, outputs=["stiffness"], level=None).json()
@@ -186,6 +188,7 @@ class TestSurface:
         assert more["outputs"]["surface"] == painted["outputs"]["surface"]
         assert len(jobs(http)) == len(before) + 1
 
+    @pytest.mark.slow
     def test_bending_has_no_twist(self, http):
         surface = asked(http, kind="bending", outputs=["surface"])["outputs"]["surface"]
         surface_of_bending = http.get(surface["url"]).json()

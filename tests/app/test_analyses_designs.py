@@ -214,6 +214,7 @@ class TestLoad:
         cycles = answer["steps"]["life"]["outputs"]["cycles"]["value"]
         assert cycles == pytest.approx((output["value"] * 1e6 / strength) ** (1 / exponent) / 2, rel=1e-6)
 
+    @pytest.mark.slow
     def test_property_another_load_is_no_other_analysis(self, http):
         document = {"name": "loads", "parameters": {"peak": "= bar.torsion.maximum_stress"}}
         revisions = []

@@ -103,6 +103,7 @@ def test_an_item_that_is_not_there_is_refused(http, key):
     assert answer.status_code == 422, answer.text
 
 
+@pytest.mark.slow
 def test_page_report_and_table_show_it(http, design):
     page = http.get(f"/designs/{design['id']}").text
     assert 'data-analysis-output="throw_stiffnesses"' in page

@@ -105,6 +105,7 @@ class TestAnswer:
         for other in ("crankshaft/versions/1", "bar/versions/1"):
             assert http.get(f"{API}/models/{other}").json()["analyses"].keys() == {"torsion", "bending"}
 
+    @pytest.mark.slow
     def test_the_schema_of_the_interface_allows_rows(self, http):
         schemas = http.get("/openapi.json").json()["components"]["schemas"]
         kinds = [one.get("type") for one in schemas["AnalysisOutput"]["properties"]["value"]["anyOf"]]

@@ -120,6 +120,7 @@ class TestEveryStore:
     def test_it_answers_a_probe(self, each):
         assert each.probe() is None
 
+    @pytest.mark.sampled(1)
     def test_a_large_file(self, each):
         data = os.urandom(20 * 2**20)
         assert each.read(each.put(data)) == data

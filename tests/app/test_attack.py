@@ -78,6 +78,7 @@ def test_every_call_is_one_of_a_route():
     # test_gate_keys.py compares their refusals with that of a revoked key
     [pytest.param(who, marks=pytest.mark.slow if who in ("expired", "disabled") else ()) for who in ROLES],
 )
+@pytest.mark.sampled(3)
 def test_who_may_not_is_refused_and_does_not_learn_what_there_is(scene, who):
     wrong, before = [], changes(scene)
     for name in ROUTES:
@@ -105,6 +106,7 @@ def test_who_may_not_is_refused_and_does_not_learn_what_there_is(scene, who):
         *(pytest.param(who, marks=pytest.mark.slow) for who in ("bare", "scoped", "viewer")),
     ],
 )
+@pytest.mark.sampled(2)
 def test_who_may_succeeds(scene, who):
     wrong = []
     for name in ROUTES:

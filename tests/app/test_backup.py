@@ -178,6 +178,7 @@ class TestCheck:
         sql(data, "UPDATE alembic_version SET version_num = '9999'")
         assert run("check", "--data", data).exit_code == 2
 
+    @pytest.mark.slow
     def test_beside_the_service_it_only_reads(self, data):
         with serving(Settings(data=data)):
             assert run("check", "--data", data).exit_code == 0
@@ -330,6 +331,7 @@ class Writers:
 
 
 @pytest.mark.parametrize("each", [3, pytest.param(25, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_a_backup_among_writes_is_complete(folders, tmp_path, each):
     busy, changes = tmp_path / "busy", DESIGNS * each
     with serving(Settings(data=busy, queue_limit=1000, client_queue_limit=1000)) as server:

@@ -41,6 +41,7 @@ def page_of(http, path, design):
 
 
 @pytest.mark.parametrize("path", PAGES)
+@pytest.mark.sampled(3)
 def test_names_on_pages_turn_nothing_outside_their_element(http, design, path):
     page = page_of(http, path, design)
     assert "gnp.exe" in page
@@ -52,6 +53,7 @@ def test_names_on_pages_turn_nothing_outside_their_element(http, design, path):
 
 
 @pytest.mark.parametrize("path", PAGES)
+@pytest.mark.sampled(3)
 def test_names_are_no_markup(http, design, path):
     page = page_of(http, path, design)
     assert "<script>alert" not in page

@@ -66,6 +66,7 @@ def design(http):
 class TestServed:
     @DAMAGES
     @pytest.mark.parametrize("kind", ["step", "png"])
+    @pytest.mark.sampled(2)
     def test_an_artifact_comes_back_under_its_hash(self, served, http, design, damage, kind):
         sha = files(http, design)[kind]
         damage(place(served, sha))
@@ -124,6 +125,7 @@ class TestServed:
         aside = served.app.state.services.store.folder.glob(f"quarantine/{sha}.damaged-*")
         assert damaged in [path.read_bytes() for path in aside]
 
+    @pytest.mark.slow
     def test_the_picture_of_a_model(self, served, http):
         path = f"{API}/models/moody/versions/1/picture"
         whole = http.get(path, headers=WAIT)
@@ -146,6 +148,7 @@ class TestServed:
         assert http.post(f"{API}/verify", content=step, headers=headers).json()["intact"] is True
 
     @pytest.mark.parametrize("kind", ["html", "pdf"])
+    @pytest.mark.sampled(1)
     def test_the_pictures_of_a_report(self, served, http, design, kind):
         path = f"{API}/designs/{design['id']}/report.{kind}"
         whole = http.get(path, headers=WAIT)
@@ -162,6 +165,7 @@ class TestServed:
         assert http.get(f"{API}/designs/{design['id']}/model.dxf", headers=WAIT).status_code == 200
 
     @ONE_DAMAGE
+    @pytest.mark.slow
     def test_the_surface_of_an_analysis(self, served, http, damage):
         body = {
             "parameters": {"diameter": "26 mm", "length": "40 mm"},

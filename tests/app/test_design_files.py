@@ -52,6 +52,7 @@ def products(step):
 
 
 @pytest.mark.parametrize("kind", ["step", "stl", "svg", "png", "glb", "dxf", "drawing.svg", "drawing.pdf"])
+@pytest.mark.sampled(3)
 def test_a_download_is_named_by_design_model_and_revision(http, design, kind):
     answer = get(http, design, f"models/shell/model.{kind}")
     wide = quote(f"{WIDE}.{kind}", safe="")
@@ -239,6 +240,7 @@ def test_a_build_of_an_older_recipe_is_stamped_and_verified(served, http, design
     assert http.get(f"{API}/builds/{key}").json()["artifacts"]["step"] == hashlib.sha256(assembly).hexdigest()
 
 
+@pytest.mark.slow
 def test_a_drawing_of_an_older_program_is_drawn_again(served, http):
     older = created(http, {"name": "drawn", "models": {"shell": SHELL}})
     drawing = get(http, older, "models/shell/model.dxf").text

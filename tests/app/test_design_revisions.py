@@ -169,6 +169,7 @@ class TestFailingRebuild:
             ("dies", "crashed", None),
         ],
     )
+    @pytest.mark.sampled(1)
     def test_the_last_good_model_stays_served(self, http, good, mood, slug, code):
         design = created_by(http.post(f"{DESIGNS}/{good['id']}/copy", headers={"Prefer": "wait=60"}))
         place = f"{DESIGNS}/{design['id']}"

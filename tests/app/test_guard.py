@@ -129,6 +129,7 @@ def copy_of(victim):
 
 @pytest.mark.parametrize("host", FOREIGN_HOSTS)
 @pytest.mark.usefixtures("unchanged")
+@pytest.mark.sampled(16)
 def test_a_foreign_host_reads_and_writes_nothing(served, victim, host):
     own = [("Host", host), ("Sec-Fetch-Site", "same-origin")]
     refused(ask(served.url, "GET", f"{API}/designs", own), 400, 421)
@@ -200,6 +201,7 @@ HOSTILE = {
 
 @pytest.mark.parametrize(("method", "path"), UNSAFE)
 @pytest.mark.usefixtures("unchanged")
+@pytest.mark.sampled(30)
 def test_no_unsafe_route_is_open_to_other_sites(served, victim, method, path):
     json_body = ("Content-Type", "application/json"), ("If-Match", "*")
     for headers, status in HOSTILE.values():
@@ -221,6 +223,7 @@ def test_the_list_of_unsafe_routes_is_complete():
 
 @pytest.mark.parametrize(("method", "path"), WITH_BODY)
 @pytest.mark.usefixtures("unchanged")
+@pytest.mark.sampled(12)
 def test_no_route_takes_a_body_of_another_type(served, victim, method, path):
     body = json.dumps({"name": "made by another site"}).encode()
     for kind in FOREIGN_TYPES:
@@ -234,6 +237,7 @@ def test_no_route_takes_a_body_of_another_type(served, victim, method, path):
 )
 @pytest.mark.parametrize("path", FORMS)
 @pytest.mark.usefixtures("unchanged")
+@pytest.mark.sampled(12)
 def test_no_form_takes_a_body_of_another_type(served, victim, path, kind):
     headers = [] if kind == "None" else [("Content-Type", kind)]
     refused(ask(served.url, "POST", filled(path, victim), headers, b"example=paper&name=x"), 415)
@@ -273,6 +277,7 @@ def test_a_preflight_allows_nothing(served, victim):
 
 
 @pytest.mark.parametrize(("method", "path"), [route for route in ROUTES if route[0] in SAFE])
+@pytest.mark.sampled(30)
 def test_every_answer_carries_the_headers(served, victim, method, path):
     protected(ask(served.url, method, filled(path, victim)))
     protected(ask(served.url, method, filled(path)))

@@ -121,6 +121,7 @@ class TestSetting:
             ("[2001:db8::7]", ["[2001:db8:0::7]:8000"], ["[2001:db8::8]"]),
         ],
     )
+    @pytest.mark.sampled(2)
     def test_what_it_allows(self, entry, allowed, refused):
         app = create_app(Settings(allowed_hosts=(entry,)))
         for host in allowed:
@@ -171,6 +172,7 @@ class TestProxy:
             ("https://localhost:8000", "localhost:8000", 403),  # not https, and not listed
         ],
     )
+    @pytest.mark.sampled(4)
     def test_origins_behind_one(self, origin, host, status):
         app = create_app(Settings(allowed_hosts=("crank.example", "*.works.example")))
         answer = send(app, "POST", "/nothing", headers={"Host": host, "Origin": origin})

@@ -106,6 +106,7 @@ class TestUnitsAndQuantities:
 
 class TestRelations:
     @pytest.mark.parametrize("make", RELATIONS.values(), ids=RELATIONS)
+    @pytest.mark.sampled(3)
     def test_within_the_bound(self, make):
         assert_linear(parse.__wrapped__, make, MAX_LENGTH // 4 - 5)
 
@@ -160,10 +161,12 @@ class TestCurves:
         assert_linear(read_curves, lambda n: (piece * n)[:n].encode() + b"\n1\n", LONGEST_LINE // 4 - 1)
 
     @pytest.mark.parametrize("piece", [*CELLS.values(), "\xff"], ids=[*CELLS, "no UTF-8"])
+    @pytest.mark.sampled(3)
     def test_a_line_beyond_the_bound(self, piece):
         assert_linear(read_curves, lambda n: b"p [bar]\n" + piece.encode("latin-1") * n, 250_000)
 
     @pytest.mark.parametrize("line", ["1\n", "1,2\n", "x\n", "#\n", "\n", "\r", "\f", "\u2028", '"\n'])
+    @pytest.mark.sampled(3)
     def test_lines(self, line):
         assert_linear(read_curves, lambda n: b"p [bar]\n" + line.encode() * n, 4000)
 
@@ -342,6 +345,7 @@ class TestAnswers:
     @pytest.mark.parametrize(
         "piece", ["a", "\x00", *(pytest.param(piece, marks=pytest.mark.slow) for piece in ("\u202e", " "))]
     )
+    @pytest.mark.sampled(1)
     def test_a_text_in_a_report(self, piece):
         assert_linear(clean, lambda n: piece * n, 20_000)
         assert_linear(text_of, lambda n: [piece] * n, 20_000)

@@ -31,6 +31,7 @@ def any_design(http):
 
 
 @pytest.mark.parametrize("request_", EVERY.values(), ids=EVERY)
+@pytest.mark.sampled(16)
 def test_it_is_answered(http, any_design, request_, request):
     method, path, headers, body = request_
     answer = http.request(method, path.format(design=any_design), headers=headers, content=body, timeout=HANG)

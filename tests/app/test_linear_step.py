@@ -36,10 +36,12 @@ STEP = {
 
 class TestStep:
     @pytest.mark.parametrize("make", STEP.values(), ids=STEP)
+    @pytest.mark.sampled(3)
     def test_the_scan(self, make):
         assert_linear(description, make, 10_000)
 
     @pytest.mark.parametrize("make", STEP.values(), ids=STEP)
+    @pytest.mark.sampled(3)
     def test_a_header(self, make):
         def read(step):
             assert read_header(step) is None
@@ -47,6 +49,7 @@ class TestStep:
         assert_linear(read, lambda n: make(n // 8).encode(), LONGEST_HEADER // 4)
 
     @pytest.mark.parametrize("make", STEP.values(), ids=STEP)
+    @pytest.mark.sampled(3)
     def test_no_more_than_the_header_is_read(self, make):
         assert_constant(read_header, lambda n: make(n).encode().ljust(LONGEST_HEADER), 100_000)
 

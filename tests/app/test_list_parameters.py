@@ -118,6 +118,7 @@ class TestOnItsOwn:
         assert shown["unit"] == "deg"
         assert "list" in str(shown) or "array" in str(shown)
 
+    @pytest.mark.slow
     def test_page_shows_lists_and_takes_them_back(self, http):
         page = http.get("/models/crankshaft/2")
         assert page.status_code == 200

@@ -101,6 +101,7 @@ class TestBuild:
 
 class TestFiles:
     @pytest.mark.parametrize("kind", KINDS)
+    @pytest.mark.sampled(2)
     def test_every_kind_by_its_ending(self, http, design, kind):
         media, magic = KINDS[kind]
         answer = http.get(place(design, f"model.{kind}"), headers={"Prefer": "wait=60"})

@@ -45,6 +45,7 @@ def test_rows_of_a_bearing_equal_designs():
 
 
 @pytest.mark.parametrize("count", [1, 5, 24])
+@pytest.mark.sampled(1)
 def test_rows_of_curves_equal_designs(count):
     """24 rows are as many as a curve has places."""
     wanted = [

@@ -119,6 +119,7 @@ def assert_judged_as_designs(raw, varied, count):
     "name",
     [pytest.param(name, marks=pytest.mark.slow if name == AT_LENGTH else ()) for name in DESIGNS],
 )
+@pytest.mark.sampled(1)
 def test_property_verdicts_of_rows_equal_those_of_designs(name):
     verdicts = assert_judged_as_designs(*DESIGNS[name])
     assert verdicts.keys() == set(WORST_FIRST) or name == "few rows"
@@ -176,6 +177,7 @@ def test_errors_that_are_not_stated_are_said():
     assert not loads.judged["load"].is_stated
 
 
+@pytest.mark.slow
 def test_error_upstream_that_is_not_known_in_some_rows_leaves_these_undecided():
     """The error of the speed at which a very wide bearing whirls was not measured."""
     raw = copy.deepcopy(BEARING)

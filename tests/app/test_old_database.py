@@ -118,6 +118,7 @@ def test_new_designs_and_jobs_sort_after_old_ones(http):
 @pytest.mark.parametrize(
     "ids", [sorted(SETTLED)[:1], pytest.param(sorted(SETTLED), marks=pytest.mark.slow)], ids=["one", "all"]
 )
+@pytest.mark.slow
 def test_missing_artifacts_are_no_fault_of_the_program(http, ids):
     """The files of version 0.1 are not in the reference: an answer is a file built again, or a problem."""
     paths = [

@@ -63,6 +63,7 @@ def is_importing(pid):
         return False
 
 
+@pytest.mark.slow
 def test_a_forkserver_that_is_still_importing_dies_with_its_server(tmp_path):
     server, forkserver = started(tmp_path, "slow_import")
     assert eventually(lambda: is_importing(forkserver)), Path(f"/proc/{forkserver}/wchan").read_text()

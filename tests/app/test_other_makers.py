@@ -93,6 +93,7 @@ class TestAnotherMaker:
         assert refusal["errors"][0]["code"] == "model_gone"
         assert "gone version 1" in refusal["detail"]
 
+    @pytest.mark.slow
     def test_a_picture_with_other_bytes_is_another_artifact(self, shared):
         served, http, _ = shared
         design = created(http, moody("15 mm"))

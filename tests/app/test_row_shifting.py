@@ -22,6 +22,7 @@ def expensive(monkeypatch, seconds):
 
 
 @pytest.mark.parametrize("seconds", [0.0, 1e9])
+@pytest.mark.sampled(1)
 def test_property_no_error_is_carried_through_an_expensive_step(monkeypatch, seconds):
     expensive(monkeypatch, seconds)
     assert assert_judged_as_designs(chained(), VARIED, 6)

@@ -96,6 +96,7 @@ def saved(http, seconds=0.001):
     return settled(http, answer.json()["id"])
 
 
+@pytest.mark.slow
 def test_a_save_that_takes_long_goes_on_as_a_job_in_the_same_process(http, log):
     answer = http.post(DESIGNS, json=sleeping(3))
     assert answer.status_code == 202, answer.text

@@ -44,6 +44,7 @@ def test_jobs_that_may_share_a_process_do(worker):
     [(victims.process_id,), (victims.shared_process_id, False)],
     ids=["without the mark", "with other arguments"],
 )
+@pytest.mark.sampled(1)
 def test_a_job_that_runs_anything_else_has_its_own_process(worker, other):
     (kept,) = job(worker, (victims.shared_process_id,))
     (own,) = job(worker, other)
@@ -110,6 +111,7 @@ def test_built_in_models_share_and_code_of_a_team_does_not(source, is_shared):
     ],
     ids=["deadline", "memory", "crash"],
 )
+@pytest.mark.sampled(1)
 def test_a_job_that_is_ended_harms_no_neighbour(worker, offence, limits, error):
     (kept,) = job(worker, (victims.shared_process_id,))
     with ThreadPoolExecutor(1) as pool:
@@ -134,6 +136,7 @@ def test_a_used_process_is_never_to_blame_and_never_lent_again(worker, offence):
     assert job(worker, (victims.shared_process_id,)) != [kept]
 
 
+@pytest.mark.slow
 def test_what_an_earlier_job_keeps_takes_no_memory_of_the_next(worker):
     (kept,) = job(worker, (victims.shared_hoard, 100))
     (own,) = job(worker, (victims.shared_hoard, 450))

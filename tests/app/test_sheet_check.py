@@ -136,6 +136,7 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize("name", HOSTILE)
+@pytest.mark.sampled(4)
 def test_hostile_texts_get_an_answer(http, name):
     check = checked(http, HOSTILE[name])
     assert check["faults"] or check["lines"] == [] or check["template"] is not None

@@ -117,6 +117,7 @@ def test_with_a_provider_the_service_asks_before_there_is_anybody(service):
     "claims",
     [{"aud": "another"}, {"iss": "https://evil.example"}, {"nonce": "replayed"}, {"exp": 1}, {"sub": ""}],
 )
+@pytest.mark.sampled(3)
 def test_a_token_for_something_else_is_refused(browser, provider, claims):
     provider.claims = claims
     assert brought_back(browser, provider).status_code == 403
@@ -171,6 +172,7 @@ def test_a_key_that_the_token_brings_along_is_not_taken(browser, provider):
         ({"iat": 600}, 403),
     ],
 )
+@pytest.mark.sampled(3)
 def test_clocks_may_differ_by_a_minute(browser, provider, change, status):
     provider.claims = {name: int(time.time()) + seconds for name, seconds in change.items()}
     assert brought_back(browser, provider).status_code == status
@@ -199,6 +201,7 @@ def test_clocks_may_differ_by_a_minute(browser, provider, change, status):
         ({"sub": 5}, 403),
     ],
 )
+@pytest.mark.sampled(6)
 def test_the_audience_and_what_has_to_be_there(browser, provider, claims, status):
     provider.claims = claims
     assert brought_back(browser, provider).status_code == status

@@ -87,6 +87,7 @@ def test_a_released_report_says_who_signed_when_and_the_digests(room, design, pr
     assert all(one.digest in html for one in steps)
 
 
+@pytest.mark.slow
 def test_the_head_of_a_report_names_the_author_whether_or_not_anything_is_signed(
     room, team, design, printed, unsigned
 ):

@@ -79,6 +79,7 @@ def problem_in(answer: bytes) -> dict:
 
 
 @pytest.mark.parametrize("piece", [b"X-Filler: aaaaaaaaaaaaaaaaaaaaaaaaaaaa\r\n", b"a" * 40])
+@pytest.mark.sampled(1)
 def test_a_head_at_a_trickle(slow, piece):
     refusal = problem_in(dripped(slow, b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n", piece))
     assert refusal["type"] == "/problems/too-slow"
@@ -93,6 +94,7 @@ def test_a_second_head_at_a_trickle(slow):
 
 
 @pytest.mark.parametrize("start", [b"", head("GET /healthz")])
+@pytest.mark.sampled(1)
 def test_empty_lines_are_no_request(slow, start):
     assert b"408" not in dripped(slow, start, b"\r\n\r\n\r\n\r\n")
 
@@ -104,6 +106,7 @@ def test_empty_lines_are_no_request(slow, start):
         ("Transfer-Encoding: chunked", b"5c\r\n" + b"a" * 92 + b"\r\n"),
     ],
 )
+@pytest.mark.sampled(1)
 def test_a_body_at_a_trickle(slow, framing, piece):
     refusal = problem_in(dripped(slow, head(f"POST {EVALUATE}", JSON, framing), piece))
     assert refusal["type"] == "/problems/too-slow"
@@ -167,6 +170,7 @@ def cut_readers(slow) -> float:
     return float(counts[0]) if counts else 0.0
 
 
+@pytest.mark.slow
 def test_the_kernel_keeps_nothing_for_who_does_not_read(slow):
     """A connection that is cut is reset: its buffers, up to some megabytes, are not delivered for hours."""
     speeds = ", ".join(str(1000 + number % 4000) for number in range(50_000))

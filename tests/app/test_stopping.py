@@ -99,6 +99,7 @@ def soon(tmp_path):
         yield server
 
 
+@pytest.mark.slow
 def test_a_hung_job_goes_back_into_the_queue(server):
     server.running_job()
     for pid in descendants(server.process.pid):  # now they ignore every signal but one

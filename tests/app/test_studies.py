@@ -221,6 +221,7 @@ def test_local_slopes_of_an_exact_formula(http, twice):
 
 
 @pytest.mark.parametrize("kind", ["morris", "sobol"])
+@pytest.mark.sampled(1)
 def test_global_sensitivities(http, film, kind):
     pytest.importorskip("SALib")
     vary = {**CLEARANCE, "width": {"between": ["17.9 mm", "18.1 mm"]}}

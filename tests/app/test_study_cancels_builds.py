@@ -75,6 +75,7 @@ def design(http, begun_builds):
 
 
 @pytest.mark.parametrize("by", ["study", "job"])
+@pytest.mark.sampled(1)
 def test_the_build_of_a_cancelled_study_is_killed(http, begun_builds, design, by):
     before = processes(begun_builds)
     body = {"design": design["id"], "method": "table", "rows": ROWS, "outputs": ["part.mass"]}

@@ -54,6 +54,7 @@ def read_again(http, study, kind):
 
 
 @pytest.mark.parametrize(("document", "body"), STUDIES, ids=["sample", "confirmed", "optimise"])
+@pytest.mark.sampled(1)
 def test_lost_and_damaged_rows_are_calculated_again(served, http, document, body):
     study = done(http, new_design(http, document), **body)
     whole, paths = content(http, study, "npz"), files(served, study)
@@ -68,6 +69,7 @@ def test_lost_and_damaged_rows_are_calculated_again(served, http, document, body
 
 
 @pytest.mark.parametrize("kind", ["rows", "rows.csv", "rows.xlsx"])
+@pytest.mark.sampled(1)
 def test_every_way_to_read_rows_has_them_calculated_again(served, http, kind):
     study = done(http, new_design(http, TWICE), method="grid", steps=5, vary=LENGTHS, outputs=[OUT])
     before = rows(http, study)
@@ -124,6 +126,7 @@ def test_check_reports_lost_rows_and_the_service_makes_them_again(tmp_path):
 
 @pytest.mark.parametrize("harm", [lambda path: path.unlink(), damage], ids=["lost", "damaged"])
 @pytest.mark.parametrize(("document", "body"), [STUDIES[0], STUDIES[2]], ids=["sample", "optimise"])
+@pytest.mark.sampled(1)
 def test_a_study_that_meets_its_own_lost_rows_calculates_them_again(
     served, http, monkeypatch, document, body, harm
 ):

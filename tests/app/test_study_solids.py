@@ -217,6 +217,7 @@ def test_progress_counts_solids_and_cancelling_stops_between_them(served, http):
     assert again["refused"]["count"] == 0
 
 
+@pytest.mark.slow
 def test_finite_elements_on_the_solid_of_each_row(http):
     """The stiffness of a round bar grows with the fourth power of its diameter."""
     bar = {"id": "bar", "version": 1, "parameters": {"diameter": "= size", "length": "40 mm"}}

@@ -252,6 +252,7 @@ class TestFiles:
         assert with_model.content == answer.content
 
     @pytest.mark.parametrize("kind", ["glb", "png", "dxf"])
+    @pytest.mark.sampled(1)
     def test_other_kinds_are_made_when_asked_for(self, http, design, kind):
         answer = http.get(f"{DESIGNS}/{design['id']}/revisions/1/variants/main_1/model.{kind}", headers=WAIT)
         assert answer.status_code == 200, answer.text

@@ -34,6 +34,7 @@ def single():
     worker.close()
 
 
+@pytest.mark.slow
 def test_a_process_takes_as_many_requests_as_it_may(single):
     ids = [single.run(victims.process_id, limits=USUAL) for _ in range(7)]
     assert [ids.count(pid) for pid in dict.fromkeys(ids)] == [3, 3, 1]
@@ -111,6 +112,7 @@ def test_a_process_killed_while_it_waits_is_replaced(single):
     assert single.run(victims.double, 2) == 4
 
 
+@pytest.mark.slow
 def test_what_cannot_be_sent_is_refused_and_costs_no_process(single):
     pid = single.run(victims.process_id)
     with pytest.raises(Exception, match="pickle"):
@@ -118,6 +120,7 @@ def test_what_cannot_be_sent_is_refused_and_costs_no_process(single):
     assert single.run(victims.process_id) == pid
 
 
+@pytest.mark.slow
 def test_libraries_use_one_thread_each(worker):
     assert worker.run(victims.environment, "OPENBLAS_NUM_THREADS") == "1"
 

@@ -147,6 +147,7 @@ def test_cancelling_kills_the_process(worker, tmp_path):
     assert eventually(lambda: not alive(int(file.read_text())))
 
 
+@pytest.mark.slow
 def test_a_deadline_also_kills_grandchildren(worker, tmp_path):
     file = tmp_path / "pids"
     with pytest.raises(DeadlineExceeded):
@@ -182,6 +183,7 @@ def test_jobs_die_with_their_forkserver(tmp_path):
     worker.close()
 
 
+@pytest.mark.slow
 def test_a_preloaded_package_brings_all_its_modules(worker):
     warm = LocalProcesses(preload=("wsgiref",))
     assert warm.run(victims.loaded, "wsgiref.validate")
@@ -189,6 +191,7 @@ def test_a_preloaded_package_brings_all_its_modules(worker):
     assert not worker.run(victims.loaded, "wsgiref.validate")
 
 
+@pytest.mark.slow
 def test_a_module_that_is_missing_is_imported_by_no_one():
     worker = LocalProcesses(preload=("no.such.module",))
     assert worker.run(victims.double, 2) == 4

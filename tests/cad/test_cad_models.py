@@ -108,6 +108,7 @@ class TestPlainBearing:
     @pytest.mark.parametrize("shell", ["half", "full"])
     @pytest.mark.parametrize("hole", ["0 mm", "3 mm", "5 mm", "5.1 mm", "12 mm"])
     @pytest.mark.parametrize(("groove", "depth"), [("0 mm", "0 mm"), ("5 mm", "0 mm"), ("5 mm", "0.8 mm")])
+    @pytest.mark.sampled(8)
     def test_every_combination_is_the_solid_it_should_be(
         self, shell: str, hole: str, groove: str, depth: str
     ) -> None:

@@ -107,6 +107,7 @@ def solids_among(cls: type[CadModel], sets: int, seed: int) -> int:
 
 
 @pytest.mark.parametrize("cls", CRANKS)
+@pytest.mark.sampled(1)
 def test_property_some_random_cranks(cls: type[CadModel]) -> None:
     assert 2 < solids_among(cls, 30, seed=1) < 30
 
@@ -119,6 +120,7 @@ def test_property_many_random_cranks(cls: type[CadModel]) -> None:
 
 @pytest.mark.parametrize("cls", CRANKS)
 @pytest.mark.parametrize("given", HOSTILE, ids=str)
+@pytest.mark.sampled(9)
 def test_property_hostile_cranks(cls: type[CadModel], given: dict[str, Any]) -> None:
     bad = any(isinstance(v, float) and not (0 <= v < 1e9) for v in given.values())
     assert not (drawn(cls, {"journal_diameter": D, **given}) and bad)

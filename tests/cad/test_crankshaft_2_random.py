@@ -122,6 +122,7 @@ def is_bad(given: dict[str, Any]) -> bool:
 
 
 @pytest.mark.parametrize("given", [*HOSTILE[::6], *HOSTILE_THROWS[::8]], ids=lambda given: str(given)[:60])
+@pytest.mark.sampled(2)
 def test_property_some_hostile_crankshafts(given: dict[str, Any]) -> None:
     assert not (drawn({"journal_diameter": D, "pin_angles": PINS, **given}) and is_bad(given))
 

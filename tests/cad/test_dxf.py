@@ -161,6 +161,7 @@ def test_a_size_is_matched_by_value_and_by_sort() -> None:
         {"inner_diameter": 5.0},
     ],
 )
+@pytest.mark.sampled(2)
 def test_shells_of_all_kinds_and_sizes(parameters: dict[str, float | str]) -> None:
     build = regenerate("plain_bearing", 1, parameters)
     drawing = ezdxf.read(io.StringIO(derive(build.step, "dxf").decode()))

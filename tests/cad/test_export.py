@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from PIL import Image
-from slow_models import LARGE
+from slow_models import BALLS, LARGE, slow_for
 
 from cad.export import DERIVED, MEDIA_TYPES, derive
 from cad.inspect import measure
@@ -19,6 +19,7 @@ SLOW_MODELS = LARGE
 PRINTED = "drawing.pdf"  # typeset of the picture of a drawing
 
 
+@slow_for(BALLS)
 def test_every_kind_has_a_media_type_and_can_be_had(files: dict[str, bytes]) -> None:
     assert set(MEDIA_TYPES) == {"step", *DERIVED}
     for kind in set(DERIVED) - {PRINTED}:

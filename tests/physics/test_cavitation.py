@@ -83,6 +83,7 @@ def borne(y: np.ndarray, feed: Feed) -> LinearFilm:
 
 
 @pytest.mark.parametrize("eps", [0.3, 0.7, 0.9])
+@pytest.mark.sampled(1)
 def test_stiffness_is_the_slope_of_the_force_where_the_film_re_forms(eps: float) -> None:
     """By a displacement that moves the front over many nodes: less would see the steps of the mesh."""
     place, step = eps * np.array([np.cos(0.7), np.sin(0.7)]), 0.02 * (1 - eps)

@@ -99,6 +99,7 @@ def test_analytic_constant_load_is_the_static_film_with_the_same_groove():
     assert film["supply_flow"] == pytest.approx(film["side_flow"], rel=2e-3)
 
 
+@pytest.mark.slow
 def test_property_hole_that_stays_under_the_load_starves_with_its_reason():
     """Every result of the film says why there is none; the rest is answered."""
     turning_load = inputs(4 * np.cos(ANGLE), 4 * np.sin(ANGLE), **PIN)

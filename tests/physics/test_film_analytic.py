@@ -25,6 +25,7 @@ from tests.references.moving_film import mobility, moving_force
 
 
 @pytest.mark.parametrize(("eps", "ratio"), [(0.1, 1.0), (0.5, 0.25), (0.8, 1.0), (0.95, 0.5), (0.99, 2.0)])
+@pytest.mark.sampled(2)
 def test_observed_order(eps: float, ratio: float) -> None:
     """Of load vector and mean pressure error, in which errors cannot cancel, over three halvings."""
     levels = (1, 2, 4, 8, 16)

@@ -78,6 +78,7 @@ def booker_rate(angle: float, e: Array, S: float, w: float) -> Array:
         *(pytest.param(S, 0.5, marks=pytest.mark.slow) for S in (0.5, 5.0, 50.0)),
     ],
 )
+@pytest.mark.sampled(1)
 def test_short_orbit_meets_an_independent_integration(S: float, w: float) -> None:
     """Radau's method of fifth order, cycle after cycle until it repeats."""
     orbit = periodic_orbit(duty(S, w), law(ShortLaw))

@@ -92,6 +92,7 @@ def test_closed_form_has_the_error_it_states(eps: float, error: float) -> None:
 
 
 @pytest.mark.parametrize("state", random_states(10, 0.99, 0.1, 2.0))
+@pytest.mark.sampled(4)
 def test_motion_under_a_load_is_that_whose_film_bears_it(state: Array) -> None:
     eps, ratio, chi = state.tolist()
     by_force = mobility(eps, ratio, chi, 256, 32)

@@ -56,6 +56,7 @@ class TestGap:
 class TestLimits:
     @pytest.mark.parametrize("conserving", [False, True])
     @pytest.mark.parametrize(("eps", "ratio"), [(0.1, 0.5), (0.8, 1.0), (0.99, 0.25)])
+    @pytest.mark.sampled(2)
     def test_property_no_shape_and_no_tilt_are_the_plain_film(self, eps, ratio, conserving):
         """Against an independent mesh of half the circle, extrapolated: `reynolds`."""
         coarse, fine = (static_film(eps, ratio, n, m) for n, m in ((128, 16), (256, 32)))
@@ -179,6 +180,7 @@ class TestLiterature:
 
     @pytest.mark.parametrize("conserving", [False, True])
     @pytest.mark.parametrize("row", rows, ids=lambda row: f"S={row['S']}")
+    @pytest.mark.sampled(3)
     def test_literature_elliptical_bearing(self, row, conserving):
         """Their groups go with c_p = 2 c_b: So of c_b is a quarter of 1/(2 π S), eps and K half and twice."""
         So = 1 / (2 * np.pi * row["S"]) / 4

@@ -159,6 +159,7 @@ def test_a_journal_that_floats_on_its_supply_is_not_called_starved() -> None:
     assert orbit.verdict is not Verdict.STARVED
 
 
+@pytest.mark.slow
 def test_a_load_that_no_film_bears_has_no_least_gap() -> None:
     orbit = constant(1e6, 0.4, Supply((Pocket(np.pi, 0.2, 0.3),), 0.2))
     assert orbit.verdict is Verdict.UNSETTLED

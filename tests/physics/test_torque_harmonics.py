@@ -9,6 +9,7 @@ NONE = np.float64(np.nan)
 
 
 @pytest.mark.parametrize("lines", [1, 2, 5, 24, 60])
+@pytest.mark.sampled(1)
 def test_second_method_swing_against_dense_sampling(lines):
     rng = np.random.default_rng(lines)
     amplitudes = rng.normal(size=(40, lines)) + 1j * rng.normal(size=(40, lines))

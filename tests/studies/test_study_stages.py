@@ -54,6 +54,7 @@ def plain(outcome):
 
 
 @pytest.mark.parametrize("times", [1, pytest.param(3, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_an_interrupted_front_repeats_no_finished_generation(monkeypatch, times):
     monkeypatch.setattr(searching, "pareto_front", partial(pareto_front, effort=SMALL))
     monkeypatch.setattr(searching, "SLICE_SECONDS", 0.2)

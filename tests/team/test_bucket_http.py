@@ -93,6 +93,7 @@ def failed_puts(http):
 
 
 @pytest.mark.parametrize("route", ROUTES)
+@pytest.mark.sampled(2)
 def test_conditions_of_a_file_in_a_bucket(servers, route):
     path = path_of(servers[0], route)
     for http in servers:

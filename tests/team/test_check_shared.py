@@ -63,6 +63,7 @@ def run(settings, *command):
     return CliRunner().invoke(main, command, env=given)
 
 
+@pytest.mark.sampled(2)
 def test_whole_files_are_clean(settings, sha):
     result = run(settings, "check")
     assert (result.exit_code, result.output) == (0, "1 good artifacts, 0.0 MiB; 0 in quarantine\n0 faults\n")
@@ -76,6 +77,7 @@ def damaged(settings, store, sha):
         store._bucket.replace(sha, other)
 
 
+@pytest.mark.sampled(2)
 def test_other_bytes_are_found_and_left_alone(settings, store, sha):
     damaged(settings, store, sha)
     for _ in range(2):
@@ -84,6 +86,7 @@ def test_other_bytes_are_found_and_left_alone(settings, store, sha):
         assert f"artifact {sha}, step of build build: the bytes have another hash" in result.output
 
 
+@pytest.mark.sampled(2)
 def test_a_missing_file_is_found(settings, store, sha):
     store.delete(sha)
     result = run(settings, "check")
@@ -91,6 +94,7 @@ def test_a_missing_file_is_found(settings, store, sha):
     assert "is missing" in result.output
 
 
+@pytest.mark.sampled(2)
 def test_a_file_of_a_running_server_may_lack_its_row(settings, store, sha):
     other = store.put(b"just put")
     result = run(settings, "check")
@@ -100,6 +104,7 @@ def test_a_file_of_a_running_server_may_lack_its_row(settings, store, sha):
         assert f"{other}: no row names it" in result.output
 
 
+@pytest.mark.sampled(2)
 def test_a_backup_has_postgresql_with_its_files_or_says_what_is_to_be_backed_up(settings, sha, tmp_path):
     result = run(settings, "backup", str(tmp_path / "backup.tar"))
     if settings.database_url:
@@ -111,6 +116,7 @@ def test_a_backup_has_postgresql_with_its_files_or_says_what_is_to_be_backed_up(
 
 
 @pytest.mark.parametrize("place", ["bucket"], indirect=True)
+@pytest.mark.sampled(1)
 def test_a_bucket_that_does_not_answer(settings, sha):
     result = run(settings.model_copy(update={"s3_endpoint": "http://127.0.0.1:1"}), "check")
     assert result.exit_code == 2

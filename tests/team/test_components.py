@@ -78,6 +78,7 @@ STARTER = """
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+@pytest.mark.sampled(1)
 def test_what_was_started_dies_with_its_starter(tmp_path, number):
     command = [sys.executable, "-c", dedent(STARTER), str(tmp_path / "log")]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as starter:

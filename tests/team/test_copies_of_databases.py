@@ -55,6 +55,7 @@ def cloned(cluster, original):
         cluster.drop(make_url(one.url).database)
 
 
+@pytest.mark.sampled(1)
 def test_one_database_collects_again_and_again(original, store, monkeypatch):
     sweep = Sweep(original, store)
     for number in range(3):
@@ -63,6 +64,7 @@ def test_one_database_collects_again_and_again(original, store, monkeypatch):
 
 
 @pytest.mark.parametrize("first", [0, 1], ids=["the original first", "the copy first"])
+@pytest.mark.sampled(1)
 def test_a_copy_and_its_original_delete_nothing_more_once_both_have_collected(
     original, store, cloned, monkeypatch, first
 ):
@@ -79,6 +81,7 @@ def test_a_copy_and_its_original_delete_nothing_more_once_both_have_collected(
     both[0].close()
 
 
+@pytest.mark.sampled(1)
 def test_once_the_copy_has_gone_and_the_note_is_deleted_the_original_collects(
     original, store, cloned, monkeypatch
 ):
@@ -104,6 +107,7 @@ def delete_note(store):
 
 
 @pytest.mark.parametrize("dies", ["before the store", "after the store"])
+@pytest.mark.sampled(2)
 def test_a_server_that_dies_between_database_and_store_is_no_copy(original, store, dies, monkeypatch):
     require_only_copy(original, store)
     writing = store.write_note
@@ -131,6 +135,7 @@ def test_a_server_that_dies_between_database_and_store_is_no_copy(original, stor
         ),
     ],
 )
+@pytest.mark.sampled(1)
 def test_a_note_that_nobody_can_read_stops_the_collection(original, store, text):
     require_only_copy(original, store)
     store.write_note(NOTE, text)
@@ -139,6 +144,7 @@ def test_a_note_that_nobody_can_read_stops_the_collection(original, store, text)
     assert json.loads(store.read_note(NOTE))["copied"]
 
 
+@pytest.mark.sampled(1)
 def test_servers_of_one_database_are_no_copies(original, store):
     others = [Database(original.url) for _ in range(2)]
     with ThreadPoolExecutor(3) as pool:
@@ -148,6 +154,7 @@ def test_servers_of_one_database_are_no_copies(original, store):
         database.close()
 
 
+@pytest.mark.sampled(1)
 def test_the_server_says_why_it_keeps_files(original, store, cloned, caplog):
     own, copy = cloned()
     retentions = [Retention(database, store, Settings()) for database in (own, copy)]

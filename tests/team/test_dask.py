@@ -81,6 +81,7 @@ def test_dasks_own_process_never_loads_the_geometry_kernel(engine, network):
     ],
     ids=["signal", "exit", "memory", "exception", "no exception", "no result"],
 )
+@pytest.mark.sampled(2)
 def test_what_fails_fails_alone_and_the_rest_goes_on_in_a_new_process(batch, function, args, error):
     before = batch.run(victims.process_id, limits=USUAL)
     with pytest.raises(error):

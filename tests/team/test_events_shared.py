@@ -132,6 +132,7 @@ def test_a_hint_is_enough(own_postgres):
         assert asyncio.run(scene(here, there, topic)) == ["revision", "current"]
 
 
+@pytest.mark.slow
 def test_a_lost_hint_costs_no_more_than_the_poll(own_postgres):
     async def scene(here, there, topic):
         async with here.events.subscribe(topic) as subscription:
@@ -202,6 +203,7 @@ class TestPayloads:
         ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_many_hints_arrive_though_one_notification_has_no_room_for_them(own_postgres):
     heard, complete = [], threading.Event()
     hints = [f"design:{number:024x}" for number in range(2000)]

@@ -59,6 +59,7 @@ def queued(url, jobs, wake=True):
     return id
 
 
+@pytest.mark.slow
 def test_a_job_that_another_server_runs_ends_the_wait(own_postgres):
     """Neither looks by itself within the test: it takes the hints of the queue and of the end."""
     with (
@@ -70,6 +71,7 @@ def test_a_job_that_another_server_runs_ends_the_wait(own_postgres):
         assert here.get(id).result == there.get(id).result == "/found"
 
 
+@pytest.mark.slow
 def test_a_failure_elsewhere_ends_it_too(own_postgres):
     with server(own_postgres, never, threads=1), server(own_postgres, never, threads=0) as here:
         assert asyncio.run(here.wait(queued(own_postgres, here), PATIENT)) == "failed"
@@ -132,6 +134,7 @@ async def stages(jobs, id, go_on):
 
 
 @pytest.mark.parametrize("poll", [NEVER, 0.3])
+@pytest.mark.sampled(1)
 def test_progress_is_seen_at_another_server(own_postgres, poll):
     """By hints alone, or where no hint of it comes by the poll alone."""
     go_on = threading.Event()

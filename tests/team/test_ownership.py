@@ -55,11 +55,13 @@ def databases(tmp_path):
         one.close()
 
 
+@pytest.mark.sampled(1)
 def test_servers_of_one_database_share_a_store(stores, databases):
     for name in ("one", "two", "three"):
         claim(databases("same"), stores(name))
 
 
+@pytest.mark.sampled(1)
 def test_another_database_is_refused(stores, databases):
     store = stores("one")
     claim(databases("mine"), store)
@@ -69,6 +71,7 @@ def test_another_database_is_refused(stores, databases):
     claim(databases("mine"), store)
 
 
+@pytest.mark.sampled(1)
 def test_the_mark_is_no_file_of_the_store(stores, databases):
     store = stores("one")
     sha = store.put(b"bytes")
@@ -84,6 +87,7 @@ def test_of_databases_that_come_at_once_one_owns_the_store(stores):
     assert owners == {servers[0].claim("another")}
 
 
+@pytest.mark.sampled(1)
 def test_the_command_refuses_in_one_sentence(stores, databases, place, tmp_path):
     claim(databases("mine"), stores("one"))
     environment = {f"CRANKWRIGHT_{name.upper()}": value for name, value in place.items()}

@@ -44,6 +44,7 @@ def silence(request):
 
 
 @pytest.mark.parametrize("request_", REQUESTS.values(), ids=REQUESTS)
+@pytest.mark.sampled(2)
 def test_a_request_ends_and_is_not_sent_again(silence, request_):
     bucket = s3.Bucket("bucket", None, silence.url)
     with pytest.raises(ArtifactsUnreachable, match="does not answer"):

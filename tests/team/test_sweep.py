@@ -64,6 +64,7 @@ def kept(store):
     return {file.sha for file in store.list() if not file.is_discarded}
 
 
+@pytest.mark.sampled(1)
 def test_only_old_files_without_a_row_go(databases, stores, monkeypatch):
     wanted, left = stores[0].put(b"wanted"), stores[0].put(b"left")
     named(databases[0], wanted)
@@ -76,6 +77,7 @@ def test_only_old_files_without_a_row_go(databases, stores, monkeypatch):
     assert stores[0].read(wanted) == b"wanted"
 
 
+@pytest.mark.sampled(1)
 def test_one_server_sweeps_at_a_time(databases, stores, monkeypatch):
     stores[0].put(b"left")
     sweep = Sweep(databases[0], stores[0])
@@ -85,6 +87,7 @@ def test_one_server_sweeps_at_a_time(databases, stores, monkeypatch):
     assert swept_later(sweep, monkeypatch)
 
 
+@pytest.mark.sampled(1)
 def test_a_file_that_is_put_while_another_server_sweeps_is_not_lost(databases, stores, monkeypatch):
     """The put ends before its old file is deleted, and the row is written after."""
     sha = stores[1].put(b"wanted again")

@@ -120,6 +120,7 @@ def test_a_restore_never_overwrites(run, tmp_path):
     assert "not empty" in done.output
 
 
+@pytest.mark.slow
 def test_a_damaged_archive_restores_nothing(run, cluster, tmp_path):
     archive = tmp_path / "backup.tar"
     assert run("backup", archive).exit_code == 0

@@ -201,6 +201,7 @@ class TestClaims:
         database.close()
 
     @pytest.mark.parametrize("count", [90, pytest.param(900, marks=pytest.mark.slow)])
+    @pytest.mark.slow
     def test_four_claimers_end_each_job_once(self, database, count):
         def queue(session):
             for number in range(count):
@@ -231,6 +232,7 @@ class TestClaims:
         assert not database.write(lambda session: repository.end(session, late, "done", []))
         assert database.write(lambda session: repository.end(session, again, "done", []))
 
+    @pytest.mark.slow
     def test_an_owner_gives_back_its_own_jobs_alone(self, database):
         for _ in range(2):
             database.write(lambda session: repository.add(session, "k", {}, None, None))

@@ -37,8 +37,8 @@ def kinds(paths):
 
 @pytest.fixture
 def some(kinds):
-    """The list of templates and a design; with the template of the test of plots nearly every script."""
-    return [kinds[0], kinds[2]]
+    """A design, whose page has nearly every script."""
+    return [kinds[2]]
 
 
 SCROLL = """async () => {
@@ -61,6 +61,7 @@ def seen_whole(watched, path):
 
 
 @pytest.mark.usefixtures("plotted")
+@pytest.mark.slow
 def test_a_page_whose_plots_are_drawn_does_neither(watched, kinds):
     """As the next test, for one page of plots; in the slow lane that draws those of all pages."""
     seen_whole(watched, kinds[5])
@@ -78,13 +79,13 @@ def test_no_page_asks_an_outside_address_fails_or_breaks_the_policy(watched, req
 
 
 @pytest.mark.usefixtures("plotted")
-@pytest.mark.parametrize("all_or_one", ["kinds", pytest.param("paths", marks=pytest.mark.slow)])
-def test_no_page_is_wider_than_a_narrow_screen(browser, watched, http, request, all_or_one):
+@pytest.mark.parametrize("all_or_one", ["some", pytest.param("paths", marks=pytest.mark.slow)])
+def test_no_page_is_wider_than_a_narrow_screen(browser, watched, http, kinds, request, all_or_one):
     paths = request.getfixturevalue(all_or_one)
     watched.page.set_viewport_size(NARROW)
     document = {"name": "unbroken" * 20, "parameters": {"k": "1"}}
     named = http.post("/api/v1/designs", json=document).json()["id"]
-    reports = [f"/api/v1/designs/{id}/report.html" for id in (paths[2].rpartition("/")[2], named)]
+    reports = [f"/api/v1/designs/{id}/report.html" for id in (kinds[2].rpartition("/")[2], named)]
     for path in [*paths, f"/designs/{named}", f"/designs/{named}/revisions/1", *reports]:
         watched.open(path, wait_until="load")
         assert watched.page.evaluate("document.documentElement.scrollWidth") <= NARROW["width"], path

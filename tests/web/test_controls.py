@@ -35,6 +35,7 @@ def save(page, revision):
     expect(page.locator(".page-head")).to_contain_text(f"revision {revision}", timeout=PATIENCE)
 
 
+@pytest.mark.slow
 def test_parameters_called_like_parts_of_a_form_are_previewed_and_saved(watched, http, awkward):
     page = watched.page
     watched.open(awkward)

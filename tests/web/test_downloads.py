@@ -4,6 +4,7 @@ import json
 import re
 from pathlib import Path
 
+import pytest
 from patience import patient, until
 from playwright.sync_api import expect
 from serving import API
@@ -31,6 +32,7 @@ def link(page, kind):
     return page.get_by_role("link", name=kind, exact=True)
 
 
+@pytest.mark.slow
 def test_a_drawing_that_is_not_made_yet_is_waited_for(watched, http):
     page = watched.page
     page.goto(f"{watched.url}/designs/{design(http, 'Käfig 2')}")

@@ -172,6 +172,7 @@ def test_analyses_and_iterations_are_added_changed_and_removed_without_json(watc
         {"declare": "iteration"},
     ],
 )
+@pytest.mark.sampled(3)
 def test_a_form_that_is_wrong_says_so_and_saves_nothing(http, throw, typed):
     answer = http.post(f"{throw}/blocks", data={"revision": "1", **typed})
     assert answer.status_code == 422
@@ -215,6 +216,7 @@ def test_a_refused_analysis_keeps_what_was_typed_with_the_fault_beside_it(watche
         ({"add": "parameter", "name": "gap", "value": "3 parsec kg"}, "value"),
     ],
 )
+@pytest.mark.sampled(2)
 def test_a_refused_part_keeps_what_was_typed(http, throw, typed, field):
     answer = http.post(f"{throw}/blocks", data={"revision": "1", **typed})
     assert answer.status_code == 422

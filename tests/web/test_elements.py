@@ -167,6 +167,7 @@ def test_a_job_that_is_cancelled_says_so(watched):
 
 
 @pytest.mark.usefixtures("plotted")
+@pytest.mark.slow
 def test_the_view_has_room_about_the_part(watched):
     """WebGL drops what lies outside of the ranges: a flat face at their end was full of holes."""
     watched.open(PAGE)

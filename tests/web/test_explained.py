@@ -59,6 +59,7 @@ def test_the_table_of_sensitivities_shows_slopes_and_what_helps(watched, http, s
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_the_table_of_sensitivities_in_american_units_on_a_narrow_page(watched, shell):
     page = watched.page
     page.set_viewport_size({"width": 390, "height": 800})

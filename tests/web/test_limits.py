@@ -2,6 +2,7 @@
 
 import re
 
+import pytest
 from browsing import from_example
 from playwright.sync_api import expect
 from serving import API
@@ -41,6 +42,7 @@ def test_the_rows_are_named_in_words(http):
     assert '<option value="0.25 um">N4, Ra 0.2 um</option>' in page
 
 
+@pytest.mark.slow
 def test_a_chosen_row_is_judged_as_it_is_chosen(watched):
     page = watched.page
     watched.open(FILM)

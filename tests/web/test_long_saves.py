@@ -44,6 +44,7 @@ def idle(served):
     return until(lambda: served.app.state.services.calculations.running == 0)
 
 
+@pytest.mark.slow
 def test_a_slow_save_says_how_far_it_is_and_shows_its_results(watched, place, http, alarm):
     watched.open(place)
     progress, duration = parts(watched)

@@ -2,6 +2,7 @@
 
 import re
 
+import pytest
 from browsing import from_example, settled
 from playwright.sync_api import expect
 from serving import API
@@ -65,6 +66,7 @@ def test_a_further_step_begins_empty_and_says_what_is_missing(http):
     assert http.get(f"{API}{place}").json()["steps"]["journal_friction"]["inputs"]["bearing_width"] == "18 mm"
 
 
+@pytest.mark.slow
 def test_a_new_step_takes_limits_and_rows_of_the_library(watched, http):
     page = watched.page
     watched.open("/designs/new?design_name=limited&template=oil_film/2")

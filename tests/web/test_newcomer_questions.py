@@ -28,6 +28,7 @@ def design(page, http):
     return http.get(f"{API}/designs/{page.url.rpartition('/')[2]}").json()
 
 
+@pytest.mark.slow
 def test_which_clearance_gives_two_micrometres_at_7000_rpm(bearing, watched, http):
     page, place = bearing, bearing.url
     page.get_by_role("link", name="Solve for a wanted output").click()

@@ -60,6 +60,7 @@ def test_a_design_is_tagged_found_and_archived_from_the_home_page(watched, http,
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_a_design_is_renamed_and_found_by_its_new_name(watched, http, design, word):
     page = watched.page
     watched.open("/")

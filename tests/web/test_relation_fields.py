@@ -77,6 +77,7 @@ def test_names_of_the_same_kind_come_first_and_a_click_takes_one(opened):
     expect(load).to_be_focused()
 
 
+@pytest.mark.slow
 def test_no_list_appears_where_no_name_may_stand(opened):
     texts = {"25 kN": -1, "= 48 m": -1, "= 4": -1, "= scale ": -1, "= sc": 2, "= 2 * f": 6, "= max(": 6}
     script = "async (text) => (await import('/static/names.js')).startOfName(text, text.length)"

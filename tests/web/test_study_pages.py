@@ -66,6 +66,7 @@ def test_each_fault_stands_beside_its_fields(http, bearing, typed, legend, words
     assert words in fieldset(answer.text, legend).partition("data-fault>")[2]
 
 
+@pytest.mark.slow
 def test_the_levels_of_a_search_show_the_output_that_a_criterion_judges(http, bearing):
     body = {"design": bearing.rpartition("/")[2], "method": "optimise", "minimise": ["film.power_loss"]}
     body |= {"vary": {CLEARANCE: {"between": ["30 um", "90 um"]}}, "hold": ["thick_enough"]}
@@ -129,6 +130,7 @@ def test_the_form_studies_the_variant_that_is_chosen(http, bearing):
 
 
 @pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
+@pytest.mark.slow
 def test_many_outputs_are_grouped_by_step_and_narrowed_by_words(watched, bearing):
     page = watched.page
     watched.open(f"{bearing}/studies/new")

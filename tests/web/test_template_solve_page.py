@@ -111,6 +111,7 @@ def test_a_jump_is_shown_in_american_units():
     assert (jump.after.value, jump.after.unit) == (pytest.approx(1), "thou")
 
 
+@pytest.mark.slow
 def test_by_keyboard_in_the_dark_on_a_narrow_page(watched):
     page = watched.page
     page.emulate_media(color_scheme="dark")

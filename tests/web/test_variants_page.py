@@ -69,6 +69,7 @@ def upload(page, file):
     page.get_by_label("Table from a file").set_input_files(file)
 
 
+@pytest.mark.slow
 def test_nine_bearings_of_an_engine_are_one_design_made_from_a_spreadsheet(watched, http, shell):
     page = watched.page
     watched.open(shell)

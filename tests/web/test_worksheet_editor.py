@@ -57,6 +57,7 @@ def test_each_line_stands_on_paper_beside_its_text(watched, http):
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_the_letters_stand_where_those_of_the_textarea_are(watched, http):
     for width in (1440, 390):
         watched.page.set_viewport_size({"width": width, "height": 900})
@@ -70,6 +71,7 @@ def test_the_letters_stand_where_those_of_the_textarea_are(watched, http):
         assert heights[0] == heights[1]
 
 
+@pytest.mark.slow
 def test_names_units_and_keywords_are_completed_by_keyboard_and_undone(watched, http):
     area = opened(watched, stored(http, "completed"))
     page = watched.page
@@ -118,6 +120,7 @@ def test_a_fault_is_explained_under_its_line_and_sound_lines_stay(watched, http)
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_what_is_typed_survives_a_reload_and_can_be_discarded(watched, http):
     place = stored(http, "drafted")
     area = opened(watched, place)
@@ -132,6 +135,7 @@ def test_what_is_typed_survives_a_reload_and_can_be_discarded(watched, http):
 
 
 @pytest.mark.parametrize("choice", ["Keep mine", "Take theirs"])
+@pytest.mark.sampled(1)
 def test_somebody_elses_text_is_shown_and_nothing_is_lost(watched, http, choice):
     id = f"conflict_{choice[:4].strip().lower()}"
     area = opened(watched, stored(http, id))

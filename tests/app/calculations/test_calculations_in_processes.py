@@ -86,6 +86,7 @@ PADDING = {"value": [1.0] * 200_000, "unit": "kN"}
         [PADDING],
     ],
 )
+@pytest.mark.sampled(4)
 def test_a_large_body_is_refused_as_a_small_one(http, body, operation):
     large = faults(http.post(f"{FILM_PLACE}/{operation}", json=body))
     small = _with_short_lists(body)
@@ -166,6 +167,7 @@ def test_a_step_that_is_refused_or_crashes_says_so(http):
     problem(http.post(f"{API}/designs", json=wrong), 422, "crashed")
 
 
+@pytest.mark.slow
 def test_a_preview_that_nobody_waits_for_ends(http, log):
     place = f"{API}/designs/{http.post(f'{API}/designs', json=design('12 ms')).json()['id']}"
     (process,) = begun(log)

@@ -66,6 +66,7 @@ class TestThrowsApart:
 
 
 class TestOneThrow:
+    @pytest.mark.slow
     def test_rigid_motions_meet_no_resistance(self) -> None:
         force = one().stiffness @ rigid_motions(one())
         scale = np.abs(one().stiffness) @ np.abs(rigid_motions(one()))

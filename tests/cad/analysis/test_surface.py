@@ -117,6 +117,7 @@ def test_an_image_moves_as_the_other_half_does(load: Kind, mirrors: tuple[str, .
         )  # a slope
 
 
+@pytest.mark.slow
 def test_a_half_with_its_image_is_the_mirrored_mesh() -> None:
     """The same elements on both sides: displacements to rounding; what is recovered, off the plane."""
     solid = read_solid(step_of(Workplane().rect(40, 30).extrude(30)), Shaft(0.0, 30.0), ("y",))

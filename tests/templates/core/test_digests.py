@@ -157,6 +157,7 @@ BUILT_IN = [*chain(find([Path(templates.__file__).parent], Template), models())]
 
 @pytest.mark.parametrize("count", [2, pytest.param(8, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("cls", BUILT_IN, ids=lambda cls: f"{cls.id}-{cls.version}")
+@pytest.mark.sampled(12)
 def test_property_every_token_of_a_released_file_counts(cls, count):
     """Names, attributes, numbers, texts and operators, changed one at a time at places drawn by lot."""
     tree = ast.parse(Path(release_file(cls).parent, f"{cls.__module__.rpartition('.')[2]}.py").read_text())

@@ -36,6 +36,7 @@ class _Noisy:
             pass
 
 
+@pytest.mark.slow
 def test_threads_that_parse_at_once_all_get_their_tree(eager_switches):
     """Without the lock, four threads met the fault of CPython 3.11 in about one of 30 trees."""
     source = inspect.getsource(ast)

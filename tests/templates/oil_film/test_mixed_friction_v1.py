@@ -131,6 +131,7 @@ class TestStribeck:
 
     @pytest.mark.parametrize("level", LEVELS)
     @pytest.mark.parametrize("film", [None, "0.3 um", "2 um"])
+    @pytest.mark.sampled(2)
     def test_analytic_transition_speed_has_its_film(self, level, film):
         results = outputs({"transition_film": film}, level=level)
         at = outputs(

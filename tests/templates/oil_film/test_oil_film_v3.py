@@ -23,6 +23,7 @@ def values(raw, *names, **options):
 
 class TestPlainBearing:
     @pytest.mark.parametrize("level", OilFilm.levels)
+    @pytest.mark.sampled(2)
     def test_property_plain_and_aligned_is_version_2(self, level):
         """All that version 2 answers, at random loads and widths, to rounding."""
         n = 4 if level in ("reynolds", "mass_conserving") else 500

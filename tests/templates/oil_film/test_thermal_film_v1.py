@@ -101,6 +101,7 @@ class TestAnswers:
             ({"speed": "6000 rpm"}, "greatest_film_temperature", True),
         ],
     )
+    @pytest.mark.sampled(2)
     def test_property_changes_go_where_they_should(self, example, change, name, rises):
         assert (outputs(change)[name] > example[name]) == rises
 

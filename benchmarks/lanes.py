@@ -1,0 +1,66 @@
+"""Processor time of tests, by file and by test: where the time of the quick suite goes.
+
+Run with: python -m benchmarks.lanes [files, folders and options of pytest, such as tests/physics -n 2]
+
+It is a plugin of pytest: before and after each test it reads the processor time of the worker, of its living
+descendants and of the children that it has waited for. Unlike durations it hardly depends on what else the
+machine does. A process that outlives its parent is left out, and so are imports and the collection, which each
+worker does.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from collections import defaultdict
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from benchmarks.processor_time import used
+
+FILE = "CRANKWRIGHT_TEST_COSTS"  # names the file to which workers append
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
+    """Append the processor time of a test with its fixtures [s]."""
+    before = used(os.getpid())
+    yield
+    cost = used(os.getpid()) - before
+    with open(os.environ[FILE], "a", encoding="utf-8") as costs:
+        costs.write(f"{cost:.2f}\t{item.nodeid.partition('@')[0]!r}\n")
+
+
+def main(arguments: list[str]) -> int:
+    """Run pytest and print what its tests take, the longest files first."""
+    with tempfile.TemporaryDirectory() as folder:
+        costs = Path(folder, "costs")
+        costs.touch()
+        command = [sys.executable, "-m", "pytest", "-p", "benchmarks.lanes", "-q", *arguments]
+        done = subprocess.run(command, env={**os.environ, FILE: str(costs)}, check=False)
+        report(costs.read_text(encoding="utf-8").splitlines())
+    return done.returncode
+
+
+def report(lines: list[str]) -> None:
+    """Print the sum of each file, its tests of half a second or more, and the sum of all [s]."""
+    files: dict[str, list[tuple[float, str]]] = defaultdict(list)
+    for line in lines:
+        cost, _, name = line.partition("\t")
+        file, _, test = name.strip("'\"").partition("::")
+        files[file].append((float(cost), test))
+    sums = {file: sum(cost for cost, _ in tests) for file, tests in files.items()}
+    for file in sorted(files, key=sums.__getitem__, reverse=True):
+        print(f"{sums[file]:8.1f} s  {file} ({len(files[file])})")
+        for cost, test in sorted(files[file], reverse=True):
+            if cost >= 0.5:
+                print(f"          {cost:8.1f} s  {test}")
+    print(f"{sum(sums.values()):8.1f} s  all tests")
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
