@@ -4,8 +4,8 @@ Run with: python -m benchmarks.lanes [files, folders and options of pytest, such
 
 It is a plugin of pytest: before and after each test it reads the processor time of the worker, of its living
 descendants and of the children that it has waited for. Unlike durations it hardly depends on what else the
-machine does. A process that outlives its parent is left out, and so are imports and the collection, which each
-worker does.
+machine does. A process that outlives its parent is left out, and so are imports and the collection, which
+each worker does.
 """
 
 from __future__ import annotations
