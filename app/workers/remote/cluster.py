@@ -176,6 +176,8 @@ class Cluster:
             except queue.Empty:
                 continue
             if message is None:
+                if client.status != "running" or future.status in ("lost", "cancelled"):
+                    continue  # it has not ended: nobody is left who could bring its result
                 return
             if on_progress is not None:
                 on_progress(*message)
