@@ -169,8 +169,8 @@ class AssemblyModel(BroughtModel):
             return
         if self.brought.base:
             cls = base_of(self.brought.base)
-            usual = {part.name for part in cls.from_quantities(cls.example).build()}
-            unknown -= usual
+            for part in cls.from_quantities(cls.example).build():
+                unknown -= {part.name, *names_at(part.name, len(part.places))}
         for name in sorted(unknown)[:1]:
             near = nearest(name, list(known))
             meant = f"Did you mean {', '.join(near)}? " if near else ""

@@ -100,7 +100,7 @@ def check_clearances(model: CadModel, between: Sequence[Clearance]) -> None:
     wrong = [one for one in between if _interferes(model, one)]
     if wrong:
         listed = "; ".join(map(str, wrong[:MOST_NAMED]))
-        more = "; and more, which are not compared" if len(wrong) > MOST_NAMED else ""
+        more = "; and at least one more" if len(wrong) > MOST_NAMED else ""
         raise GeometryError("interference", f"parts of {model.id} interfere: {listed}{more}", model.inputs)
 
 

@@ -209,7 +209,7 @@ def test_many_interferences_are_named_and_the_rest_is_not_compared(monkeypatch):
     shape = two_components(many(8))
     said = []
     with pytest.raises(
-        GeometryError, match=r"one:part0 and two:part0 overlap by 1 mm³; .*; and more"
+        GeometryError, match=r"one:part0 and two:part0 overlap by 1 mm³; .*; and at least one more"
     ) as refused:
         regenerate_shape(shape, as_text(shape), report=lambda done, what: said.append((done, what)))
     assert refused.value.code == "interference"

@@ -30,6 +30,7 @@ _GLANCE = 0.05  # how often a waiting thread looks whether its job was cancelled
 _LOOK = 0.25  # time between two looks at the places of all machines [s]
 _PATIENCE = 10.0  # how long the scheduler may take to answer a look [s]
 _PAUSE = 1.0  # before the next [s]
+_TURNS = 5  # of a task whose machine goes before it comes there
 _FETCH = 120.0  # how long a result may take on its way [s]
 
 Messages = queue.SimpleQueue[tuple[float, str] | None]
@@ -95,7 +96,7 @@ class Cluster:
             The machine or the scheduler has gone while it ran.
         """
         cancelled = cancelled or threading.Event()
-        while True:
+        for _ in range(_TURNS):
             with self._place(lane, preferred, cancelled) as (client, machine):
                 try:
                     return self._run_there(client, lane, order, machine, on_progress, cancelled), machine
@@ -111,6 +112,7 @@ class Cluster:
                     if client.status == "running":
                         raise
                     raise WorkerLost("the scheduler has gone") from error
+        raise WorkerLost(f"{_TURNS} machines have gone before it came there")
 
     def close(self) -> None:
         """Leave the scheduler; what still runs is killed there."""
@@ -253,14 +255,14 @@ class Cluster:
             if (scheduler := client.scheduler) is None:
                 raise ConnectionError("the connection is lost")
             keys = list(self._listeners)
-            seen = await client.run_on_scheduler(places, labels=self._labels, own=self._name)
-            return seen, await scheduler.get_task_status(keys=keys) if keys else {}
+            states = await scheduler.get_task_status(keys=keys) if keys else {}
+            return await client.run_on_scheduler(places, labels=self._labels, own=self._name), states
 
         seen, states = client.sync(look, callback_timeout=_PATIENCE)
-        self._strays.note(states, time.monotonic())
         with self._changed:
             self._places = seen
             self._changed.notify_all()
+        self._strays.note(states, time.monotonic())  # last: who looks for another place sees the new ones
 
 
 def _result(future: Future[Outcome]) -> Outcome:

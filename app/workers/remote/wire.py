@@ -53,8 +53,8 @@ class Places:
 def places(labels: Mapping[Lane, str], own: str, dask_scheduler: Scheduler) -> dict[Lane, dict[str, Places]]:
     """The places of each lane by the address of the machine; runs in the scheduler.
 
-    A machine that says farewell has none, as it takes no more tasks. `own` is part of the keys of tasks of
-    who asks, and counts them itself without delay.
+    A machine that is paused or says farewell has none: it takes no more tasks. `own` is part of the
+    keys of tasks of who asks, and counts them itself without delay.
     """
     return {
         lane: {
