@@ -116,12 +116,12 @@ def asked(inputs: Inputs, matrix: Array) -> tuple[dict[str, float] | None, float
     raw, names = {**ElasticFilm.example, **inputs, **given(matrix)}, [*NAMES.values(), "mesh_error"]
     begin = process_time()
     try:
-        found = evaluate(ElasticFilm, raw, outputs=names, level="elastic").outputs
+        outputs = evaluate(ElasticFilm, raw, outputs=names, level="elastic").outputs
     except InvalidInputs:
         return None, process_time() - begin
     seconds = process_time() - begin
-    values = {key: float(np.asarray(found[name].value)) for key, name in NAMES.items()}
-    values["mesh_error"] = float(np.asarray(found["mesh_error"].value))
+    values = {key: float(np.asarray(outputs[name].value)) for key, name in NAMES.items()}
+    values["mesh_error"] = float(np.asarray(outputs["mesh_error"].value))
     film = ElasticFilm.from_quantities(raw)
     clearance = float(film.elasticity.clearance) * 1e6
     values["least"] /= clearance
@@ -148,16 +148,16 @@ def second(So: float, film: Film) -> tuple[dict[str, float], float, Film]:
 
     A third mesh follows where the change between two says so.
     """
-    places, found = places_for(film), []
+    places, solved = places_for(film), []
     unsure = np.inf
     for size in SIZES:
         film = balanced(carried(film, places.mesh(film.ratio, *size)), So)
-        found.append(measured(film))
-        if len(found) > 1:
-            unsure = max(abs(found[-1][name] / found[-2][name] - 1) / 3 for name in ("least", "P_max"))
+        solved.append(measured(film))
+        if len(solved) > 1:
+            unsure = max(abs(solved[-1][name] / solved[-2][name] - 1) / 3 for name in ("least", "P_max"))
             if unsure < SURE:
                 break
-    coarse, fine = found[-2:]
+    coarse, fine = solved[-2:]
     return {name: fine[name] + (fine[name] - coarse[name]) / 3 for name in fine}, unsure, film
 
 
@@ -176,10 +176,10 @@ def begun(So: float, ratio: float, softness: BoreSoftness, to_load: float) -> Fi
 
 def errors(values: dict[str, float], truth: dict[str, float]) -> dict[str, float]:
     """Of level elastic: relative, of the attitude in degrees."""
-    found = {name: values[name] / truth[name] - 1 for name in NAMES if name != "attitude"}
+    wrong = {name: values[name] / truth[name] - 1 for name in NAMES if name != "attitude"}
     off = values["attitude"] - np.degrees(truth["attitude"])
-    found["attitude"] = float((off + 180) % 360 - 180)
-    return {name: float(f"{value:.3g}") for name, value in found.items()}
+    wrong["attitude"] = float((off + 180) % 360 - 180)
+    return {name: float(f"{value:.3g}") for name, value in wrong.items()}
 
 
 def compared(inputs: Inputs, matrix: Array, wide: tuple[Array, int, int]) -> Line:

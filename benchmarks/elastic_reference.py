@@ -6,9 +6,9 @@ mean, and seeks the turn of the bore by secants around a balance. Here is the we
 .. math:: \int \frac{H^3}{\bar\eta}\,\nabla P\cdot\nabla w - 6 H\,\partial_\phi w = 0 \text{ where } P > 0,
     \quad \ge 0 \text{ elsewhere}
 
-on bilinear elements with four points of Gauss each, at which the gap has its own value; pressure,
-eccentricity and turn are found together by one Newton's method. Any number of modes may give way. Nodes lie
-where the pressure rises and bends. The search begins at the other method's film.
+on bilinear elements with four points of Gauss each, at which the gap has its own value; one Newton
+iteration solves for pressure, eccentricity and turn together. Any number of modes may give way. Nodes lie
+where the pressure rises and bends. The iteration begins at the other method's film.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _GAUSS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3)
 
 
 class Lost(ArithmeticError):
-    """No film was found."""
+    """No film converges."""
 
 
 @dataclass(frozen=True)
@@ -109,14 +109,14 @@ def elements(phi: Array, zeta: Array) -> Elements:
             rows.append(point)
             columns.append((i + k) * zeta.size + j + m)
             sign_s, sign_t = 2 * k - 1, 2 * m - 1
-            for listed, found in zip(
+            for listed, value in zip(
                 values, (by_s * by_t, sign_s * by_t / dphi, by_s * sign_t / dzeta), strict=True
             ):
-                listed.append(found)
+                listed.append(value)
     places, shape = (np.concatenate(rows), np.concatenate(columns)), (i.size, phi.size * zeta.size)
-    value, around, across = (coo_array((np.concatenate(v), places), shape=shape).tocsc() for v in values)
+    at_points, around, across = (coo_array((np.concatenate(v), places), shape=shape).tocsc() for v in values)
     at_phi, at_zeta = phi[i] + s * dphi, zeta[j] + t * dzeta
-    return Elements(phi, zeta, value, around, across, dphi * dzeta / 4, at_phi, at_zeta)
+    return Elements(phi, zeta, at_points, around, across, dphi * dzeta / 4, at_phi, at_zeta)
 
 
 @dataclass(frozen=True)
@@ -250,10 +250,10 @@ def _step(film: Film, H: Array, inside: Mask, So: float) -> tuple[Array, float, 
         taken @ plain,
         [So * np.cos(angle) - force[0] - along @ plain, -So * np.sin(angle) - force[1] - ahead @ plain],
     ])  # fmt: skip
-    found = np.linalg.solve(left, wanted)
+    steps = np.linalg.solve(left, wanted)
     dP = np.zeros(film.P.size)
-    dP[free] = plain - reply @ found
-    return dP, float(found[M]), float(found[M + 1])
+    dP[free] = plain - reply @ steps
+    return dP, float(steps[M]), float(steps[M + 1])
 
 
 @dataclass(frozen=True)

@@ -171,12 +171,14 @@ class AssemblyModel(BroughtModel):
             cls = base_of(self.brought.base)
             for part in cls.from_quantities(cls.example).build():
                 unknown -= {part.name, *names_at(part.name, len(part.places))}
-        for name in sorted(unknown)[:1]:
-            near = nearest(name, list(known))
-            meant = f"Did you mean {', '.join(near)}? " if near else ""
-            there = listed([part.name for part in parts])
-            wrong = f"{wanted[name]}: may_overlap names {plain(name)!r}, which is no part"
-            raise GeometryError("may_overlap", f"{wrong}. {meant}There are {there}")
+        if not unknown:
+            return
+        name = min(unknown)
+        near = nearest(name, list(known))
+        meant = f"Did you mean {', '.join(near)}? " if near else ""
+        there = listed([part.name for part in parts])
+        wrong = f"{wanted[name]}: may_overlap names {plain(name)!r}, which is no part"
+        raise GeometryError("may_overlap", f"{wrong}. {meant}There are {there}")
 
     def _built(self) -> Iterator[Part]:
         from cad.placing import frame_of

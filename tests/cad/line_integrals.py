@@ -59,7 +59,7 @@ def _curves(wire: Shape, face: Face) -> Iterator[tuple[BRepAdaptor_Curve2d, bool
 
 
 def _along(curve: BRepAdaptor_Curve2d, potential: Potential) -> float:
-    """∫ G dv along a curve, by Gauss' rule on each of its smooth pieces."""
+    """∫ G dv along a curve [mm³], by Gauss' rule on each of its smooth pieces."""
     count = curve.NbIntervals(GeomAbs_Shape.GeomAbs_CN)
     knots = TColStd_Array1OfReal(1, count + 1)
     curve.Intervals(knots, GeomAbs_Shape.GeomAbs_CN)
@@ -90,7 +90,10 @@ def _potential(surface: BRepAdaptor_Surface) -> Potential:
 
 
 def _of_cone(position, radius: float, slope: float) -> Potential:
-    """Of o + (R + v sin a) e(u) + v cos a k with e(u) = i cos u + j sin u; a cylinder has a = 0."""
+    """Of o + (R + v sin a) e(u) + v cos a k with e(u) = i cos u + j sin u.
+
+    R [mm], a [rad]; a cylinder has a = 0.
+    """
     origin, right, up, axis = _frame(position)
     hand = float(np.sign(np.cross(right, up) @ axis))
     x, y, z = float(origin @ right), float(origin @ up), float(origin @ axis)

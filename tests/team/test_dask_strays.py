@@ -7,14 +7,12 @@ from types import SimpleNamespace
 import pytest
 import victims
 from dask_processes import Network
+from distributed import Future
 from patience import patient, until
 
 from app.workers.base import Limits
 from app.workers.errors import WorkerLost
-
-distributed = pytest.importorskip("distributed", reason="Dask is not installed")
-strays = pytest.importorskip("app.workers.remote.strays")
-wire = pytest.importorskip("app.workers.remote.wire")
+from app.workers.remote import strays, wire
 
 LONG = Limits(deadline=patient(100), memory_mb=512)
 GONE = "tcp://127.0.0.1:9"  # nobody listens there
@@ -60,9 +58,7 @@ def test_a_function_for_a_machine_that_has_gone_runs_on_another(engine, monkeypa
 @pytest.mark.slow
 def test_a_function_that_never_comes_to_the_scheduler_is_lost(engine, monkeypatch):
     monkeypatch.setattr(strays, "_ON_ITS_WAY", 1.0)
-    monkeypatch.setattr(
-        engine._cluster, "_submit", lambda client, lane, key, *_: distributed.Future(key, client)
-    )
+    monkeypatch.setattr(engine._cluster, "_submit", lambda client, lane, key, *_: Future(key, client))
     with pytest.raises(WorkerLost, match="the scheduler does not have it"):
         engine.run(victims.process_id, limits=LONG)
 

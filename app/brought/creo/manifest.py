@@ -53,11 +53,6 @@ class Driven(Bounded):
         """
         if (self.dimension is None) == (self.parameter is None):
             raise ValueError("give either the dimension or the parameter of Creo")
-        if self.dimension in ("d", "D"):
-            raise ValueError(
-                f"CREOSON takes the name {self.dimension!r} for d and a number that is missing: give the "
-                "dimension's number, such as d12, or another name"
-            )
         if not self.low <= self.value <= self.high:
             raise ValueError(f"the value {self.value:g} is not from {self.low:g} to {self.high:g}")
         if self.check and self.unit not in MM:

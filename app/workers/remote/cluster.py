@@ -10,7 +10,7 @@ import uuid
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from concurrent.futures import CancelledError
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 from distributed import Future, KilledWorker, Security
 
@@ -30,7 +30,7 @@ _GLANCE = 0.05  # how often a waiting thread looks whether its job was cancelled
 _LOOK = 0.25  # time between two looks at the places of all machines [s]
 _PATIENCE = 10.0  # how long the scheduler may take to answer a look [s]
 _PAUSE = 1.0  # before the next [s]
-_TURNS = 5  # of a task whose machine goes before it comes there
+_TURNS = 5  # machines to which an order is sent, if each goes before it comes there
 _FETCH = 120.0  # how long a result may take on its way [s]
 
 Messages = queue.SimpleQueue[tuple[float, str] | None]
@@ -93,26 +93,36 @@ class Cluster:
         JobCancelled
             Somebody has cancelled it.
         WorkerLost
-            The machine or the scheduler has gone while it ran.
+            The machine or the scheduler has gone while it ran, or several machines before it came there.
         """
         cancelled = cancelled or threading.Event()
         for _ in range(_TURNS):
-            with self._place(lane, preferred, cancelled) as (client, machine):
-                try:
-                    return self._run_there(client, lane, order, machine, on_progress, cancelled), machine
-                except JobCancelled:
+            with suppress(NeverBegun):
+                return self._run_once(lane, order, preferred, on_progress, cancelled)
+        raise WorkerLost(f"{_TURNS} machines have gone, each before the work came there")
+
+    def _run_once(
+        self,
+        lane: Lane,
+        order: Order,
+        preferred: str | None,
+        on_progress: Reporter | None,
+        cancelled: threading.Event,
+    ) -> tuple[Outcome, str]:
+        """Run an order on one machine; raises NeverBegun if it has gone before the order came there."""
+        with self._place(lane, preferred, cancelled) as (client, machine):
+            try:
+                return self._run_there(client, lane, order, machine, on_progress, cancelled), machine
+            except (JobCancelled, NeverBegun):
+                raise
+            except Exception as error:
+                if client.status == "running" and not isinstance(error, WorkerLost):
                     raise
-                except NeverBegun:
-                    continue  # on another machine, which this server sees at its next look
-                except Exception as error:
-                    if client.status == "running" and not isinstance(error, WorkerLost):
-                        raise
-                    if self._closed.is_set():  # it is this server that has gone
-                        raise JobCancelled from None
-                    if client.status == "running":
-                        raise
-                    raise WorkerLost("the scheduler has gone") from error
-        raise WorkerLost(f"{_TURNS} machines have gone before it came there")
+                if self._closed.is_set():  # it is this server that has gone
+                    raise JobCancelled from None
+                if client.status == "running":
+                    raise
+                raise WorkerLost("the scheduler has gone") from error
 
     def close(self) -> None:
         """Leave the scheduler; what still runs is killed there."""
