@@ -64,7 +64,7 @@ def _compressed(address: str) -> str | None:
 
 @lru_cache(maxsize=1024)
 def is_loopback(name: str) -> bool:
-    """Whether a name in lower case is `localhost` or an address of this machine alone."""
+    """Return whether a name in lower case is `localhost` or an address of this machine alone."""
     if name == "localhost":
         return True
     try:
@@ -120,29 +120,29 @@ class Hosts:
         self._bound = _bound_name(bound)
 
     def allows(self, asked: Authority, scheme: str, server: tuple[str, int | None] | None) -> bool:
-        """Whether the service answers to a host; `server` is the address that the connection arrived at."""
+        """True if the service answers to a host; `server` is the address that the connection arrived at."""
         return is_loopback(asked.name) or self._is_bound(asked, scheme, server) or self.lists(asked)
 
     def lists(self, asked: Authority) -> bool:
-        """Whether the operator allows a host."""
+        """Return whether the operator allows a host."""
         return any(asked.name == entry.name and _fits(entry, asked) for entry in self._plain) or any(
             asked.name.endswith(f".{entry.name}") and _fits(entry, asked) for entry in self._wild
         )
 
     def publishes(self, source: Authority) -> bool:
-        """Whether an https origin is the public one of a reverse proxy: listed by its full name."""
+        """Return whether an https origin is the public one of a reverse proxy: listed by its full name."""
         port = source.port_of("https")
         return any(source.name == entry.name and port == entry.port_of("https") for entry in self._plain)
 
     def _is_bound(self, asked: Authority, scheme: str, server: tuple[str, int | None] | None) -> bool:
-        """Whether a host is the address of the socket, with its port."""
+        """Return whether a host is the address of the socket, with its port."""
         if server is None or server[1] != asked.port_of(scheme):
             return False
         return asked.name == self._bound or (_is_address(asked.name) and asked.name == server[0])
 
 
 def _fits(entry: Authority, asked: Authority) -> bool:
-    """Whether a host has the port that an entry names, if it names one."""
+    """Return whether a host has the port that an entry names, if it names one."""
     if entry.port is None or entry.port == asked.port:
         return True
     return asked.port is None and entry.port in DEFAULT_PORTS.values()

@@ -207,7 +207,7 @@ def _prepared(settings: Settings) -> str:
 
 
 def asks_for_keys(settings: Settings) -> bool:
-    """Whether a service with these settings will ask for keys from its first request on."""
+    """Return whether a service with these settings will ask for keys from its first request on."""
     if settings.oidc_issuer is not None:
         return True
     url = settings.database_url

@@ -47,7 +47,7 @@ def check_engine(engine: str) -> str:
 
 
 def is_installed() -> bool:
-    """Whether Dask is installed."""
+    """Return whether Dask is installed."""
     return find_spec("distributed") is not None
 
 
@@ -74,7 +74,7 @@ def check_collector(url: str | None) -> str | None:
 
 
 def has_traces() -> bool:
-    """Whether OpenTelemetry and its exporter are installed."""
+    """Return whether OpenTelemetry and its exporter are installed."""
     try:
         return find_spec("opentelemetry.sdk") is not None and find_spec(EXPORTER) is not None
     except ModuleNotFoundError:  # of a package above the exporter

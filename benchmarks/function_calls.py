@@ -126,7 +126,7 @@ class Bench:
         return saved
 
     def is_current(self, design: str) -> bool:
-        """Whether the design is regenerated."""
+        """Return whether the design is regenerated."""
         from app.designs import repository
 
         with self.database.read() as session:

@@ -84,7 +84,7 @@ def row(duty: RandomDuty) -> Row:
 
 
 def sampled(number: int) -> bool:
-    """Whether a duty is one of two in ten; in five tens there is each supply with each kind of load once."""
+    """True if a duty is one of two in ten; in five tens there is each supply with each kind of load once."""
     return number // 10 % 5 == number % 5
 
 
@@ -163,12 +163,12 @@ def run(what: str, duties: int) -> None:
 
 
 def stays(kept: Row) -> bool:
-    """Whether every hole stays under the load, and there is a film."""
+    """Return whether every hole stays under the load, and there is a film."""
     return bool(kept["under_load"] > STAYS and kept["verdict"] in FILMS)
 
 
 def missed(kept: Row) -> bool:
-    """Whether a finer mesh changes the least gap by more than `MISS`."""
+    """Return whether a finer mesh changes the least gap by more than `MISS`."""
     return "finer" in kept and abs(change(kept, kept["finer"])) > MISS
 
 

@@ -100,7 +100,7 @@ def random_shafts(count: int, seed: int) -> Iterator[tuple[type[CadModel], dict[
 
 
 def possible(model: type[CadModel], parameters: dict[str, Any]) -> bool:
-    """Whether a model accepts its parameters [SI]."""
+    """Return whether a model accepts its parameters [SI]."""
     try:
         model.from_si(parameters)
     except InvalidInputs:

@@ -128,7 +128,7 @@ class AssemblyModel(BroughtModel):
         return name if any(name == one.name for one in self.brought.components) else None
 
     def may_overlap(self, one: str, other: str) -> bool:
-        """Whether the description allows two of its solids to take the same space."""
+        """Return whether the description allows two of its solids to take the same space."""
         return self._allows(one, other) or self._allows(other, one)
 
     def shaft(self) -> Shaft | None:
@@ -145,7 +145,7 @@ class AssemblyModel(BroughtModel):
         return None
 
     def _allows(self, one: str, other: str) -> bool:
-        """Whether the fixed part of one solid may take space of the other, by part or by solid."""
+        """Return whether the fixed part of one solid may take space of the other, by part or by solid."""
         name = self.component_of(one)
         component = next((c for c in self.brought.components if c.name == name), None)
         if component is None:

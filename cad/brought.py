@@ -33,7 +33,7 @@ from templates.core.paper.mathml import named_symbol
 
 Program = Literal["freecad", "creo", "step", "assembly"]
 Role = Literal["", "diameter", "radius", "distance"]
-"""How a parameter shows on the solid; empty where no trial showed it."""
+"""Ways in which a parameter shows on the solid; empty where no trial showed it."""
 
 NAMES: Mapping[Program, str] = {
     "freecad": "FreeCAD",
@@ -259,14 +259,14 @@ def _factor(one: Parameter) -> float:
 
 
 def shows(one: Parameter, sizes: Sizes) -> bool:
-    """Whether the solid has the size that a parameter is said to be."""
+    """Return whether the solid has the size that a parameter is said to be."""
     return bool(one.role) and _has(sizes[_SIZE[one.role]], _factor(one) * one.value)
 
 
 def role_of(
     old: float, new: float, before: Mapping[str, list[float]], after: Mapping[str, list[float]]
 ) -> Role:
-    """How a length shows on a solid, from the sizes before and after a trial that changed it alone.
+    """Return how a length shows on a solid, from the sizes before and after a trial that changed it alone.
 
     It is a size of a kind if that size was there before with the old value, is there after with the new one,
     and was not there before with the new one.

@@ -119,12 +119,12 @@ class Carriers:
 
 
 def _is_beside(other: Carried, one: Carried) -> bool:
-    """Whether another dimension might claim the same faces."""
+    """Return whether another dimension might claim the same faces."""
     return other.faces in ROUND and other.part == one.part
 
 
 def _is_meant(face: FaceSeen, one: Carried) -> bool:
-    """Whether a face is of the sort, and lies as the declaration says."""
+    """Return whether a face is of the sort, and lies as the declaration says."""
     if one.faces == "spheres":
         return face.kind == "sphere"
     if face.kind != "cylinder":

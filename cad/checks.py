@@ -187,7 +187,7 @@ def _requested(model: CadModel, name: str) -> Dimension:
 
 
 def _are_alike(measured: Dimension, wanted: Dimension) -> bool:
-    """Whether a list is the one requested; one number may request all its items, one item shows no list."""
+    """True if a list is the one requested; one number may request all its items, one item shows no list."""
     if not isinstance(measured, list):
         return False
     each = wanted if isinstance(wanted, list) else [wanted] * len(measured)

@@ -1,4 +1,4 @@
-"""How far the facets of a mesh may lie from the true surface, as its user asks for it.
+"""Largest distance of the facets of a mesh from the true surface, as its user asks for it.
 
 A kind of file with a deflection is written `stl@0.05mm`. It is a file of its own beside `stl`. Deflections
 have steps, six in a decade, and a mesh has the step that is not coarser than what its user asked for. So a

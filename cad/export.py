@@ -91,5 +91,5 @@ DERIVED = (VALIDATED, *_WRITERS)
 
 
 def is_derived(kind: str) -> bool:
-    """Whether a kind, perhaps with a deflection, is derived from the STEP file."""
+    """Return whether a kind, perhaps with a deflection, is derived from the STEP file."""
     return kind in DERIVED or plain_kind(kind) in MESHES

@@ -27,7 +27,7 @@ class Ring:
     high: float
 
     def holds(self, points: Array) -> Array:
-        """Whether points [n, 3] lie in it."""
+        """Return whether points [n, 3] lie in it."""
         away = np.hypot(points[:, 0] - self.axis, points[:, 1])
         inside = (away >= self.inner) & (away <= self.outer)
         return np.asarray(inside & (points[:, 2] >= self.low) & (points[:, 2] <= self.high))

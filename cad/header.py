@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from cad.part21 import description, plain, quoted
 
 LONGEST_HEADER = 65536
-"""How much of a file is searched for its header [bytes]; what `write_header` writes is a few thousand."""
+"""Part of a file that is searched for its header [bytes]; what `write_header` writes is a few thousand."""
 
 _LONGEST_PART = 180  # of a value in one string, beside its name
 _NO_TIME = "1970-01-01T00:00:00"

@@ -130,7 +130,7 @@ def _steiner(mass: float, arm: Array) -> Array:
 
 
 def _within(inner: Bnd_Box, outer: Bnd_Box) -> bool:
-    """Whether a box lies in the other, but for the kernel's precision, by which it widens loose boxes."""
+    """True if a box lies in the other, but for the kernel's precision, by which it widens loose boxes."""
     room = Bnd_Box(outer.CornerMin(), outer.CornerMax())
     room.Enlarge(_PRECISION)
     return not (room.IsOut(inner.CornerMin()) or room.IsOut(inner.CornerMax()))

@@ -81,7 +81,7 @@ def _triangulated(body: Body, linear: float, angular: float) -> Mesh:
 
 
 def is_closed(one: Mesh) -> bool:
-    """Whether each edge of a triangle is that of exactly one other, the other way round."""
+    """Return whether each edge of a triangle is that of exactly one other, the other way round."""
     corners = _welded(one)
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
     count = int(corners.max()) + 1

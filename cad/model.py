@@ -151,7 +151,7 @@ class CadModel(Template):
         return None
 
     def may_overlap(self, one: str, other: str) -> bool:
-        """Whether two solids, of which one is of a fixed part, may take the same space."""
+        """Return whether two solids, of which one is of a fixed part, may take the same space."""
         return False
 
     def shaft(self) -> Shaft | None:
@@ -160,7 +160,7 @@ class CadModel(Template):
 
     @classmethod
     def is_throw(cls) -> bool:
-        """Whether it is one throw of a crank, from mid-journal to mid-journal, which has `throw_sizes`."""
+        """True if it is one throw of a crank, from mid-journal to mid-journal, which has `throw_sizes`."""
         return False
 
     def throw_sizes(self) -> Crank | None:

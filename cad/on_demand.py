@@ -32,12 +32,12 @@ def postpone() -> None:
 
 
 def is_loaded() -> bool:
-    """Whether the kernel itself is imported, by whatever."""
+    """Return whether the kernel itself is imported, by whatever."""
     return isinstance(sys.modules.get("OCP"), ModuleType) and not isinstance(sys.modules["OCP"], _Module)
 
 
 def is_postponed() -> bool:
-    """Whether modules get stand-ins."""
+    """Return whether modules get stand-ins."""
     return _finder in sys.meta_path
 
 
@@ -113,7 +113,7 @@ class StandIn:
         return -cast(float, self.real())
 
     def __instancecheck__(self, instance: object) -> bool:
-        """Whether something is an instance of the class; of a kernel that is not loaded there is none."""
+        """True if something is an instance of the class; of a kernel that is not loaded there is none."""
         return not is_postponed() and isinstance(instance, cast(type, self.real()))
 
     def __mro_entries__(self, bases: tuple[object, ...]) -> tuple[object, ...]:

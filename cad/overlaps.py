@@ -187,7 +187,7 @@ def _between(one: str, shape: Shape, other: str, beside: Shape) -> Clearance:
 
 
 def _has_corner_inside(shape: Shape, other: Shape) -> bool:
-    """Whether a corner of a shape lies within another, well off its faces."""
+    """Return whether a corner of a shape lies within another, well off its faces."""
     inside = [BRepClass3d_SolidClassifier(solid.wrapped) for solid in other.Solids()]
     for corner in shape.Vertices()[:_MOST_CORNERS]:
         point = BRep_Tool.Pnt_s(corner.wrapped)

@@ -24,7 +24,7 @@ STEEL_MATERIAL = Material(210e9, 0.3, STEEL_DENSITY)  # EN 1993-1-1, 3.2.6
 
 @dataclass(frozen=True)
 class Shaft:
-    """How one solid is held and loaded: by its faces at two levels of z, about the z axis."""
+    """Supports and load of one solid: its faces at two levels of z, about the z axis."""
 
     held: float  # [mm]
     loaded: float  # [mm]

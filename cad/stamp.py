@@ -129,12 +129,12 @@ def stamped(file: bytes, kind: str, stamp: Stamp) -> bytes:
 
 
 def takes_stamp(file: bytes, kind: str) -> bool:
-    """Whether a file has the lines that its stamp fills in; drawings of older programs have none."""
+    """Return whether a file has the lines that its stamp fills in; drawings of older programs have none."""
     return kind not in _MARKS or _MARKS[kind] in file
 
 
 def is_copy(file: bytes, original: bytes) -> bool:
-    """Whether a STEP file is another one but for its stamp; linear in the length of both."""
+    """Return whether a STEP file is another one but for its stamp; linear in the length of both."""
     text, source = file.decode("latin-1"), original.decode("latin-1")
     place, done = 0, 0
     for hole in _holes(source):

@@ -83,7 +83,7 @@ def _values(one: PartProperties, kind: str) -> tuple[Value, ...]:
 
 
 def _is_close(kind: str, expected: tuple[Value, ...] | None, stated: tuple[Value, ...] | None) -> bool:
-    """Whether measures are equal but for the precision of the kernel."""
+    """Return whether measures are equal but for the precision of the kernel."""
     if expected is None or stated is None or len(expected) != len(stated):
         return False
     relative, absolute = (0.0, _CLOSE) if kind == "centroid" else (_RELATIVE, 0.0)

@@ -136,7 +136,7 @@ def _fill(document: TDocStd_Document, title: str, parts: Sequence[Part]) -> dict
 
 
 def is_single(parts: Sequence[Part]) -> bool:
-    """Whether parts are one solid at one place, which needs no assembly."""
+    """Return whether parts are one solid at one place, which needs no assembly."""
     return len(parts) == 1 and len(parts[0].places) == 1
 
 

@@ -30,16 +30,16 @@ class Surface:
     reach: tuple[float, float] = (0.0, 0.0)  # of a cylinder: where along its axis it begins and ends [mm]
 
     def along(self, axis: Vector) -> bool:
-        """Whether the surface's direction is that of the axis, either way round."""
+        """Return whether the surface's direction is that of the axis, either way round."""
         return bool(self.direction.cross(axis).Length < _COINCIDENT)
 
     def about(self, axis: Vector) -> bool:
-        """Whether the surface turns about that axis through the origin."""
+        """Return whether the surface turns about that axis through the origin."""
         turns, through = self.direction.cross(axis), self.point.cross(axis)
         return bool(turns.Length < _COINCIDENT and through.Length < _COINCIDENT)
 
     def holds(self, axis: Vector) -> bool:
-        """Whether the plane holds that axis through the origin."""
+        """Return whether the plane holds that axis through the origin."""
         flat, upright = self.point.dot(self.direction), self.direction.dot(axis)
         return bool(abs(flat) < _COINCIDENT and abs(upright) < _COINCIDENT)
 

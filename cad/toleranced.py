@@ -53,7 +53,7 @@ _DIGITS = 9  # decimals of a limit in mm: what differs less is the same limit
 
 @dataclass(frozen=True)
 class Carried:
-    """How the faces of a part carry a dimension.
+    """Faces by which a part carries a dimension.
 
     Attributes
     ----------

@@ -86,7 +86,7 @@ class Answering:
         return PiecesResponse(calculation.future.result(), request.app.state.pace, question.media_type)
 
     def _patience(self, request: Request) -> float:
-        """How long the request waits for its answer [s]."""
+        """Time that the request waits for its answer [s]."""
         return min(self.deadline, patience(request.headers.get("prefer"), self.deadline))
 
     async def _check(self, request: Request, cls: type[Template], client: str, question: Question) -> None:

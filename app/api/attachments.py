@@ -35,7 +35,7 @@ def tag(file: bytes) -> str:
 
 
 def is_at_hand(if_none_match: str | None, etag: str) -> bool:
-    """Whether the client already has a file, by the tags that it sent."""
+    """Return whether the client already has a file, by the tags that it sent."""
     tags = (one.strip().removeprefix("W/") for one in (if_none_match or "").split(","))
     return any(one in (etag, "*") for one in tags)
 

@@ -28,7 +28,7 @@ CHANGED = {**later(Design), **refusals(404, 429)}
 
 
 def seconds_waited(prefer: str | None) -> float:
-    """How long a request waits for expensive steps [s]; at most until the deadline."""
+    """Return how long a request waits for expensive steps [s]; at most until the deadline."""
     return patience(prefer, math.inf)
 
 

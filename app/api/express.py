@@ -63,7 +63,7 @@ def _named(scope: Scope) -> tuple[str, int] | None:
 
 
 def _is_plain(headers: list[tuple[bytes, bytes]]) -> bool:
-    """Whether a short body of JSON comes, and JSON may be the answer; each said once."""
+    """Return whether a short body of JSON comes, and JSON may be the answer; each said once."""
     length = kind = b""
     for name, value in headers:
         if name == b"content-length":

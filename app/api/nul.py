@@ -41,12 +41,12 @@ def refuse_in_address(request: Request) -> None:
 
 
 def may_have(part: bytes) -> bool:
-    """Whether a part of JSON may have U+0000 in a text."""
+    """Return whether a part of JSON may have U+0000 in a text."""
     return _ESCAPED in part
 
 
 def has(body: bytes) -> bool:
-    """Whether JSON has U+0000 in a text; its time is linear in the length."""
+    """Return whether JSON has U+0000 in a text; its time is linear in the length."""
     return _CHARACTER.search(body) is not None
 
 

@@ -123,7 +123,7 @@ class Answering(Protocol):
     """Has processes that may be alive or not."""
 
     def answers(self) -> bool:
-        """Whether a worker answers; see `Worker.answers`."""
+        """Return whether a worker answers; see `Worker.answers`."""
         ...
 
 

@@ -26,9 +26,9 @@ PATCH_TYPES = {"application/json", "application/merge-patch+json"}
 STEP_TYPES = ("model/step", "application/step", "application/p21")
 """The registered name of STEP's clear text, and two that were in use before it."""
 SHEET_TYPES = {"application/octet-stream", "application/zip", "application/xml", "text/xml"}
-"""How a sheet of Mathcad may be sent: its own media types are not registered."""
+"""Media types of a sheet of Mathcad: its own ones are not registered."""
 MODEL_TYPES = {"application/octet-stream", "application/zip", "model/step"}
-"""How a model may be sent: FreeCAD's own media type is not registered."""
+"""Media types of a model: FreeCAD's own one is not registered."""
 FORM_TYPES = {"application/x-www-form-urlencoded"}
 MOST_BRACKETS, MOST_QUOTES = 250_000, 400_000
 """In one body. A list of numbers has one bracket; millions of them keep the parser, and the server, busy."""

@@ -38,7 +38,7 @@ class SheetRoute(StrictRoute):
     """A route of a path that another one answers in JSON: it matches only where the client names a sheet."""
 
     def matches(self, scope: Scope) -> tuple[Match, Scope]:
-        """Whether path, method and media type fit."""
+        """Return whether path, method and media type fit."""
         match, child_scope = super().matches(scope)
         if match is Match.FULL and sheet_kind(Request(scope)) is None:
             return Match.NONE, {}

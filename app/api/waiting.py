@@ -46,7 +46,7 @@ def _weight(parameters: str) -> float:
 
 
 async def finished(jobs: Jobs, job: str | None, prefer: str | None) -> bool:
-    """Whether the job, if there is one, ended within the time that the client waits."""
+    """Return whether the job, if there is one, ended within the time that the client waits."""
     if job is None:
         return True
     return await jobs.wait(job, patience(prefer, jobs.wait_seconds)) in (
@@ -57,7 +57,7 @@ async def finished(jobs: Jobs, job: str | None, prefer: str | None) -> bool:
 
 
 def patience(prefer: str | None, default: float) -> float:
-    """How long the client waits for an answer [s]: as it prefers, else the default."""
+    """Return how long the client waits for an answer [s]: as it prefers, else the default."""
     if prefer and "respond-async" in prefer:
         return 0.0
     asked = re.search(r"\bwait=([0-9]{1,4})\b", prefer or "")

@@ -131,7 +131,7 @@ class AssemblyManifest(Bounded):
 
 
 def is_assembly(content: bytes) -> bool:
-    """Whether some JSON says that it is the manifest of an assembly."""
+    """Return whether some JSON says that it is the manifest of an assembly."""
     if len(content) > LONGEST:
         return False  # whoever reads it says that it is too large
     try:

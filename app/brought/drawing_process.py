@@ -31,10 +31,10 @@ from cad.errors import GeometryError
 from cad.freecad import drawing_process
 
 STARTING = 60.0
-"""How long FreeCAD may take to be there [s]; it takes 3 s."""
+"""Time in which FreeCAD has to start [s]; it takes 3 s."""
 LARGEST_ANSWER = 512 * 2**20
 _ENDING = 1.0
-"""How long a process may take to end that answers no more [s]."""
+"""Time in which a process that no longer answers has to end [s]."""
 _GLANCE = 0.05  # [s]
 _LEAST = 0.1  # for which a drawing is let run, however little is left of a deadline [s]
 _PIECE = 2**20

@@ -19,7 +19,7 @@ def all_rows(session: Session) -> list[Row]:
 
 
 def count(session: Session) -> int:
-    """How many versions there are: rows never change and never go."""
+    """Return the number of versions: rows never change and are never deleted."""
     return session.scalar(select(func.count()).select_from(Row)) or 0
 
 

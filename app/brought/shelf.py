@@ -16,7 +16,7 @@ from cad.brought import BroughtModel, class_of
 logger = logging.getLogger(__name__)
 
 EVERY = 1.0
-"""How often a server looks what another one on its database has imported [s]."""
+"""Time between two looks of a server for what another one on its database has imported [s]."""
 
 
 def _classes(rows: Iterable[BroughtModelRow]) -> Iterator[tuple[Key, type[BroughtModel]]]:

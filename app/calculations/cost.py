@@ -51,7 +51,7 @@ def estimated_seconds(
     tolerance: float | None = None,
     outputs: Collection[str] | None = None,
 ) -> float:
-    """How long `evaluate` will take, reading and writing included [s]; for wrong inputs, anything."""
+    """Estimate the time of `evaluate`, reading and writing included [s]; for wrong inputs, any number."""
     shapes = arrays(inputs)
     numbers = min(MOST_POINTS, sum(map(math.prod, shapes.values())))
     levels = _levels(cls, inputs, level, tolerance, numbers)
@@ -62,7 +62,7 @@ def estimated_seconds(
 def array_seconds(
     cls: type[Template], level: str | None, points: int, outputs: Collection[str], calls: int, places: int
 ) -> float:
-    """How long array calls for so many points take [s], in SI, with nothing read, written or kept.
+    """Estimate the time of array calls for so many points [s], in SI, with nothing read, written or kept.
 
     `places` are those of the longest curve, 1 if there is none.
     """
@@ -85,7 +85,7 @@ def solving_seconds(
     outputs: Collection[str] | None = None,
     target: Iterable[str] = (),
 ) -> float:
-    """How long `solve` will take [s]: a scan at a level that takes many points, then closing in."""
+    """Estimate the time of `solve` [s]: a scan at a level that takes many points, then closing in."""
     levels = _levels(cls, inputs, level, tolerance, 0)
     aimed = list(target)
     cheap = levels if not any(name in cls.most_points for name in levels) else (cls.default_level,)
@@ -97,12 +97,12 @@ def solving_seconds(
 
 
 def writing_seconds(cls: type[Template], outputs: Collection[str] | None = None) -> float:
-    """How long it takes to write the formulas out [s]."""
+    """Estimate the time that it takes to write the formulas out [s]."""
     return PER_FORMULA * len(_wanted(cls, outputs))
 
 
 def is_quick(cls: type[Template]) -> bool:
-    """Whether a few points take, at every level, no longer than a thread needs to begin."""
+    """Return whether a few points take, at every level, no longer than a thread needs to begin."""
     if cls not in _quick:
         levels = cls.levels or (SINGLE,)
         seconds = [_level_seconds(cls, level, 1) for level in levels] + [_bodies_seconds(cls, 1)]
@@ -114,7 +114,7 @@ _quick: WeakKeyDictionary[type[Template], bool] = WeakKeyDictionary()
 
 
 def _bodies_seconds(cls: type[Template], points: int) -> float:
-    """How long the bodies of a worksheet take together at so many points [s]; nothing, if it is a file."""
+    """Estimate the time of all bodies of a worksheet at so many points [s]; 0 if it is a file."""
     if cls.sheet is None:
         return 0.0
     if cls not in _costs:
@@ -193,7 +193,7 @@ def _wanted(cls: type[Template], outputs: Collection[str] | None) -> list[str]:
 def _evaluating(
     cls: type[Template], levels: Iterable[str], points: int, outputs: Collection[str] | None
 ) -> float:
-    """How long one evaluation of so many points takes at these levels together [s]."""
+    """Estimate the time of one evaluation of so many points at these levels together [s]."""
     wanted = _wanted(cls, outputs)
     plain = PER_CALL + PER_OUTPUT * len(wanted) + PER_VALUE * points * len(wanted)
     plain += _bodies_seconds(cls, points)

@@ -96,7 +96,7 @@ class CalculationPool:
         return {"running": self.running, "waiting": self.waiting, "size": self.size}
 
     def answers(self) -> bool:
-        """Whether a calculation would find a process that is alive; see `Worker.answers`."""
+        """Return whether a calculation would find a process that is alive; see `Worker.answers`."""
         return self._worker.answers()
 
     def submit(

@@ -50,7 +50,7 @@ class CalculationProcesses:
         return worker.run(function, *args, limits=limits, on_progress=on_progress, cancelled=cancelled)
 
     def answers(self) -> bool:
-        """Whether a function would find a process that is alive; see `Worker.answers`."""
+        """Return whether a function would find a process that is alive; see `Worker.answers`."""
         return self._light.answers() and (self._others is None or self._others.answers())
 
     def close(self) -> None:
@@ -69,5 +69,5 @@ class CalculationProcesses:
 
 
 def is_light(module: str) -> bool:
-    """Whether functions of a module need no network of designs."""
+    """Return whether functions of a module need no network of designs."""
     return not module.startswith("app.") or module.startswith(LIGHT)

@@ -1,4 +1,4 @@
-"""How many values arrays span together: counted before anything is computed, so that nothing explodes."""
+"""Number of values that arrays span together, counted before anything is computed, to bound its memory."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Shape = tuple[int, ...]
 
 
 def points(inputs: Mapping[str, Raw]) -> int:
-    """How many points the arrays among inputs, as typed, span together."""
+    """Return the number of points that the arrays among inputs, as typed, span together."""
     return spanned(arrays(inputs).values())
 
 
@@ -30,7 +30,7 @@ def arrays(inputs: Mapping[str, Raw]) -> dict[str, Shape]:
 
 
 def spanned(shapes: Iterable[Shape]) -> int:
-    """How many points shapes span together; of shapes that do not fit, at least as many as any of them."""
+    """Return the number of points that shapes span together; if they do not fit, at least the largest."""
     # NumPy's own broadcast_shapes gives up on counts beyond 2^63.
     axes = zip_longest(*map(reversed, shapes), fillvalue=1)
     return math.prod(map(max, axes))

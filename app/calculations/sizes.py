@@ -1,4 +1,4 @@
-"""How much memory a value holds, arrays and long lists included."""
+"""Memory that a value holds, arrays and long lists included."""
 
 from __future__ import annotations
 

@@ -164,7 +164,7 @@ def _headings(lines: Sequence[_Line], faults: _Faults) -> tuple[list[str], list[
 
 
 def _is_words(line: _Line) -> bool:
-    """Whether a line holds words and no number; `1` may be the unit of a pure number."""
+    """Return whether a line holds words and no number; `1` may be the unit of a pure number."""
     rest = [cell for cell in line.cells if cell not in ("", "1", "-")]
     return bool(rest) and not any(cell.startswith("=") or _is_number(cell) for cell in rest)
 

@@ -32,5 +32,5 @@ class Sheets:
     unreleased: Mapping[Key, str] = field(default_factory=dict)
 
     def owns(self, key: Key | None) -> bool:
-        """Whether a version has been released as a worksheet."""
+        """Return whether a version has been released as a worksheet."""
         return key in self.released or key in self.broken

@@ -221,7 +221,7 @@ def with_models(files: Snapshot, brought: Mapping[Key, type[CadModel]]) -> Snaps
 
 
 def _collides(file: TeamFile, sheets: Sheets) -> bool:
-    """Whether a file declares a template that has been released as a worksheet."""
+    """Return whether a file declares a template that has been released as a worksheet."""
     return file.cls is not None and not issubclass(file.cls, CadModel) and sheets.owns(file.key)
 
 

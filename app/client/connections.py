@@ -81,7 +81,7 @@ class BlockingConnection(_Connection):
         self._http.close()
 
     def healthy(self) -> bool:
-        """Whether the service answers."""
+        """Return whether the service answers."""
         try:
             return (self._http.get("/healthz")).is_success
         except httpx.TransportError:
@@ -131,7 +131,7 @@ class AwaitedConnection(_Connection):
         await self._http.aclose()
 
     async def healthy(self) -> bool:
-        """Whether the service answers."""
+        """Return whether the service answers."""
         try:
             return (await self._http.get("/healthz")).is_success
         except httpx.TransportError:

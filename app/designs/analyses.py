@@ -25,19 +25,19 @@ def measured_unit(reference: Reference) -> str:
 
 
 def is_measured(reference: Reference, declared: Iterable[str]) -> bool:
-    """Whether a name within a model is a measure of its solid, or an output of a declared analysis."""
+    """Return whether a name within a model is a measure of its solid, or an output of a declared analysis."""
     if reference.analysis is None:
         return reference.output in MEASURES
     return reference.analysis in declared and reference.output in KINDS[reference.analysis]
 
 
 def is_table(reference: Reference) -> bool:
-    """Whether a name means an output of an analysis that is a table or a list; others are single values."""
+    """True if a name means an output of an analysis that is a table or a list; others are single values."""
     return axes_of(reference) > 0
 
 
 def axes_of(reference: Reference) -> int:
-    """How many axes an output of an analysis has: 2 of a table, 1 of a list, 0 of a single value."""
+    """Return the number of axes of an analysis' output: 2 of a table, 1 of a list, 0 of a single value."""
     if reference.analysis not in KINDS:
         return 0
     return 2 if reference.output in TABLES else int(reference.output in LISTS)

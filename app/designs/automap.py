@@ -69,7 +69,7 @@ def _named(graph: Graph, model: Block, name: str, called: str) -> Iterator[Refer
 
 
 def _tells_its_part(called: str) -> bool:
-    """Whether a name says of which part it is: `bearing_width` does, `width` does not."""
+    """Return whether a name says of which part it is: `bearing_width` does, `width` does not."""
     return not GENERAL.issuperset(called.split("_"))
 
 
@@ -78,13 +78,13 @@ def _share_a_role(step: Block, model: Block) -> bool:
 
 
 def _is_namesake(source: Reference, model: Block) -> bool:
-    """Whether the names of step and model share a word: `front_shell` goes with `front_film`."""
+    """Return whether the names of step and model share a word: `front_shell` goes with `front_film`."""
     block = source.block if source.output is not None else ""
     return not set(block.split("_")).isdisjoint(model.name.split("_"))
 
 
 def _fits(graph: Graph, source: Reference, wanted: str) -> bool:
-    """Whether a source is of the kind that is wanted, and a single value."""
+    """Return whether a source is of the kind that is wanted, and a single value."""
     if source.output is None:
         return compatible(graph.kinds[source.block].base, unit(wanted).base)
     cls = graph.blocks[source.block].cls

@@ -192,7 +192,7 @@ class _Climb:
         self.result.trials.append(RowTrial(dict(self.at), int(due.size), decided, seconds))
 
     def _has_moved(self, part: RowPass) -> bool:
-        """Whether rows ask for a finer level than those before, which then serves all of them."""
+        """Return whether rows ask for a finer level than those before, which then serves all of them."""
         for step in self.steps:
             allowed, here = _ladder(part, step), self.at[step.name] or step.cls.default_level
             if here in allowed:

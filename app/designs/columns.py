@@ -35,7 +35,7 @@ class Column:
 
     @property
     def rank(self) -> int:
-        """How many axes the value has in one row."""
+        """Number of axes that the value has in one row."""
         return np.ndim(self.value) - self.is_row
 
     @property

@@ -37,7 +37,7 @@ def read_demands(document: Document, blocks: Mapping[str, Block]) -> tuple[dict[
 
 
 def _is_unread(name: str, document: Document, blocks: Mapping[str, Block]) -> bool:
-    """Whether a criterion is one of a step whose template is not known, which is a fault of its own."""
+    """True if a criterion is one of a step whose template is not known, which is a fault of its own."""
     criterion = Reference.parse(name)
     is_of_step = criterion.output is not None and criterion.block in document.steps
     return is_of_step and criterion.block not in blocks
@@ -99,7 +99,7 @@ def checked_demands(network: Network, kinds: Mapping[str, Kind]) -> tuple[dict[s
 
 
 def _is_value(network: Network, reference: Reference) -> bool:
-    """Whether a name means a number: no word, and no table."""
+    """Return whether a name means a number: no word, and no table."""
     if reference in network.assumed:
         return True
     if network.node(reference) is None or is_table(reference):

@@ -149,5 +149,5 @@ def _range(numbers: Numbers) -> dict[str, float]:
 
 
 def _count(value: Json) -> int:
-    """How many values there are, at any depth."""
+    """Return the number of values, at any depth."""
     return sum(map(_count, value)) if isinstance(value, list) else 1

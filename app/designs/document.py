@@ -184,7 +184,7 @@ def _without_nothing(plain: JsonObject, *names: str) -> JsonObject:
 
 
 def _values_set(raw: Mapping[str, Raw]) -> int:
-    """How many values the steps and models of a document set, as far as it has the shape of one."""
+    """Count the values that the steps and models of a document set, as far as it has the shape of one."""
     places = (("steps", "inputs"), ("steps", "limits"), ("models", "parameters"))
     groups = [(group, part) for name, part in places if isinstance(group := raw.get(name), Mapping)]
     blocks = [(block, part) for group, part in groups for block in group.values()]
@@ -193,7 +193,7 @@ def _values_set(raw: Mapping[str, Raw]) -> int:
 
 
 def _overrides_set(raw: Mapping[str, Raw]) -> int:
-    """How many values the variants of a document override, as far as it has the shape of one."""
+    """Count the values that the variants of a document override, as far as it has the shape of one."""
     variants = raw.get("variants")
     inside = variants.values() if isinstance(variants, Mapping) else ()
     return sum(len(values) for values in inside if isinstance(values, Mapping))
@@ -225,7 +225,7 @@ def _merged(old: Json, patch: Json, path: tuple[str, ...]) -> Json:
 
 
 def _is_container(path: tuple[str, ...]) -> bool:
-    """Whether a patch goes on inside: in the document, its groups, its steps and models, and their parts."""
+    """True if a patch goes on inside: in the document, its groups, its steps and models, and their parts."""
     match path:
         case () | ("parameters" | "steps" | "models" | "criteria" | "variants",):
             return True

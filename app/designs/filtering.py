@@ -70,7 +70,7 @@ def _of_newest(session: Session, wanted: DesignFilter) -> Iterator[ColumnElement
 
 
 def _has_step(session: Session, id: str, version: int | None) -> ColumnElement[bool]:
-    """Whether a step of the revision uses a template; a table of JSON values is made of its steps."""
+    """Return whether a step of the revision uses a template; a table of JSON values is made of its steps."""
     steps = func.json_each(_document(session)["steps"]).table_valued(column("value", JSON), name="step")
     step = steps.c.value
     query = select(1).select_from(steps).where(step["template"].as_string() == id)
@@ -86,7 +86,7 @@ def _document(session: Session) -> ColumnElement[JSON]:
 
 
 def _has_model(id: str, version: int | None) -> ColumnElement[bool]:
-    """Whether a CAD model of the revision is of this kind."""
+    """Return whether a CAD model of the revision is of this kind."""
     query = select(1).where(
         RevisionModelRow.design_id == RevisionRow.design_id,
         RevisionModelRow.number == RevisionRow.number,

@@ -265,7 +265,7 @@ def _listed(references: frozenset[Reference]) -> str:
 
 
 def _operations(criterion: Criterion, estimates: Mapping[str, Estimate], upstream: Upstream) -> int:
-    """How many operations on single values a criterion takes, its shifted sides included."""
+    """Count the operations on single values that a criterion takes, its shifted sides included."""
     points = spanned(np.shape(estimate.value) for estimate in estimates.values())
     limit_values(points)
     times = 1 + 2 * (len(estimates) + len(upstream.uncertain))

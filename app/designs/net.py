@@ -197,7 +197,7 @@ class Net:
         criteria: Collection[str] = (),
         by_tables: bool = False,
     ) -> float:
-        """How long a call for so many rows is estimated to take [s].
+        """Estimate how long a call for so many rows takes [s].
 
         By the processor time of the last call of this kind, if it had some rows; before it by the tables of
         errors, which is an order of magnitude, and knows no heat balance. `by_tables` takes these always:
@@ -222,7 +222,7 @@ class Net:
         *,
         criteria: Collection[str] = (),
     ) -> int:
-        """How many rows one array call takes; at most `chunk`."""
+        """Number of rows that one array call takes; at most `chunk`."""
         return self.design.rows_at_once(self._wanted(wanted, criteria), levels, chunk)
 
     def criteria(self) -> list[str]:

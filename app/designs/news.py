@@ -41,6 +41,6 @@ def standing(session: Session, id: str) -> Standing:
 
 
 def can_resume(session: Session, id: str, last: int | None) -> bool:
-    """Whether all events of a design after the one that a reader got last are kept."""
+    """Return whether all events of a design after the one that a reader got last are kept."""
     newest = repository.design(session, id).event
     return last is not None and event_log.can_resume(session, f"design:{id}", last, newest)

@@ -51,7 +51,7 @@ def _term(tree: Node) -> tuple[str, bool] | None:
 
 
 def _is_constant(tree: Node) -> bool:
-    """Whether a part of a relation is a number with its unit, as in `= bore - 50 um`."""
+    """Return whether a part of a relation is a number with its unit, as in `= bore - 50 um`."""
     return isinstance(tree, Constant) or (
         isinstance(tree, Apply) and bool(tree.arguments) and all(map(_is_constant, tree.arguments))
     )

@@ -167,12 +167,12 @@ class RowDesign:
             return replace(self, varied=frozenset(), _prepared={}).question(wanted, levels)[1]
 
     def rows_at_once(self, wanted: Wanted, levels: Levels, chunk: int = MOST_ROWS) -> int:
-        """How many rows one array call takes."""
+        """Number of rows that one array call takes."""
         values = sum(self.sizes(wanted).values())
         return max(1, min([chunk, MOST_VALUES // max(values, 1), *self._most_points(wanted, levels)]))
 
     def sizes(self, wanted: Wanted) -> Mapping[str, int]:
-        """How many values each cell and output has in one row, as the design was written."""
+        """Number of values that each cell and output has in one row, as the design was written."""
         if wanted not in self._sizes:
             cheapest = {block.name: next(iter(block.cls.levels), None) for block in self.steps(wanted)}
             rows = self.nominal(wanted, cheapest)
@@ -192,7 +192,7 @@ class RowDesign:
         return {}
 
     def _most_points(self, wanted: Wanted, levels: Levels) -> Iterator[int]:
-        """How many points the levels of the steps take at once."""
+        """Number of points that the levels of the steps take at once."""
         for block in self.steps(wanted):
             level = levels.get(block.name) or block.level or block.cls.default_level
             if block in self.moving and level in block.cls.most_points:

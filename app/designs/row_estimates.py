@@ -45,7 +45,7 @@ class RowEstimate:
 
     @property
     def rank(self) -> int:
-        """How many axes the value has in a row beside those of a curve."""
+        """Number of axes that the value has in a row beside those of a curve."""
         return max(self.value.rank - self.axes, 0)
 
     def padded(self, rank: int) -> Estimate:

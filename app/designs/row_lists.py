@@ -43,7 +43,7 @@ def _applied(operation: Operation, parts: list[Column]) -> Column:
 
 
 def rank_of(node: Node, ranks: Mapping[str, int]) -> int:
-    """How many axes a tree has in one row, from those of its names and of items by their text."""
+    """Return the number of axes of a tree in one row, from those of its names and of items by their text."""
     match node:
         case Constant() | Word():
             return 0

@@ -98,7 +98,7 @@ def _places(graph: Graph) -> list[str]:
 
 @dataclass(frozen=True)
 class Ranks:
-    """How many axes values have in one row, as far as this is known before they are calculated."""
+    """Numbers of axes that values have in one row, as far as known before they are calculated."""
 
     graph: Graph
     moving: Varying
@@ -142,7 +142,7 @@ class Ranks:
         return own + (0 if block in self.moving else self._points(block))
 
     def _points(self, block: Block) -> int:
-        """How many axes the points of a step have that is one for all rows."""
+        """Return the number of axes of the points of a step that is one for all rows."""
         inputs = ((self._ranks[cell], block.cls.inputs[name]) for name, cell in block.cells.items())
         return max((n - isinstance(d, Curve) for n, d in inputs if not isinstance(d, Table)), default=0)
 
@@ -188,7 +188,7 @@ def checked_rows(
 
 
 def _ranks(graph: Graph, reference: Reference) -> set[int]:
-    """How many axes a varied value may have in one row."""
+    """Return the number of axes that a varied value may have in one row."""
     declared = _declared(graph, reference)
     if isinstance(declared, Curve):
         return {0, 1} if declared.constant else {1}

@@ -84,7 +84,7 @@ class RowShifting:
         return unknown
 
     def is_stated(self, origins: Origins) -> bool:
-        """Whether the errors of all outputs are stated, and carried on."""
+        """Return whether the errors of all outputs are stated, and carried on."""
         return not origins.stopped and all(self.estimate(origin).is_stated for origin in origins.carried)
 
     def shifts(
@@ -129,7 +129,7 @@ class RowShifting:
         return self._origins(reference) | own
 
     def _is_calculated(self, reference: Reference) -> bool:
-        """Whether a name is an output of a step that is calculated, and so may be off."""
+        """Return whether a name is an output of a step that is calculated, and so may be off."""
         graph = self.rows.question.graph
         block = graph.blocks.get(reference.block)
         if block is None or block.is_model or reference in self.rows.given or graph.cell(reference):
@@ -150,7 +150,7 @@ class RowShifting:
         return origins.without() if is_expensive else origins
 
     def _of_one_row(self, block: Block) -> float:
-        """How long a step is estimated to take for a single row [s], as a design of its own."""
+        """Estimate how long a step takes for a single row [s], as a design of its own."""
         raw = {name: self._first(cell) for name, cell in block.cells.items()}
         step, outputs = self.rows.steps[block.name], self.rows.question.graph.computed(block)
         return estimated_seconds(block.cls, raw, step.level, None, outputs)
@@ -164,7 +164,7 @@ class RowShifting:
         return Typed(None, cell.declared.meaning.unit, si if np.ndim(si) else float(si), {})
 
     def _is_carried(self, origin: Reference) -> bool:
-        """Whether what follows from an output is calculated at both ends; it is done here, once."""
+        """Return whether what follows from an output is calculated at both ends; it is done here, once."""
         if origin in self._ends:
             return True
         following = self._following(origin)

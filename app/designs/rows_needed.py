@@ -82,7 +82,7 @@ def _of_member(graph: Graph, reference: Reference, result: Needs) -> list[Refere
 
 
 def is_member(graph: Graph, reference: Reference) -> bool:
-    """Whether a name means an input or an output of a step or model, not what is measured on a solid."""
+    """True if a name means an input or an output of a step or model, not what is measured on a solid."""
     block = graph.blocks.get(reference.block)
     if block is None or reference.analysis is not None:
         return False
@@ -118,7 +118,7 @@ def varying(graph: Graph, varied: Collection[Reference]) -> Varying:
 
 
 def _is_varied(cell: Cell, varied: Collection[Reference]) -> bool:
-    """Whether a cell is a varied place, or uses one, such as a measure that rows give."""
+    """Return whether a cell is a varied place, or uses one, such as a measure that rows give."""
     return any(reference in varied for reference in (cell.reference, *cell.uses.values()))
 
 

@@ -255,5 +255,5 @@ def _one_sided(below: int, above: int, value: Array, table: Table) -> str | None
 
 
 def _is_temperature(*units: str) -> bool:
-    """Whether any is a unit of temperatures, whose ratios mean nothing; their differences have ratios."""
+    """True if any is a unit of temperatures, whose ratios mean nothing; their differences have ratios."""
     return any(unit(name).base == registry.kelvin and not unit(name).difference for name in units)

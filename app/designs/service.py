@@ -288,5 +288,5 @@ def _require_match(expected: str | None, head: int) -> None:
 
 
 def analyses_wanted(graph: Graph) -> bool:
-    """Whether anything in a design uses finite elements."""
+    """Return whether anything in a design uses finite elements."""
     return any(graph.wanted(block.name, kind) for block in graph.blocks.values() for kind in block.analyses)

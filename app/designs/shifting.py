@@ -169,7 +169,7 @@ class Shifting:
         return _joined(self._upstream(cell.reference) for cell in cells).stopped()
 
     def _is_expensive(self, block: Block) -> bool:
-        """Whether a step takes too long to be calculated again and again; by its estimate, not by a clock."""
+        """True if a step takes too long to be calculated again and again; by its estimate, not by a clock."""
         return not block.is_model and self._estimated_seconds(block) > EXPENSIVE
 
     def _estimated_seconds(self, block: Block) -> float:
@@ -179,7 +179,7 @@ class Shifting:
         return estimated_seconds(block.cls, raw, level, None, outputs)
 
     def _is_carried(self, origin: Reference) -> bool:
-        """Whether what follows from an output is calculated at both ends; it is done here, once."""
+        """Return whether what follows from an output is calculated at both ends; it is done here, once."""
         if origin in self._ends:
             return True
         seconds = 2 * self._following(origin)
@@ -196,7 +196,7 @@ class Shifting:
         return True
 
     def _following(self, origin: Reference) -> float:
-        """How long all that follows from an output is estimated to take [s]."""
+        """Estimate how long all that follows from an output takes [s]."""
         steps = (block for block in self.calculation.graph.blocks.values() if not block.is_model)
         follow = (
             block

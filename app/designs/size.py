@@ -41,7 +41,7 @@ def _items(document: Document) -> Iterator[Raw]:
 
 
 def has_relation(raw: Raw) -> bool:
-    """Whether a value is a relation, or a list that holds one."""
+    """Return whether a value is a relation, or a list that holds one."""
     return any(map(is_relation, raw)) if isinstance(raw, list) else is_relation(raw)
 
 

@@ -55,7 +55,7 @@ class SolidField:
 
 @dataclass(frozen=True)
 class FilletUse(SolidField):
-    """How much of the endurance limit the points of the fillets use, under the loads of one throw."""
+    """Share of the endurance limit that the points of the fillets use, under the loads of one throw."""
 
     sizes: Crank
     places: Sequence[tuple[float, float]]
@@ -184,7 +184,7 @@ def ends_of(step: RevisionStep, throws: int) -> tuple[list[int], int, int] | Non
 
 
 def _takes(step: RevisionStep, prefix: str) -> bool:
-    """Whether a relation of a step uses what begins so; `big_shaft.chain.` does not begin with `shaft.`."""
+    """True if a relation of a step uses what begins so; `big_shaft.chain.` does not begin with `shaft.`."""
     begins = re.compile(rf"(?<![\w.]){re.escape(prefix)}")
     return any(begins.search(str(relation)) for relation in step.relations.values())
 

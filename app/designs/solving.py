@@ -60,7 +60,7 @@ class DesignCurve(SampledCurve):
 
     @property
     def rows(self) -> int:
-        """How many samples one call takes: any number, in chunks."""
+        """Number of samples that one call takes: any number, in chunks."""
         return 1_000_000
 
     def at_level(self, level: str) -> DesignCurve:

@@ -201,7 +201,7 @@ class _Evaluator:
         return Typed(None, declared.meaning.unit, si if np.ndim(si) else float(si), {})
 
     def _places(self, declared: Curve) -> int:
-        """How many places the other curves have along the same axis."""
+        """Number of places that the other curves have along the same axis."""
         lengths = [1]
         for name, value in self.given.items():
             other = self.step.block.cls.inputs[name]
@@ -252,7 +252,7 @@ def _error(step: StepRows, part: Part, name: str) -> Column:
 
 
 def _has_rows(step: StepRows, part: Part) -> bool:
-    """Whether the values of a part may have an axis of rows: a single row is a single value."""
+    """Return whether the values of a part may have an axis of rows: a single row is a single value."""
     return step.has_rows and part.template.shape_of_points() == part.rows.shape
 
 

@@ -35,7 +35,7 @@ class Subject:
         return tuple((one, Subject(one.instead, self.block, None)) for one in every if one.instead)
 
     def is_due(self, graph: Graph) -> bool:
-        """Whether judging it computes no output that the design leaves out."""
+        """Return whether judging it computes no output that the design leaves out."""
         if self.block is None or self.block.is_model:
             return True
         computed = graph.computed(self.block)

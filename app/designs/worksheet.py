@@ -93,7 +93,7 @@ def _calculated(
 
 
 def _is_edited(cls: type[Template], step: RevisionStep) -> bool:
-    """Whether a team has edited its file since it calculated a step."""
+    """Return whether a team has edited its file since it calculated a step."""
     calculated_by = step.template.content_digest
     return is_outside(cls) and calculated_by not in (None, identity(cls)["content_digest"])
 

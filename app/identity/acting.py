@@ -36,7 +36,7 @@ class Principal:
     key: str | None = None
 
     def may(self, role: Role) -> bool:
-        """Whether one of the roles includes a given role."""
+        """Return whether one of the roles includes a given role."""
         return any(role in INCLUDED[own] for own in self.roles)
 
 

@@ -43,7 +43,7 @@ class Door:
         self._asked_at = -FRESH
 
     async def is_open(self) -> bool:
-        """Whether the service asks nobody for a key; nobody passes before that is read.
+        """Return whether the service asks nobody for a key; nobody passes before that is read.
 
         Raises
         ------

@@ -26,7 +26,7 @@ class Guest:
 
 
 def any_principal(session: Session) -> bool:
-    """Whether there is a principal, so that keys are asked for."""
+    """Return whether there is a principal, so that keys are asked for."""
     return bool(session.scalar(select(exists().where(PrincipalRow.id.is_not(None)))))
 
 
@@ -74,7 +74,7 @@ def _by_key(row: PrincipalRow, key: ApiKeyRow) -> Principal:
 
 
 def is_over(moment: str | None) -> bool:
-    """Whether a moment has passed; None never passes."""
+    """Return whether a moment has passed; None never passes."""
     return moment is not None and moment <= now()
 
 

@@ -122,7 +122,7 @@ def _outputs(before: Outcome, after: Outcome) -> Iterator[tuple[str, float]]:
 
 
 def _is_one_kind(before: Outcome, after: Outcome, name: str) -> bool:
-    """Whether both versions measure the same by a name, in whatever units."""
+    """Return whether both versions measure the same by a name, in whatever units."""
     one, other = before.units[name], after.units[name]
     return one == other or compatible(unit(one).base, unit(other).base)
 

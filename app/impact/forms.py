@@ -87,5 +87,5 @@ class _Opening:
 
 
 def _is_written_out(raw: Raw) -> bool:
-    """Whether a value is a relation or a list, which are part of the form."""
+    """Return whether a value is a relation or a list, which are part of the form."""
     return isinstance(raw, list) or is_relation(raw)

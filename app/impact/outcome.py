@@ -34,7 +34,7 @@ class Judged:
 
 
 def is_temperature(name: str) -> bool:
-    """Whether a unit is one of temperature, whose ratios mean nothing."""
+    """Return whether a unit is one of temperature, whose ratios mean nothing."""
     return bool(unit(name).base == registry.kelvin)
 
 

@@ -136,7 +136,7 @@ def _chooses_by_tolerance(block: Block) -> bool:
 
 
 def _is_measured(graph: Graph) -> bool:
-    """Whether anything follows from a measure or an analysis of a solid."""
+    """Return whether anything follows from a measure or an analysis of a solid."""
     used = (reference for references in graph.used.values() for reference in references)
     inside = (reference for reference in used if reference.block in graph.blocks)
     return any(
@@ -164,7 +164,7 @@ def _parameters(graph: Graph) -> Iterator[Reference]:
 
 
 def _is_incomplete(block: Block) -> bool:
-    """Whether a model lacks parameters, or nobody asks for any output of a step: it is checked alone."""
+    """True if a model lacks parameters, or nobody asks for any output of a step: it is checked alone."""
     if not block.is_model:
         return block.outputs == ()
     inputs = block.cls.inputs.items()

@@ -17,7 +17,7 @@ _LONGEST = 3600  # advice [s]
 
 
 class Durations:
-    """How long the latest jobs of each lane took, by the monotonic clock."""
+    """Durations of the latest jobs of each lane [s], by the monotonic clock."""
 
     def __init__(self) -> None:
         self._seconds = defaultdict[Lane, deque[float]](lambda: deque(maxlen=_MEASURED))

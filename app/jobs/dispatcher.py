@@ -112,7 +112,7 @@ class Dispatcher:
         return self._lane(self._lane_name(kind))
 
     def threads(self, kind: str) -> int:
-        """How many threads run the jobs of a kind's lane."""
+        """Return the number of threads that run the jobs of a kind's lane."""
         return self._counts[self._lane_name(kind)]
 
     def wake(self, kind: str | None = None) -> None:

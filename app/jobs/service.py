@@ -172,7 +172,7 @@ class Jobs:
         return id
 
     def _share(self, limits: PrincipalLimits | None) -> int:
-        """How many jobs of one client may wait."""
+        """Most jobs of one client that may wait."""
         return self.settings.client_queue_limit if limits is None else limits.queued_jobs
 
     def waiting(self, session: Session, kind: str, payload: JsonObject) -> str | None:
@@ -301,7 +301,7 @@ def _existing(session: Session, id: str) -> Job:
 
 
 def _administers() -> bool:
-    """Whether an administrator acts, who ends jobs whoever waits for them."""
+    """Return whether an administrator acts, who ends jobs whoever waits for them."""
     who = acting()
     return who.id not in BUILT_IN and who.may("admin")
 

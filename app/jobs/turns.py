@@ -54,7 +54,7 @@ def _present_turn(session: Session, lane: Lane) -> int:
 
 
 def count_queued(session: Session, client: str | None = None, lane: Lane | None = None) -> int:
-    """How many jobs wait, of one client or of all, in one lane or in all."""
+    """Return the number of waiting jobs, of one client or of all, in one lane or in all."""
     waiting = select(func.count()).select_from(JobRow).where(JobRow.state == "queued")
     if lane is not None:
         waiting = waiting.where(lane.holds())
@@ -62,7 +62,7 @@ def count_queued(session: Session, client: str | None = None, lane: Lane | None 
 
 
 def count_until_next(session: Session, client: str, lane: Lane) -> int:
-    """How many jobs of a lane start until one of the client's does; 1 if it has none there."""
+    """Return how many jobs of a lane start until one of the client's does; 1 if it has none there."""
     waiting = and_(JobRow.state == "queued", lane.holds())
     next_one = select(func.min(JobRow.turn)).where(waiting, JobRow.client == client)
     until = select(func.count()).select_from(JobRow).where(waiting, JobRow.turn <= next_one.scalar_subquery())

@@ -18,7 +18,7 @@ ARTIFACT = re.compile(r"artifacts/([0-9a-f]{2})/(\1[0-9a-f]{62})")
 
 
 def is_compressed(name: Path) -> bool:
-    """Whether a backup of this name is compressed."""
+    """Return whether a backup of this name is compressed."""
     return name.suffix in (".gz", ".tgz")
 
 

@@ -44,7 +44,7 @@ class Findings:
 
     @property
     def count(self) -> int:
-        """How many faults there are."""
+        """Number of faults."""
         return sum(map(len, (self.database, self.references, self.worksheets, self.damaged, self.unnamed)))
 
     def add_unnamed(
@@ -120,7 +120,7 @@ def _size(files: Files, row: Named) -> int:
 
 
 def is_still_named(database: Path, row: Named) -> bool:
-    """Whether the row of a file is still there: a running service may delete both."""
+    """Return whether the row of a file is still there: a running service may delete both."""
     with reading(database) as connection:
         return any(other == row for other in named_files_of(connection, row))
 

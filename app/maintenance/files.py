@@ -49,7 +49,7 @@ class Files(Protocol):
         ...
 
     def quarantined(self) -> int:
-        """How many files were set aside."""
+        """Number of files that were set aside."""
         ...
 
 
@@ -103,7 +103,7 @@ class FolderFiles:
         return str(self.path(sha))
 
     def quarantined(self) -> int:
-        """How many files were set aside."""
+        """Number of files that were set aside."""
         return sum(1 for _ in self.folder.glob(f"{QUARANTINE}/*"))
 
 
@@ -142,7 +142,7 @@ class BucketFiles:
         return f"{self._url}/{sha}"
 
     def quarantined(self) -> int:
-        """How many objects were set aside."""
+        """Number of objects that were set aside."""
         return sum(key.startswith(f"{QUARANTINE}/") for key in self._listed)
 
     @cached_property

@@ -42,7 +42,7 @@ def database_file(data: Path, url: str | None) -> Path:
 
 
 def is_in_use(data: Path) -> bool:
-    """Whether a service holds the folder; unlike `DataFolder` it creates nothing and takes nothing."""
+    """Return whether a service holds the folder; unlike `DataFolder` it creates nothing and takes nothing."""
     try:
         with (data / LOCK).open("rb") as lock:
             fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)

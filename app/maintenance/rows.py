@@ -125,7 +125,7 @@ def broken_references(connection: sqlite3.Connection) -> Iterator[str]:
 
 
 def _has_table(connection: Rows, name: str) -> bool:
-    """Whether a database has a table; an old one of SQLite may lack some."""
+    """Return whether a database has a table; an old one of SQLite may lack some."""
     if not isinstance(connection, sqlite3.Connection):
         return True
     query = "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = ?"

@@ -17,7 +17,7 @@ def key_prefix(text: str) -> str | None:
 
 
 def holds_key(text: str) -> bool:
-    """Whether a key stands somewhere in a text."""
+    """Return whether a key stands somewhere in a text."""
     return MARK in text and _KEY.search(text) is not None
 
 

@@ -69,7 +69,7 @@ def _legend(height: int) -> Iterator[str]:
 
 
 def histogram(edges: Sequence[float], counts: Sequence[int], marks: Sequence[Mark], unit: str) -> str:
-    """How often values lie between edges; marks outside them widen the axis."""
+    """Draw the number of values between edges; marks outside them widen the axis."""
     if not counts or max(counts) == 0:
         return ""
     low = min(edges[0], *(mark.at for mark in marks))

@@ -127,7 +127,7 @@ FEW = 20  # values that are shown whole
 
 
 def size(values: object) -> int:
-    """How many values there are in a list of any depth."""
+    """Return the number of values in a list of any depth."""
     return sum(map(size, values)) if isinstance(values, list) else 1
 
 

@@ -20,7 +20,7 @@ class _Prose(MarkdownIt):
     """Markdown as users may write it."""
 
     def validateLink(self, url: str) -> bool:
-        """Whether a link may lead there."""
+        """Return whether a link may lead there."""
         return _LINK.fullmatch(url) is not None
 
 

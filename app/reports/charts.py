@@ -57,7 +57,7 @@ class _Axis:
         return (self._scaled(value) - low) / (high - low)
 
     def holds(self, value: float | None) -> bool:
-        """Whether a value can be drawn."""
+        """Return whether a value can be drawn."""
         return value is not None and isfinite(value) and not (self.logarithmic and value <= 0)
 
     def ticks(self) -> list[float]:

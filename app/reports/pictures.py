@@ -208,7 +208,7 @@ def _is_curve(values: Values, name: str) -> bool:
 
 
 def _length(value: UsedInput | Output) -> int:
-    """How many points a value has along its first axis."""
+    """Return the number of points of a value along its first axis."""
     return len(value.value) if isinstance(value.value, list) else 1
 
 

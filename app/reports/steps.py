@@ -162,7 +162,7 @@ def relation_mathml(raw: Raw) -> str:
 
 
 def _exists(output: Output) -> bool:
-    """Whether there is a value; if not, the results say why."""
+    """Return whether there is a value; if not, the results say why."""
     return output.value is not None
 
 

@@ -65,7 +65,7 @@ class TextChange(Answer):
 
 
 class VerdictOf(Answer):
-    """How a criterion was judged."""
+    """Verdict on a criterion, and the values that it compares."""
 
     verdict: str
     utilisation: float | None = Field(None, description="absent where there is none")

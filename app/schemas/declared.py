@@ -42,7 +42,7 @@ def _holds_list(example: JsonValue) -> bool:
 
 
 def _is_list(form: dict[str, JsonValue]) -> bool:
-    """Whether one form of a value is that of a list, or of a quantity with one."""
+    """Return whether one form of a value is that of a list, or of a quantity with one."""
     match form:
         case {"type": "array"} | {"properties": {"value": {"type": "array"}}}:
             return True

@@ -259,7 +259,7 @@ class Preview(Answer):
 
 
 class Sensitivity(Answer):
-    """How much a value changes with a quantity that its user wrote; local to the design."""
+    """Change of a value with a quantity that its user wrote; local to the design."""
 
     name: str
     slope: Quantity | None = Field(None, description="change of the value by that of the place")

@@ -15,7 +15,7 @@ needs a region that was not translated."""
 
 
 class RegionCounts(Answer):
-    """How many mathematical regions are in each state."""
+    """Number of mathematical regions in each state."""
 
     verified: int
     differs: int

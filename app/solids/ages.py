@@ -19,7 +19,7 @@ FRESH = (
 
 
 def is_fresh(session: Session, keys: Collection[str]) -> bool:
-    """Whether all of these builds are there, and sure to stay for as long as any request or job takes."""
+    """True if all of these builds are there, and sure to stay for as long as any request or job takes."""
     present = operated(session)
     wanted = select(func.count()).where(BuildRow.key.in_(set(keys)), BuildRow.operated >= present - FRESH)
     return session.scalar(wanted) == len(set(keys))

@@ -86,7 +86,7 @@ class Analysing:
 
 
 def is_stored(outputs: repository.Outputs, output: str, store: Artifacts) -> bool:
-    """Whether an output is stored, and its file, if it is one, is good."""
+    """Return whether an output is stored, and its file, if it is one, is good."""
     return output in outputs and (output != SURFACE or store.exists(outputs[output]["sha256"]))
 
 
@@ -105,7 +105,7 @@ def bore_of(shape: CadModel) -> BorePlace:
 
 
 def shaft_of(shape: CadModel) -> Shaft:
-    """How a model is held and loaded.
+    """Return where a model is held and loaded.
 
     Raises
     ------

@@ -30,7 +30,7 @@ class Healing:
         self._lock = threading.Lock()
 
     def is_good(self, sha: str) -> bool:
-        """Whether an artifact is there with the right bytes; otherwise what is there has been set aside."""
+        """True if an artifact is there with the right bytes; otherwise what is there has been set aside."""
         return self.store.exists(sha)
 
     def request(self, sha: str) -> str:
@@ -75,7 +75,7 @@ class Healing:
         raise error
 
     def _needs_another(self, session: Session, key: str) -> bool:
-        """Whether a build's STEP file is lost, and this program makes another build of its parameters."""
+        """True if a build's STEP file is lost, and this program makes another build of its parameters."""
         step = rows.artifact(session, key, "step")
         if step and self.store.exists(step.sha256):
             return False

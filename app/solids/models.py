@@ -152,7 +152,7 @@ class Models:
         return Verification.model_validate({**about, "statements": read} if read else about)
 
     def _is_intact(self, step: bytes, sha: str) -> bool:
-        """Whether a file is the artifact of this hash, with or without a stamp."""
+        """Return whether a file is the artifact of this hash, with or without a stamp."""
         return hashlib.sha256(step).hexdigest() == sha or is_copy(step, self.store.read(sha))
 
 

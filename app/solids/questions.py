@@ -51,7 +51,7 @@ _MADE_BY = f"recipe {RECIPE}, ngsolve {version('ngsolve')}"
 
 
 class Options(Bounded):
-    """How a solid is held in an analysis, and how accurate the answer shall be."""
+    """Supports of a solid in an analysis, and the accuracy of the answer."""
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 

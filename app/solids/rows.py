@@ -102,7 +102,7 @@ def users_of(session: Session, key: str) -> list[Mapping[str, Json]]:
 
 
 def is_signed(session: Session, key: str) -> bool:
-    """Whether a revision that was handed over for checking, or signed further, uses a build."""
+    """Return whether a revision that was handed over for checking, or signed further, uses a build."""
     signed = (
         select(ApprovalRow.step)
         .join(

@@ -77,7 +77,7 @@ class Artifacts(Protocol):
         ...
 
     def exists(self, sha: str) -> bool:
-        """Whether the bytes are there and good."""
+        """Return whether the bytes are there and good."""
         ...
 
     def delete(self, sha: str) -> None:
@@ -187,7 +187,7 @@ class ArtifactStore:
             raise
 
     def exists(self, sha: str) -> bool:
-        """Whether the artifact is there and its bytes still have this hash; a damaged one is set aside."""
+        """True if the artifact is there and its bytes still have this hash; a damaged one is set aside."""
         try:
             self.open(sha).file.close()
         except (ArtifactMissing, ArtifactDamaged):

@@ -99,7 +99,7 @@ class BucketStore:
         raise ArtifactDamaged(sha, "its copy on this machine changed as soon as it was written")
 
     def exists(self, sha: str) -> bool:
-        """Whether the bucket has the bytes, and they are good.
+        """Return whether the bucket has the bytes, and they are good.
 
         It asks the bucket, so that an object that somebody deleted is noticed. What the bucket has lost and
         this machine still holds is put back. While the bucket does not answer, a copy is enough.
@@ -189,7 +189,7 @@ class BucketStore:
         return self._bucket.get(sha) if self._bucket.copy(DISCARDED + sha, sha) else None
 
     def _is_good(self, sha: str) -> bool:
-        """Whether the object has the tag that it had when its bytes were right, or right bytes now."""
+        """Return whether the object has the tag that it had when its bytes were right, or right bytes now."""
         entry = self._bucket.head(sha)
         if self._is_known_good(sha, entry):
             return True
@@ -213,7 +213,7 @@ class BucketStore:
         return entry is not None and self._is_known_good(sha, entry) and time.time() - entry.modified < YOUNG
 
     def _is_known_good(self, sha: str, entry: Entry | None) -> bool:
-        """Whether an object has the tag that it had when its bytes were right."""
+        """Return whether an object has the tag that it had when its bytes were right."""
         return entry is not None and entry.tag is not None and self._tags.has(sha, entry.tag)
 
     def _note(self, sha: str, tag: str | None) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 TEMPORARY = ".tmp-"
-"""How the name of a file begins that is still being written."""
+"""Beginning of the name of a file that is still being written."""
 
 
 def write_whole(

@@ -12,7 +12,7 @@ _SHARED = ("busy_timeout = 10000", "foreign_keys = on")
 _WRITER = (*_SHARED, "journal_mode = wal", "synchronous = full")
 _READER = (*_SHARED, "query_only = on")
 _CONNECTING = {"connect_timeout": 5, "keepalives_idle": 10, "keepalives_interval": 5, "keepalives_count": 3}
-"""How soon PostgreSQL must take a connection, and is asked whether it is still there [s]."""
+"""Time for PostgreSQL to take a connection, and times of the checks that it still answers [s]."""
 _PATIENCE = 10.0  # for a free connection to PostgreSQL [s]
 # Batch migrations drop and rename tables, which enforced foreign keys would take for deletions.
 _MIGRATOR = ("busy_timeout = 10000", "journal_mode = wal")
@@ -51,7 +51,7 @@ def sqlite_file(url: str) -> Path | None:
 
 
 def is_sqlite(url: str) -> bool:
-    """Whether a database is a file of SQLite."""
+    """Return whether a database is a file of SQLite."""
     return make_url(url).get_backend_name() == "sqlite"
 
 

@@ -115,7 +115,7 @@ def above(session: Session, topic: str, number: int, most: int = PAGE) -> list[E
 
 
 def can_resume(session: Session, topic: str, number: int, newest: int) -> bool:
-    """Whether all events of a topic above a number are kept; not if it has not come to that number."""
+    """Return whether all events of a topic above a number are kept; not if it has not come to that number."""
     if number >= newest:
         return number == newest
     return session.get(EventRow, (topic, number + 1)) is not None

@@ -13,12 +13,12 @@ _CONNECTION, _RESOURCES, _INTERVENTION, _SYSTEM = "08", "53", "57", "58"  # clas
 
 
 def is_conflict(error: DBAPIError) -> bool:
-    """Whether a transaction was rolled back because of another one, and may be run again."""
+    """Return whether a transaction was rolled back because of another one, and may be run again."""
     return state_of(error) in _CONFLICTS
 
 
 def is_loss(error: DBAPIError) -> bool:
-    """Whether the connection was lost, or there could be none."""
+    """Return whether the connection was lost, or there could be none."""
     state = state_of(error)
     if error.connection_invalidated or state in _LOSSES or (state or "").startswith(_CONNECTION):
         return True

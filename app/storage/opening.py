@@ -57,7 +57,7 @@ def opened_store(settings: Settings, folder: DataFolder, figures: Figures = NO_F
 
 
 def is_bucket(settings: Settings) -> bool:
-    """Whether the files are in a bucket; raises StoreRefused for a wrong URL."""
+    """Return whether the files are in a bucket; raises StoreRefused for a wrong URL."""
     return settings.artifacts_url is not None and _parsed(settings.artifacts_url).scheme == "s3"
 
 

@@ -32,7 +32,7 @@ class Opened:
     stamp: Stamp
 
     def is_unchanged(self) -> bool:
-        """Whether the file still has that stamp."""
+        """Return whether the file still has that stamp."""
         return stamp_of(self.file) == self.stamp
 
     def __enter__(self) -> Opened:
@@ -62,12 +62,12 @@ class Newest(Generic[T]):
         self._lock = threading.Lock()
 
     def knows(self, sha: str) -> bool:
-        """Whether anything is noted of this name."""
+        """Return whether anything is noted of this name."""
         with self._lock:
             return sha in self._noted
 
     def has(self, sha: str, noted: T) -> bool:
-        """Whether this is noted of a name."""
+        """Return whether this is noted of a name."""
         with self._lock:
             if self._noted.get(sha) != noted:
                 return False

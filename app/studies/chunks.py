@@ -114,5 +114,5 @@ def reasons_of(table: Table) -> tuple[list[list[str]], AnyArray]:
 
 
 def refused_by_reason(table: Table) -> dict[str, int]:
-    """How many rows were refused, by place and code."""
+    """Count the refused rows, by place and code."""
     return dict(Counter(f"{refusal.place}: {refusal.code}" for refusal in table.refusals.values()))

@@ -56,14 +56,14 @@ class Plan:
     set_aside: dict[str, str] = field(default_factory=dict)  # relations that the rows replace, by place
 
     def share(self, rows: int, solids: int) -> float:
-        """How far the study is with so many rows and solids, 0 to 1, by the seconds that each takes."""
+        """Return the progress, 0 to 1, at so many rows and solids, by the seconds that each takes."""
         building = min(1.0, self.solids * self.solid_seconds / self.seconds) if self.solids else 0.0
         done = building * min(1.0, solids / self.solids) if self.solids else 0.0
         return min(1.0, done + (1.0 - building) * rows / max(1, self.rows))
 
     @property
     def chunks(self) -> int:
-        """How many chunks explore; those that confirm follow. An optimisation has no such number."""
+        """Number of chunks that explore; those that confirm follow. An optimisation has no such number."""
         return MOST_CHUNKS if self.searched else -(-self.rows // self.chunk)
 
     def plain(self) -> JsonObject:

@@ -95,7 +95,7 @@ class StudySolids:
         return tuple(self._measures.values())
 
     def is_known(self, wanting: Wanting) -> bool:
-        """Whether a solid was measured, or has failed."""
+        """Return whether a solid was measured, or has failed."""
         return (wanting.model, wanting.texts) in self._measures
 
     def make(self, wanting: Wanting) -> None:

@@ -84,7 +84,7 @@ def _named(levels: Mapping[str, str | None]) -> dict[str, str]:
 
 
 def _share(session: Session, row: Row, plan: Plan, rows: int) -> float:
-    """How far a study is, 0 to 1: by its rows, or as its job has said that builds solids meanwhile."""
+    """Return the progress of a study, 0 to 1: by its rows, or from its job while it builds solids."""
     job = session.get(JobRow, row.job) if plan.solids and row.job else None
     return max(plan.share(rows, 0), job.progress if job is not None else 0.0)
 
@@ -185,7 +185,7 @@ class Listing:
         return shown
 
     def _is_confirmed(self, number: int, level: int) -> bool:
-        """Whether a row was calculated again, or confirms what a search promised."""
+        """Return whether a row was calculated again, or confirms what a search promised."""
         return level == CONFIRM if self.plan.searched else number >= self.plan.rows
 
     def _fits(self) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:

@@ -23,7 +23,7 @@ AWS = {
 
 
 def is_installed() -> bool:
-    """Whether moto can be started."""
+    """Return whether moto can be started."""
     return all(find_spec(name) for name in ("moto", "flask", "flask_cors"))
 
 

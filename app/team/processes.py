@@ -31,7 +31,7 @@ def free_port() -> int:
 
 
 def listens(port: int) -> bool:
-    """Whether something on loopback accepts connections on a port."""
+    """Return whether something on loopback accepts connections on a port."""
     with suppress(OSError), socket.create_connection((LOOPBACK, port), timeout=1.0):
         return True
     return False

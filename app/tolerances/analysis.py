@@ -231,7 +231,7 @@ def _level_faults(graph: Graph, step: str, level: str) -> Iterator[Fault]:
 
 
 def _is_quantity(graph: Graph, reference: Reference) -> bool:
-    """Whether a name means a value that a row of the design can have."""
+    """Return whether a name means a value that a row of the design can have."""
     if graph.node(reference) is None and not graph.cell(reference):
         return False
     block = graph.blocks.get(reference.block)

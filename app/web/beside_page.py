@@ -24,7 +24,7 @@ from app.web.rendering import go, show
 from app.web.routes import Id
 
 PATIENCE = 15.0
-"""How long the page waits for the import, which draws nothing [s]."""
+"""Time that the page waits for the import, which draws nothing [s]."""
 GLANCE = 0.1  # [s]
 PLACES = ("x", "y", "z", "turn_x", "turn_y", "turn_z")
 FIELDS = ("component", "source", "design", "part", "datum", *PLACES, "may_overlap", "id")

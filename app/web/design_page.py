@@ -199,7 +199,7 @@ async def revision_page(
 
 
 def _has_route(request: Request, path: str) -> bool:
-    """Whether the interface has this path."""
+    """Return whether the interface has this path."""
     return any(getattr(route, "path", None) == path for route in routes_of(request.app))
 
 

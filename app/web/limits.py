@@ -24,7 +24,7 @@ def limits_of(filled: Mapping[str, str]) -> dict[str, JsonValue]:
 
 
 def is_limit(control: str) -> bool:
-    """Whether a control of a template's form is that of a limit."""
+    """Return whether a control of a template's form is that of a limit."""
     return control.startswith(LIMITS)
 
 

@@ -19,7 +19,7 @@ from templates.core.units.units import compatible, require_same_kind, unit
 SHOWN = 5  # rows
 CYCLES = (360.0, 720.0)  # deg
 SAME_ANGLE, SAME_VALUE = 1e-6, 0.01
-"""How far the last angle may be off a whole cycle [deg], and the last value off the first (relative)."""
+"""Largest error of the last angle against a whole cycle [deg], of the last value against the first [-]."""
 DIGITS = 12  # of a shifted angle: 0.1 + 0.2 is 0.3
 
 
@@ -158,7 +158,7 @@ def _adjusted(
 
 
 def _is_angle(field: TableField) -> bool:
-    """Whether a field is an angle, such as that of the crank."""
+    """Return whether a field is an angle, such as that of the crank."""
     return unit(field.unit).base == unit("deg").base and "angle" in _words(field.name)
 
 
@@ -177,7 +177,7 @@ def _cycle(axis: TableColumn, taken: Sequence[TableColumn]) -> tuple[list[str], 
 
 
 def _jump(values: Sequence[float]) -> float:
-    """How far the last value is off the first, over the largest."""
+    """Return the difference of the last value from the first, over the largest."""
     largest = max(map(abs, values))
     return abs(values[-1] - values[0]) / largest if largest else 0.0
 

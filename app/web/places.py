@@ -119,6 +119,6 @@ def _typed(design: Design) -> Iterator[tuple[str, str]]:
 
 
 def _is_single(text: str) -> bool:
-    """Whether a text is one number with its unit, and no relation, list or choice."""
+    """Return whether a text is one number with its unit, and no relation, list or choice."""
     head = text.lstrip("+-.")
     return head[:1].isdigit() and "," not in text

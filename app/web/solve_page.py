@@ -25,7 +25,7 @@ OPTIONAL = ("tolerance", "other", "other_value")
 
 
 WIDER = 5.0
-"""How much farther a question looks to both sides, if its answer is out of reach."""
+"""Factor by which a question searches farther to both sides, if its answer is out of reach."""
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ REASONS = ("/problems/quarantined", "/problems/unknown-template")
 
 
 def is_unusable(refused: Refused) -> bool:
-    """Whether the interface refused because a version is quarantined, or its file was taken away."""
+    """Return whether the interface refused because a version is quarantined, or its file was taken away."""
     return refused.problem.type in REASONS
 
 

@@ -55,7 +55,7 @@ class Typed:
         return self.wrong(place, f"vary.{place}") if place else self.wrong("vary") if line == 0 else []
 
     def is_on(self, name: str) -> bool:
-        """Whether a box is ticked."""
+        """Return whether a box is ticked."""
         return self.fields.get(name) == ON
 
     def ticked(self, group: str) -> list[str]:
@@ -189,7 +189,7 @@ async def _governing(api: Api, design: Design) -> str:
 
 
 def has_limit(criterion: Criterion) -> bool:
-    """Whether a criterion is checked against a number: one that was given, or one that its rule holds."""
+    """True if a criterion is checked against a number: one that was given, or one that its rule holds."""
     return criterion.verdict != "not_checked" and criterion.limit is not None
 
 

@@ -44,7 +44,7 @@ class Line:
 
 
 def toleranced(design: Design) -> bool:
-    """Whether any value of a design has a tolerance."""
+    """Return whether any value of a design has a tolerance."""
     groups = [design.parameters, *(step.inputs for step in design.steps.values())]
     groups += [model.parameters for model in design.models.values()]
     return any(is_toleranced(raw) for group in groups for raw in group.values())
@@ -95,7 +95,7 @@ def _marks(output: OutputScatter) -> Iterator[bars.Mark]:
 
 
 def _near(one: Yield, edges: list[float]) -> bool:
-    """Whether a limit lies so near that the histogram is not squeezed by it."""
+    """Return whether a limit lies so near that the histogram is not squeezed by it."""
     assert one.limit is not None
     width = edges[-1] - edges[0]
     return edges[0] - width <= one.limit <= edges[-1] + width

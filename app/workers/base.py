@@ -20,14 +20,14 @@ UNLIMITED = sys.maxsize
 
 @dataclass(frozen=True)
 class Limits:
-    """How long one run may take [s] and how much memory it may have beside the program itself [MiB]."""
+    """Time that one run may take [s] and memory that it may have beside the program itself [MiB]."""
 
     deadline: float = 60.0
     memory_mb: int = 3072
 
 
 def shares_process(function: Callable[..., object], args: tuple[object, ...]) -> bool:
-    """Whether the process in which a function runs may serve another job after it, see `may_share`."""
+    """Return whether the process in which a function runs may serve another job after it, see `may_share`."""
     is_shared: Callable[..., bool] | None = getattr(function, _SHARED, None)
     return is_shared is not None and is_shared(*args)
 
@@ -88,7 +88,7 @@ class Worker(Batch, Protocol):
     """Runs functions one by one, each on its own, from any number of threads."""
 
     def answers(self) -> bool:
-        """Whether a function would find a process that is alive; if none is, one is started. Never blocks."""
+        """True if a function would find a process that is alive; if none is, one is started. Never blocks."""
         ...
 
 
@@ -96,7 +96,7 @@ class BatchWorker(Worker, Protocol):
     """A worker of which a piece of work can have a process for all its functions."""
 
     def capacity(self, lane: Lane) -> int:
-        """How many more functions of a lane would begin at once; 0 if they would wait. Never blocks."""
+        """Return how many more functions of a lane would begin at once; 0 if they would wait. No blocking."""
         ...
 
     def batch(self, lane: Lane = GEOMETRY) -> Batch:

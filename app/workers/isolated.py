@@ -84,7 +84,7 @@ class JobProcess:
         _ = self._pid
 
     def is_born(self) -> bool:
-        """Whether the forkserver has forked the process; reads nothing, so its owner may use it meanwhile."""
+        """True if the forkserver has forked the process; reads nothing, so its owner may use it meanwhile."""
         try:
             return "_pid" in self.__dict__ or self._status.poll()
         except OSError:  # it has got a job and is gone
@@ -178,11 +178,11 @@ class ForkServer:
         return JobProcess(connection, status)
 
     def is_alive(self) -> bool:
-        """Whether the forkserver runs; neither ended nor stopped by a signal."""
+        """Return whether the forkserver runs; neither ended nor stopped by a signal."""
         return self._process.poll() is None and not self.is_stopped()
 
     def is_stopped(self) -> bool:
-        """Whether a signal has stopped the forkserver: it lives and answers nobody. Linux only."""
+        """Return whether a signal has stopped the forkserver: it lives and answers nobody. Linux only."""
         try:
             state = Path(f"/proc/{self._process.pid}/stat").read_text().rpartition(")")[2].split()[0]
         except OSError:

@@ -137,7 +137,7 @@ def _set_soft(kind: int, wanted: int) -> None:
 
 
 def _has_grown(limits: Limits) -> bool:
-    """Whether the process has kept so much memory that the next request could lack it."""
+    """Return whether the process has kept so much memory that the next request could lack it."""
     if sys.platform != "linux":
         return False
     return _mapped_bytes() - _mapped_at_start() > limits.memory_mb * 2**20 / _GROWTH

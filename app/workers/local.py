@@ -66,7 +66,7 @@ class LocalProcesses:
         return UNLIMITED
 
     def answers(self) -> bool:
-        """Whether the forkserver is alive, and has forked the process that waits for the next job."""
+        """Return whether the forkserver is alive, and has forked the process that waits for the next job."""
         if not self._forkserver.is_alive():
             if not self._forkserver.is_stopped() and self._lock.acquire(blocking=False):
                 try:

@@ -16,7 +16,7 @@ from app.workers.base import Limits
 from app.workers.pieces import PIECE
 
 _COUNT = Struct("!I")
-"""How the number of pieces is written that follow a message."""
+"""Format of the number of pieces that follow a message."""
 
 
 @dataclass(frozen=True)

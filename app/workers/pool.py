@@ -60,7 +60,7 @@ class WarmProcesses:
         return cast(T, outcome.result())
 
     def answers(self) -> bool:
-        """Whether the forkserver is alive; if it has died, it is started again."""
+        """Return whether the forkserver is alive; if it has died, it is started again."""
         if self._forkserver.is_alive():
             return True
         if not self._forkserver.is_stopped() and self._lock.acquire(blocking=False):

@@ -29,7 +29,7 @@ UNNAMED = "worksheet"
 """The id under which a text without one is described."""
 
 ROUNDS = 4
-"""How often a faulty text is read again without its faulty statements."""
+"""Limit on how often a faulty text is read again without its faulty statements."""
 
 
 def checked(text: str, id: str | None) -> bytes:

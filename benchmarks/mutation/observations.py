@@ -45,7 +45,7 @@ class Observation:
     has_processes: bool  # it started processes, which may have run templates and solids
 
     def may_hide(self, file: str) -> bool:
-        """Whether the file may have run in another process, where it was not seen."""
+        """Return whether the file may have run in another process, where it was not seen."""
         is_of_server = file.startswith(IN_SERVER)
         return self.has_programs if is_of_server else self.has_processes
 
@@ -55,7 +55,7 @@ class Observation:
         return {test for line in lines for test in seen.get(line, ())}
 
     def holds_for(self, file: str) -> bool:
-        """Whether the file is the one that was observed."""
+        """Return whether the file is the one that was observed."""
         return self.code.get(file, digest(file)) == digest(file)
 
 
@@ -77,7 +77,7 @@ class Observations:
         return kept
 
     def has(self, test: str, file: str) -> bool:
-        """Whether there is one already."""
+        """Return whether there is one already."""
         kept = self._read(self._target(test))
         return kept is not None and kept.holds_for(file)
 

@@ -74,7 +74,7 @@ class Observer:
 
 
 def has_had_children() -> bool:
-    """Whether this process has started others: ended ones have used time, the rest are in the list."""
+    """Return whether this process has started others: ended ones have used time, the rest are in the list."""
     times = os.times()
     lists = Path("/proc/self/task").glob("*/children")
     return times.children_user + times.children_system > 0 or any(file.read_text().strip() for file in lists)

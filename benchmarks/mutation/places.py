@@ -72,7 +72,7 @@ ALIKE = (
 
 
 def is_plausible(name: str) -> bool:
-    """Whether an operator replaces a sign by one of the same kind, or anything but signs."""
+    """Return whether an operator replaces a sign by one of the same kind, or anything but signs."""
     signs = set(name.split("_")[1:])
     return len(signs) < 2 or any(signs <= kind for kind in ALIKE)
 
@@ -191,7 +191,7 @@ def mutant(place: Place) -> Mutant | None:
 
 
 def is_another(before: str, after: str) -> bool:
-    """Whether the second text is a program, and not the first one."""
+    """Return whether the second text is a program, and not the first one."""
     try:
         return ast.dump(ast.parse(after)) != ast.dump(ast.parse(before))
     except (SyntaxError, ValueError):

@@ -101,7 +101,7 @@ def versions() -> tuple[str, ...]:
 
 
 def names(test: str, version: str) -> bool:
-    """Whether a test names a version, or is about the whole catalogue."""
+    """Return whether a test names a version, or is about the whole catalogue."""
     return changed.is_named(version, test, ()) or f"cad_{Path(changed.CATALOGUE).name}" in test
 
 

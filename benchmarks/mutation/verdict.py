@@ -34,7 +34,7 @@ class Reason:
     equivalent: bool = False
 
     def covers(self, row: dict[str, Any]) -> bool:
-        """Whether it is about this mutant."""
+        """Return whether it is about this mutant."""
         changed = "\n".join(line[1:] for line in row["diff"].splitlines() if line.startswith("+"))
         return row["file"].endswith(self.file) and self.line == row["text"] and self.change in changed
 

@@ -53,7 +53,7 @@ _SAMPLES = 5  # of an edge
 
 @dataclass(frozen=True)
 class BoreFineness:
-    """How large elements are, in radii of the bore."""
+    """Sizes of elements, in radii of the bore."""
 
     bore: float  # at the bore
     body: float  # elsewhere

@@ -80,6 +80,6 @@ def bore_tables(
 
 
 def difference(low: Array, high: Array) -> float:
-    """How far two matrices differ where they bend the bore, over the second one; in the spectral norm."""
+    """Return the relative difference of two matrices where they bend the bore, in the spectral norm."""
     kept = np.ix_(~RIGID, ~RIGID)
     return float(np.linalg.norm(low[kept] - high[kept], 2) / np.linalg.norm(high[kept], 2))

@@ -142,7 +142,7 @@ def respond(system: System, boundary: Boundary) -> Response:
 
 
 def is_antisymmetric(mirror: str, load: Kind) -> bool:
-    """Whether the displacement at the image of a point, in the plane of this normal, is minus the image."""
+    """True if the displacement at the image of a point, in the plane of this normal, is minus the image."""
     return load == "torsion" or mirror == "x"  # a moment about y is odd in x
 
 

@@ -34,7 +34,7 @@ _SAMPLES = 16  # of an edge, to see how far it turns
 
 @dataclass(frozen=True)
 class Fineness:
-    """How fine a mesh is."""
+    """Fineness of a mesh."""
 
     size: float  # of the largest elements, in the solid's scale
     curvature: float  # elements for each radius of curvature

@@ -45,7 +45,7 @@ class Solid:
 
     @property
     def parts(self) -> int:
-        """How many of these make the whole."""
+        """Number of these that make the whole."""
         return 2 if self.mirror else 1
 
 
@@ -69,7 +69,7 @@ def read_solid(step: bytes, shaft: Shaft, mirrors: Iterable[str] = ("y", "x")) -
 
 
 def planar(face: Any) -> bool:
-    """Whether a face is flat: of its principal moments of area the largest is the sum of the others."""
+    """True if a face is flat: of its principal moments of area the largest is the sum of the others."""
     low, middle, high = np.linalg.eigvalsh(_inertia(face))
     return bool(abs(high - low - middle) < _FLAT * high)
 
@@ -97,7 +97,7 @@ def _halves(whole: Any, mirrors: Iterable[str]) -> Any:
 
 
 def _images(one: Any, other: Any, axis: str, volume: float) -> bool:
-    """Whether two halves are each other's mirror images, and together the whole."""
+    """Return whether two halves are each other's mirror images, and together the whole."""
     if abs(one.mass + other.mass - volume) > _ALIKE * volume:
         return False
     seen, wanted = _look(one, axis), _look(other, axis, mirrored=True)

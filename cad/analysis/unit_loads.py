@@ -69,7 +69,7 @@ class LoadedThrow:
         return -self.shaft.held / (self.shaft.loaded - self.shaft.held)
 
     def _on_pin(self) -> ng.CF:
-        """How much of a force on the pin acts where: on its plain cylinder, most at its middle."""
+        """Distribution of a force on the pin: over its plain cylinder, most at its middle."""
         crank = self.crank
         away = (ng.x - crank.throw) ** 2 + ng.y**2
         low, high = ((crank.pin_radius * (1 + side * _ON_PIN)) ** 2 for side in (-1, 1))

@@ -19,7 +19,7 @@ from cad.step import write_step
 
 
 def has_throws(cls: type[CadModel]) -> bool:
-    """Whether a model is a shaft of throws: its `drawn` answers a `WholeShaft`."""
+    """Return whether a model is a shaft of throws: its `drawn` answers a `WholeShaft`."""
     declared = getattr(getattr(cls, "drawn", None), "__annotations__", {})
     return declared.get("return") in (WholeShaft, WholeShaft.__name__)
 

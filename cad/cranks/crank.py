@@ -71,7 +71,7 @@ class CrankModel(CrankRules):
 
     @classmethod
     def is_throw(cls) -> bool:
-        """Whether nothing lies beyond the main journals, so that the solid ends mid-journal."""
+        """Return whether nothing lies beyond the main journals, so that the solid ends mid-journal."""
         return cls.ends is CrankModel.ends
 
     def throw_sizes(self) -> Crank | None:

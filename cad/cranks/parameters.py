@@ -123,12 +123,12 @@ class CrankParameters(CadModel):
 
     @formula("mm", "web end thickness", symbol="L_e")
     def L_e(self) -> Array:
-        """How thick a web is at its end beyond the pin, where it is inclined most."""
+        """Thickness of a web at its end beyond the pin, where it is inclined most."""
         return self.L_w - np.tan(self.beta) * (self.R + self.W / 2 - self.x_b)
 
     @formula("mm", "drilling rise", symbol="h_o")
     def h_o(self) -> Array:
-        """How far the oil drilling runs along the shaft: mid-pin to mid-length of the journal drawn."""
+        """Length of the oil drilling along the shaft: mid-pin to mid-length of the journal drawn."""
         return (self.L_c + self.L_s) / 2 + self.L_w
 
     @formula("1", "drilling lean", symbol="k_o")

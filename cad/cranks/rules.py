@@ -16,13 +16,13 @@ from templates.core.language.template import Array, Truth, require, units
 
 @units(None, "m", returns="m")
 def corner(shape: str, width: Array) -> Array:
-    """How far [m] a web of a width [m] reaches from the journal's axis, on the counterweight's side."""
+    """Return the reach [m] of a web of a width [m] from the journal's axis, on the counterweight's side."""
     return {"obround": 0.5, "rectangular": 0.5 * 2**0.5}[shape] * width
 
 
 @units(None, "rad", returns="1")
 def clear_of_corners(shape: str, angle: Array) -> Truth:
-    """Whether the flanks of a counterweight [rad] pass the corners of the web, or meet them exactly."""
+    """True if the flanks of a counterweight [rad] pass the corners of the web, or meet them exactly."""
     meeting = {"obround": pi, "rectangular": pi / 2}[shape]
     apart: Array = np.abs(angle - meeting)
     return (apart < 1e-9) | (apart >= radians(0.099))

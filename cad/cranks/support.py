@@ -1,4 +1,4 @@
-"""How far the outline of a web reaches in a direction [mm]: for the box of a shaft with turned throws."""
+"""Reach of a web's outline in a direction [mm]: for the box of a shaft with turned throws."""
 
 from __future__ import annotations
 

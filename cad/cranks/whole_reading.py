@@ -240,10 +240,10 @@ class ShaftSeen:
 
 
 def _spans(cylinder: Surface, low: float, high: float) -> bool:
-    """Whether a cylinder reaches from one plane to another."""
+    """Return whether a cylinder reaches from one plane to another."""
     return abs(cylinder.reach[0] - low) < _CLEAR and abs(cylinder.reach[1] - high) < _CLEAR
 
 
 def _shown(line: float, lines: Iterable[float]) -> bool:
-    """Whether a line through the axis is among others."""
+    """Return whether a line through the axis is among others."""
     return any(abs(remainder(line - other, pi)) < 100 * _ANGLE for other in lines)

@@ -73,7 +73,7 @@ class Lanes:
         return self.local, 0
 
     def _is_high(self, one: Dimension) -> bool:
-        """Whether what the end view shows of a width lies nearer to the top of that view."""
+        """Return whether what the end view shows of a width lies nearer to the top of that view."""
         (_, low), (_, high) = self.end.box
         reaches = [_edge_at(one, self.end, number) for number in (0, 1)]
         tops, feet = [high - end for _, end in reaches], [start - low for start, _ in reaches]
@@ -81,7 +81,7 @@ class Lanes:
 
     @property
     def counts(self) -> tuple[int, int, int, int, int]:
-        """How many lanes there can be at most: left, between the views, right, below, above."""
+        """Largest number of lanes: left, between the views, right, below, above."""
         below = max(len(self.below), len(self.end_below))
         above = max(len(self.above), min(len(self.end_above), 4))
         return len(self.left), len(self.right), len(self.beyond), min(below, 4), above

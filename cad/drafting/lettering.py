@@ -1,4 +1,4 @@
-"""How wide letters are: an upper bound over the fonts in which a browser or a typesetter shows a drawing.
+"""Width of letters: an upper bound over the fonts in which a browser or a typesetter shows a drawing.
 
 The widths are those of DejaVu Sans, which is wider than Inter, Liberation Sans and Arial; a CAD program's
 ISO lettering is narrower than all of them.

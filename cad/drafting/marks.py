@@ -131,7 +131,7 @@ def _longer(segment: Segment, over: float) -> Segment:
 
 
 def _on_one_line(one: Segment, other: Segment) -> bool:
-    """Whether a segment lies on the line of another."""
+    """Return whether a segment lies on the line of another."""
     (x, y), (u, v) = other
     size = hypot(u - x, v - y) or 1.0
     return all(abs((u - x) * (b - y) - (v - y) * (a - x)) / size < 1e-3 for a, b in one)

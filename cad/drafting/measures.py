@@ -72,7 +72,7 @@ def _of_cylinders(seen: Seen, section: View, end: View) -> Iterator[Measure]:
 
 
 def alike(cylinder: Surface, seen: Seen) -> int:
-    """How many cylinders of its size stand in a pattern with one: at its place along other parallel axes."""
+    """Return the number of equal cylinders in a pattern with one: at its place along parallel axes."""
     axis = cylinder.direction
     feet = {
         (
@@ -131,7 +131,7 @@ def _on_circle(view: View, centre: Point, radius: float) -> Point | None:
 
 
 def _within(cylinder: Surface, normal: Vector) -> bool:
-    """Whether the axis lies in the plane of the section."""
+    """Return whether the axis lies in the plane of the section."""
     return abs(cylinder.point.dot(normal)) < _CLEAR and abs(cylinder.direction.dot(normal)) < _CLEAR
 
 

@@ -36,20 +36,20 @@ class Room:
         self._lines += [(*a, *b) for a, b in pairwise(points)]
 
     def holds(self, box: Rectangle) -> bool:
-        """Whether a rectangle lies on the sheet's area."""
+        """Return whether a rectangle lies on the sheet's area."""
         left, low, right, high = self.area
         return box[0] >= left and box[1] >= low and box[2] <= right and box[3] <= high
 
     def is_clear(self, box: Rectangle, apart: float = _APART) -> bool:
-        """Whether a rectangle lies on the area and off all others."""
+        """Return whether a rectangle lies on the area and off all others."""
         return self.holds(box) and not any(overlap(box, other, apart) for other in self.boxes)
 
     def is_free(self, box: Rectangle) -> bool:
-        """Whether a rectangle lies on the area, off all others and off all lines."""
+        """Return whether a rectangle lies on the area, off all others and off all lines."""
         return self.is_clear(box) and not self._is_crossed(box)
 
     def passes(self, line: Sequence[Point]) -> bool:
-        """Whether a straight line crosses no words."""
+        """Return whether a straight line crosses no words."""
         piece = np.array([[*line[0], *line[-1]]])
         return not any(crossed(piece, box).any() for box in self.words)
 
@@ -68,7 +68,7 @@ class Room:
 
 
 def overlap(one: Rectangle, other: Rectangle, apart: float = 0.0) -> bool:
-    """Whether two rectangles overlap, or come nearer than that."""
+    """Return whether two rectangles overlap, or come nearer than that."""
     is_beside = one[0] >= other[2] + apart or other[0] >= one[2] + apart
     return not (is_beside or one[1] >= other[3] + apart or other[1] >= one[3] + apart)
 

@@ -193,7 +193,7 @@ def _is_ball(shape: Shape) -> bool:
 
 
 def _is_bar(shape: Shape) -> bool:
-    """Whether a shape is a full cylinder about the shaft, as the journal of an assembly."""
+    """Return whether a shape is a full cylinder about the shaft, as the journal of an assembly."""
     faces = faces_of(shape)
     return sorted(face.kind for face in faces) == ["cylinder", "plane", "plane"] and any(
         face.kind == "cylinder" and face.surface.about(Z) for face in faces
@@ -219,7 +219,7 @@ def _upright(bodies: Sequence[Body]) -> Vector:
         return sum(face.Area() for shape in placed for face in _cut(shape, normal))
 
     def parts(normal: Vector) -> bool:
-        """Whether there is material on both sides: a half shell ends in its joint, or a little beyond."""
+        """True if there is material on both sides: a half shell ends in its joint, or a little beyond."""
         sides = [_sides(body.shape.moved(place), normal) for body in bodies for place in body.places]
         depths = sorted((-min(low for low, _ in sides), max(high for _, high in sides)))
         return depths[0] > max(_CLEAR, _LITTLE * depths[1])
@@ -232,7 +232,7 @@ def _upright(bodies: Sequence[Body]) -> Vector:
 
 
 def _surrounds(cylinder: Surface) -> bool:
-    """Whether the shaft's axis lies within: in a bore, or in the relief beside the joint of a shell."""
+    """True if the shaft's axis lies within: in a bore, or in the relief beside the joint of a shell."""
     return cylinder.along(Z) and cylinder.point.cross(Z).Length < cylinder.diameter / 2
 
 

@@ -281,7 +281,7 @@ def recompute(document: Any) -> None:
 
 
 def is_drawn(thing: Any) -> bool:
-    """Whether an object has solids of its own, and is neither a reference nor a group."""
+    """Return whether an object has solids of its own, and is neither a reference nor a group."""
     try:
         return not thing.TypeId.startswith("App::") and bool(thing.Shape.Solids)
     except Exception:

@@ -21,7 +21,7 @@ LINING_DENSITY = 3110.0  # kg/m³, of AlSn20Cu: mixture of its elements by mass
 
 @units("m", returns="1")
 def is_a_gap(length: Array) -> Truth:
-    """Whether a length [m] is one that the kernel can tell from none: 0.1 µm."""
+    """Return whether a length [m] is one that the kernel can tell from none: 0.1 µm."""
     return length >= 1e-7
 
 

@@ -207,5 +207,5 @@ class PlainBearing(CadModel):
 
 @units("m", returns="1")
 def drawable(length: Array) -> Truth:
-    """Whether a length [m] is none, or one that the kernel can tell from none."""
+    """Return whether a length [m] is none, or one that the kernel can tell from none."""
     return (length == 0) | (length >= 1e-5)

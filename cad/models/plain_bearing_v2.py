@@ -33,7 +33,7 @@ WHOLE = 3.14159  # rad; a groove of so much goes from joint to joint
 
 @units("m", "1", returns="1")
 def drawable(length: Array, least: float) -> Truth:
-    """Whether a length [m] is none, or one that the kernel can tell from none, `least` in micrometres."""
+    """True if a length [m] is none, or one that the kernel can tell from none, `least` in micrometres."""
     return (length <= 0) | (length >= 1e-6 * least)
 
 

@@ -35,7 +35,7 @@ WHOLE = 3.14159  # rad; a groove of so much goes from joint to joint
 
 @units(None, returns="1")
 def is_fitted(state: str) -> Truth:
-    """Whether a shell is drawn as the housing holds it."""
+    """Return whether a shell is drawn as the housing holds it."""
     return np.asarray(state == "fitted")
 
 

@@ -32,7 +32,7 @@ from templates.core.language.template import (
 
 @units("m", returns="1")
 def drawable(length: Array) -> Truth:
-    """Whether a length [m] is none, or one that the kernel can tell from none."""
+    """Return whether a length [m] is none, or one that the kernel can tell from none."""
     return (length <= 0) | (length >= 1e-5)
 
 
@@ -45,13 +45,13 @@ def half_pitch(washer: str, grooves: Array) -> Array:
 
 @units(None, "1", returns="1")
 def is_free_at_crown(washer: str, grooves: Array) -> Truth:
-    """Whether no groove runs to the crown, where the lug is."""
+    """Return whether no groove runs to the crown, where the lug is."""
     return (np.mod(grooves, 2) == 0) | (washer == "full")
 
 
 @units(None, "m", returns="1")
 def takes_a_pin(washer: str, hole: Array) -> Truth:
-    """Whether there is no hole for a pin, or a full ring for it."""
+    """Return whether there is no hole for a pin, or a full ring for it."""
     return (hole <= 0) | (washer == "full")
 
 

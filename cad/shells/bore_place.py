@@ -14,7 +14,7 @@ from cad.shells.rod import Rod
 
 
 def has_split_bore(cls: type[CadModel]) -> bool:
-    """Whether a model is a housing or a rod: its `drawn` answers a `Housing` or a `Rod`.
+    """Return whether a model is a housing or a rod: its `drawn` answers a `Housing` or a `Rod`.
 
     An assembly on one of them is not: parts that stand beside it are none of its bore.
     """

@@ -27,7 +27,7 @@ class Relief:
 
     @property
     def axis(self) -> float:
-        """How far the axis lies from the bore's, towards the joint."""
+        """Distance of the axis from the bore's, towards the joint."""
         fall = self.height**2 / (self.bore + sqrt(self.bore**2 - self.height**2))  # of the bore's arc
         return self.depth * (2 * self.bore + self.depth) / (2 * (self.depth + fall))
 

@@ -15,7 +15,7 @@ from templates.core.language.template import Array, Truth, require, units
 
 @units("m", "1", returns="1")
 def drawable(length: Array, least: float) -> Truth:
-    """Whether a length [m] is none, or one that the kernel can tell from none, `least` in micrometres."""
+    """True if a length [m] is none, or one that the kernel can tell from none, `least` in micrometres."""
     return (length <= 0) | (length >= 1e-6 * least)
 
 

@@ -96,7 +96,7 @@ class FreeShellSeen(ShellSeen):
 
 
 def reach_of(shell: HalfShell) -> tuple[float, float, float]:
-    """How far a shell reaches [mm]: to the side without a tang, to that with one, and its lowest height."""
+    """Return the reach of a shell [mm]: to the side without a tang, to that with one, and down."""
     lift, crush = shell.lift, shell.crush
     collar = shell.flange.radius if shell.flange else shell.outside
     lip = shell.outside + shell.tang.height if shell.tang else 0.0
@@ -106,7 +106,7 @@ def reach_of(shell: HalfShell) -> tuple[float, float, float]:
 
 
 def _off_axis(plane: Surface) -> float:
-    """How far [mm] the shaft's axis is from a plane along it."""
+    """Return the distance [mm] of the shaft's axis from a plane along it."""
     return abs(plane.point.dot(plane.direction))
 
 

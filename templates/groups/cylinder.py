@@ -184,7 +184,7 @@ class Cylinder(Template):
 
     @shared
     def steps(self) -> Array:
-        """How many steps a cycle has."""
+        """Number of steps of a cycle."""
         return steps_in(self.strokes, self.step)
 
     @formula("mm", "crank radius")

@@ -169,7 +169,7 @@ class EngineCylinders(Template):
 
     @shared
     def steps(self) -> Array:
-        """How many steps a cycle has."""
+        """Number of steps of a cycle."""
         return steps_in(self.strokes, self.step)
 
     @shared

@@ -148,7 +148,7 @@ class FedBearing(Template):
     @formula("1", "inlets", symbol="n_{F}", remedy=FED, per_level={"supplied": limits(ge=1)},
              latex=r"\text{number of groove, hole in the sleeve and hole in the pin}")  # fmt: skip
     def inlets(self) -> Array:
-        """How many of groove, sleeve hole and pin hole there are."""
+        """Number of groove, sleeve hole and pin hole that exist."""
         return self.feeding.count
 
     @text("supply")

@@ -82,7 +82,7 @@ class TorsionTrain(Template):
 
     @shared
     def layout(self) -> TrainLayout | None:
-        """How the train is joined; None where a rule refuses it."""
+        """Layout of the train; None where a rule refuses it."""
         return train_layout(self.J, self.s_i, self.s_j, self.g_i, self.g_j, self.i_g)
 
     @require("gear_to", "gear_from", missing=True,

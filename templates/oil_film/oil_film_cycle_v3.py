@@ -378,7 +378,7 @@ class OilFilmCycle(FedBearing):
 
     @text("verdict", absent=MARCHED_ONLY)
     def verdict(self) -> str:
-        """How the march ended."""
+        """End of the march."""
         return self.any_orbit.verdict
 
     @text("verdict reason", absent="a film repeats, or the level does not follow the oil")

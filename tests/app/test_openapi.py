@@ -1,5 +1,6 @@
 """The description of the interface: valid, complete, with examples that run; and its page, which is local."""
 
+import re
 from html.parser import HTMLParser
 from urllib.parse import urlsplit
 
@@ -217,6 +218,24 @@ SOLVE = {
     "target": {"minimum_film_thickness": "3.2449 um"},
 }
 LOADS = {"inputs": {**OIL_FILM, "radial_load": {"value": [25, 1e9], "unit": "kN"}}}
+
+
+UNKNOWN = {"kind": "step", "number": "99", "name": "nothing", "sha256": "0" * 64, "key": "0" * 64}
+"""Values of a path's parameters that have the right form; any other parameter is an id that nothing has."""
+
+
+def test_a_problem_about_something_unknown_is_declared(http, operations):
+    """Each GET of a path with a parameter answers with a status that it lists beside `4XX`."""
+    asked = 0
+    for name, operation in operations.items():
+        method, path = name.split(" ")
+        if method != "GET" or "{" not in path or path.endswith("/events"):  # a stream has begun already
+            continue
+        place = re.sub(r"{(\w+)}", lambda part: UNKNOWN.get(part[1], "0" * 26), path)
+        answer = http.get(place)
+        assert str(answer.status_code) in operation["responses"], (name, answer.text)
+        asked += answer.status_code == 404
+    assert asked > 60
 
 
 @pytest.mark.parametrize(

@@ -84,7 +84,7 @@ class Access:
             await self.app(scope, receive, send)
 
     async def _is_still(self, door: Door, scope: Scope, who: Principal) -> bool:
-        """Whether a request would be let in as the same principal now; a stream lasts longer than a key."""
+        """True if a request would be let in as the same principal now; a stream lasts longer than a key."""
         guest = await self._guest(door, scope)
         return guest is not None and guest.principal == who
 
@@ -102,7 +102,7 @@ class Access:
 
 
 def _has_key_in_address(scope: Scope) -> bool:
-    """Whether a key stands in path or query."""
+    """Return whether a key stands in path or query."""
     query: bytes = scope["query_string"]
     if len(scope["path"]) >= LENGTH and MARK in scope["path"] and holds_key(scope["path"]):
         return True

@@ -28,7 +28,7 @@ PRINCIPAL = "crankwright.principal"
 
 
 def is_session(text: str) -> bool:
-    """Whether a cookie's value can be a session of a page."""
+    """Return whether a cookie's value can be a session of a page."""
     return _SESSION.fullmatch(text) is not None
 
 
@@ -42,7 +42,7 @@ def from_inside(app: ASGIApp, client: str) -> ASGIApp:
 
 
 def is_inside(scope: Scope) -> bool:
-    """Whether this process sent a request itself. No header can make it so."""
+    """Return whether this process sent a request itself. No header can make it so."""
     return _CALLER in scope
 
 

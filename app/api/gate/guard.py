@@ -188,7 +188,7 @@ def _check_origin(looked: Looked, asked: Authority, scheme: str, hosts: Hosts) -
 
 
 def _is_own(origin: str, asked: Authority, scheme: str, hosts: Hosts) -> bool:
-    """Whether an origin is that of the service's own pages, for the host that was asked."""
+    """Return whether an origin is that of the service's own pages, for the host that was asked."""
     kind, _, rest = origin.partition("://")
     source = parse(rest)
     if source is None or kind not in ("http", "https"):

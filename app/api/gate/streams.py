@@ -1,4 +1,4 @@
-"""How many streams of events may be open: each holds memory and a connection as long as its client likes."""
+"""Limits of open streams of events: each holds memory and a connection as long as its client likes."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ class WholeTarget(BoundedHead):
 
 
 def is_mere_path(scope: Scope) -> bool:
-    """Whether the target of a request is a path, or the `*` of OPTIONS."""
+    """Return whether the target of a request is a path, or the `*` of OPTIONS."""
     if scope["path"] == "*":
         return True
     return scope["path"].startswith("/") and _KEY not in (scope.get("extensions") or {})

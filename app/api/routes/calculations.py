@@ -67,7 +67,7 @@ class LargeRoute(StrictRoute):
 
 
 def _is_plain(request: Request) -> bool:
-    """Whether the path names a template and a version in their usual form."""
+    """Return whether the path names a template and a version in their usual form."""
     id, number = request.path_params["id"], request.path_params["number"]
     return len(id) <= LONGEST_ID and PLAIN_NUMBER.fullmatch(number) is not None
 
@@ -170,7 +170,7 @@ async def _question(
 
 
 def _form(request: Request, operation: str) -> Form:
-    """How the client wants to read the answer: as an array if it names that before JSON."""
+    """Return the format that the client wants: an array if it names that before JSON."""
     kinds = [kind.partition(";")[0].strip() for kind in request.headers.get("accept", "").split(",")]
     return "npy" if "npy" in OPERATIONS[operation].write and kinds[0] == NPY else "json"
 

@@ -44,6 +44,6 @@ async def watch_design(
 
 
 def _start(database: Database, id: str, last: int | None) -> Standing | None:
-    """How a design stands; None if the reader can go on after its last event."""
+    """Return the state of a design; None if the reader can go on after its last event."""
     with database.read() as session:
         return None if can_resume(session, id, last) else standing(session, id)

@@ -32,7 +32,7 @@ from app.api.waiting import LATER, accepted, accepted_weights, finished
 from app.designs import stamps, views
 from app.jobs.service import Jobs
 from app.reports.paper import Press
-from app.schemas.problems import RouteOptions
+from app.schemas.problems import RouteOptions, refusals
 from app.solids.healing import Healing
 from app.solids.models import File, Models
 from app.storage.artifacts import Artifacts
@@ -53,6 +53,7 @@ FILES: RouteOptions = {
         **LATER,
         **UNCHANGED,
         **UNAVAILABLE,
+        **refusals(404, 429),
     },
 }
 
@@ -235,7 +236,7 @@ async def read_model_file(
 
 
 def _is_outdated(models: Models, key: str, kind: str) -> bool:
-    """Whether a drawing is one of an older program, which had no room for a stamp; it is drawn again."""
+    """True if a drawing is one of an older program, which had no room for a stamp; it is drawn again."""
     file = models.file(key, kind) if kind in DRAWINGS else None
     return file is not None and not takes_stamp(models.store.read(file.sha256), kind)
 

@@ -42,7 +42,7 @@ router = APIRouter(prefix="/api/v1", tags=["models"], route_class=StrictRoute)
 
 Id = Annotated[str, Path(max_length=64, examples=["ball_bearing"])]
 PATIENCE = "wait=30"
-"""How long an answer waits for a file that is still being made, unless the client prefers otherwise."""
+"""Time that an answer waits for a file that is still being made, unless the client prefers otherwise [s]."""
 FOR_EVER = "public, max-age=31536000, immutable"
 
 

@@ -56,7 +56,7 @@ def _number(raw: Raw) -> tuple[float, str] | None:
 
 
 def same(one: Raw, other: Raw) -> bool:
-    """Whether two values as typed mean the same, however they are written."""
+    """Return whether two values as typed mean the same, however they are written."""
     if one == other:
         return True
     this, that = shape(one), shape(other)

@@ -93,7 +93,7 @@ def sound(document: Document, faults: Cells) -> Document:
 
 
 def is_place(network: Network, place: str) -> bool:
-    """Whether a variant may override a place: a parameter, an input of a step, a parameter of a model."""
+    """True if a variant may override a place: a parameter, an input of a step, a parameter of a model."""
     reference = Reference.parse(place)
     if reference.output is None:
         return reference.block in network.parameters

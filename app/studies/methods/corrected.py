@@ -99,11 +99,11 @@ class Corrected:
         self.guards.append(np.where(np.isfinite(share), np.maximum(share, 0.0), 0.0))
 
     def is_known(self, unit: Array) -> bool:
-        """Whether a place, shape (d,), is close to one that was confirmed."""
+        """Return whether a place, shape (d,), is close to one that was confirmed."""
         return any(float(np.linalg.norm(unit - place)) < CLOSE for place in self.places)
 
     def _weights(self, unit: Array) -> Array:
-        """How much each confirmed place counts, shape (N, a); the rows add up to one."""
+        """Weight of each confirmed place, shape (N, a); each row adds up to one."""
         if not self.places:
             return np.empty((len(unit), 0))
         return kriging_weights(np.array(self.places), unit)
@@ -132,7 +132,7 @@ def _kriged(weights: Array, values: Array) -> Array:
 
 
 def kriging_weights(places: Array, unit: Array) -> Array:
-    """How much each of the places (a, d) counts at each row of `unit` (N, d), shape (N, a).
+    """Return the weight of each of the places (a, d) at each row of `unit` (N, d), shape (N, a).
 
     The weights of a row add up to one. Ordinary kriging with the covariance exp(-r²/2 l²).
     """

@@ -19,7 +19,7 @@ class Points(Protocol):
 
     @property
     def count(self) -> int:
-        """How many rows there are."""
+        """Number of rows."""
         ...
 
     def rows(self, first: int, last: int) -> Array:
@@ -35,7 +35,7 @@ class Table:
 
     @property
     def count(self) -> int:
-        """How many rows there are."""
+        """Number of rows."""
         return len(self.values)
 
     def rows(self, first: int, last: int) -> Array:
@@ -65,12 +65,12 @@ class Grid:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """How many values each variable takes."""
+        """Number of values that each variable takes."""
         return tuple(len(axis) for axis in self.axes)
 
     @property
     def count(self) -> int:
-        """How many rows there are."""
+        """Number of rows."""
         return prod(self.shape)
 
     def rows(self, first: int, last: int) -> Array:

@@ -98,7 +98,7 @@ class _Tangent:
         return self._kept[key]
 
     def _is_stale(self) -> bool:
-        """Whether the last places brought nothing: SLSQP chases the noise of solvers for ever."""
+        """Return whether the last places brought nothing: SLSQP chases the noise of solvers for ever."""
         if len(self.places) < STALE:
             return False
         before, after = (min(part, key=rank) for part in (self.places[: 1 - STALE], self.places[1 - STALE :]))

@@ -57,7 +57,7 @@ def scan(problem: Problem, answer: Answer, seed: int) -> Scan:
 
 
 def scanned(space: Space) -> int:
-    """How many rows a scan has."""
+    """Return the number of rows of a scan."""
     lists = [len(v.values) for v in space.variables if isinstance(v, Values)]
     return min(prod(lists), SCANNED) if len(lists) == len(space) else SCANNED
 

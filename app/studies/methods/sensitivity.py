@@ -46,7 +46,7 @@ class MorrisPoints:
 
     @property
     def count(self) -> int:
-        """How many rows there are."""
+        """Number of rows."""
         return self.trajectories * (len(self.space) + 1)
 
     @cached_property
@@ -122,7 +122,7 @@ class SobolPoints:
 
     @property
     def count(self) -> int:
-        """How many rows there are."""
+        """Number of rows."""
         return self.base * (len(self.space) + 2)
 
     @cached_property

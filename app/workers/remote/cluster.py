@@ -62,11 +62,11 @@ class Cluster:
         self._thread.start()
 
     def size(self, lane: Lane) -> int:
-        """How many functions of a lane the machines run at the same time."""
+        """Return the number of functions of a lane that the machines run at the same time."""
         return sum(there.size for there in self._places.get(lane, {}).values())
 
     def free(self, lane: Lane) -> int:
-        """How many more they would begin now."""
+        """Return how many more functions they would begin now."""
         with self._changed:
             return sum(max(0, count) for count in self._free(lane).values())
 

@@ -59,7 +59,7 @@ class DaskWorker:
         return self._cluster.free(lane)
 
     def answers(self) -> bool:
-        """Whether there is a machine of the same program."""
+        """Return whether there is a machine of the same program."""
         return self._cluster.size(GEOMETRY) > 0
 
     def why_silent(self) -> str:

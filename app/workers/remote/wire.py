@@ -44,7 +44,7 @@ def carry_out(key: str, order: Order, topic: str) -> Outcome:
 
 @dataclass(frozen=True)
 class Places:
-    """How many functions of a lane a machine runs at the same time, and how many of them it has of others."""
+    """Number of functions of a lane that a machine runs at the same time, and of those that others sent."""
 
     size: int
     of_others: int

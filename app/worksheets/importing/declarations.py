@@ -105,7 +105,7 @@ def sort_of(text: str, axis: str = "") -> Sort:
 
 
 def fits(text: str, sort: Sort) -> bool:
-    """Whether a value can be declared in a unit."""
+    """Return whether a value can be declared in a unit."""
     try:
         return compatible(unit(text).base, sort.kind.base) and not unit(text).absolute
     except FaultyText:

@@ -34,7 +34,7 @@ AGAIN = "save the sheet in Mathcad again, and send that file"
 
 @dataclass
 class Budget:
-    """How many bytes may still be unpacked."""
+    """Number of bytes that may still be unpacked."""
 
     left: int = MOST_BYTES
 
@@ -97,7 +97,7 @@ class Package:
 
 
 def is_package(content: bytes) -> bool:
-    """Whether a file begins as a ZIP does."""
+    """Return whether a file begins as a ZIP does."""
     return content.startswith(b"PK\x03\x04")
 
 

@@ -226,7 +226,7 @@ def _monomial(node: Node) -> Scaled:
 
 
 def is_infinite(text: str) -> bool:
-    """Whether a stored number stands for infinity."""
+    """Return whether a stored number stands for infinity."""
     try:
         return not abs(float(text)) < BEYOND
     except ValueError:
@@ -234,7 +234,7 @@ def is_infinite(text: str) -> bool:
 
 
 def close(ours: Iterable[float], theirs: Iterable[float], within: float = 1e-9) -> bool:
-    """Whether values agree, relative to the greatest of them: a zero of a list is judged by its items."""
+    """True if values agree, relative to the greatest of them: a zero of a list is judged by its items."""
     one, other = list(ours), list(theirs)
     if len(one) != len(other) or not all(map(math.isfinite, one)):
         return False

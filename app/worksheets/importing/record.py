@@ -132,7 +132,7 @@ def _reason(region: RegionRecord) -> str:
 
 
 def counted(record: SheetRecord) -> dict[State, int]:
-    """How many mathematical regions are in each state."""
+    """Count the mathematical regions in each state."""
     states = [region["state"] for region in record["regions"] if region["is_mathematical"]]
     return {state: states.count(state) for state in STATES}
 

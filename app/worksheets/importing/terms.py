@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from app.worksheets.importing.errors import Untranslatable
 
 LOOSE, SUM, PRODUCT, SIGNED, POWER, ATOM = range(6)
-"""How tightly an expression binds; a condition or an `if` binds least."""
+"""Precedence of each expression; a condition or an `if` binds least."""
 
 LONGEST = 1_800
 """Characters of one expression: a statement of a worksheet has at most 2,000."""

@@ -83,7 +83,7 @@ def _source_digest_of(sources: tuple[str, ...]) -> str:
 
 
 def is_digest_of(text: str, cls: type[Template]) -> bool:
-    """Whether a digest of either kind, from an old revision say, belongs to the code of this version."""
+    """True if a digest of either kind, from an old revision say, belongs to the code of this version."""
     return text in (digest(cls), content_digest(cls), source_digest(cls))
 
 
@@ -117,7 +117,7 @@ def _sources(cls: type[Template]) -> Iterator[str]:
 
 
 def _declares(base: type) -> bool:
-    """Whether a base declares anything of its own; the bases that are the language do not."""
+    """Return whether a base declares anything of its own; the bases that are the language do not."""
     return any(isinstance(value, (Declaration, Requirement, Shared)) for value in vars(base).values())
 
 
@@ -179,13 +179,13 @@ def _is_silent(node: Any, within_class: bool) -> bool:
 
 
 def _is_text(node: Any) -> bool:
-    """Whether a statement is a docstring, or another text that does nothing."""
+    """Return whether a statement is a docstring, or another text that does nothing."""
     constant = node.value if isinstance(node, ast.Expr) else None
     return isinstance(constant, ast.Constant) and isinstance(constant.value, str)
 
 
 def _is_mark(node: Any) -> bool:
-    """Whether a statement of a class sets one of its marks."""
+    """Return whether a statement of a class sets one of its marks."""
     targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
     names = {target.id if isinstance(target, ast.Name) else "" for target in targets}
     return isinstance(node, (ast.Assign, ast.AnnAssign)) and names <= MARKS

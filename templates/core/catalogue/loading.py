@@ -83,7 +83,7 @@ def text_of(module: ModuleType) -> str | None:
 
 
 def is_outside(cls: type) -> bool:
-    """Whether a class comes from outside the packages of this program: a team's file, worksheet or model."""
+    """True if a class comes from outside the packages of this program: a team's file, worksheet or model."""
     return cls.__module__.partition(".")[0] in (OUTSIDE, WORKSHEETS, BROUGHT)
 
 

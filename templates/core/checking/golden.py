@@ -82,7 +82,7 @@ def _of_case(case: Mapping[str, Any], outcome: Mapping[str, Any], precision: flo
 
 
 def _equal(old: Any, new: Any, precision: float) -> bool:
-    """Whether two results in SI agree: texts exactly, numbers to the relative precision."""
+    """Return whether two results in SI agree: texts exactly, numbers to the relative precision."""
     if isinstance(old, str) or isinstance(new, str) or old is None or new is None:
         return bool(old == new)
     one, other = np.asarray(old, dtype=float), np.asarray(new, dtype=float)

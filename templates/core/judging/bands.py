@@ -164,7 +164,7 @@ def _own_shifts(
 
 
 def _changes(side: Relation, middle: Value, low: Mapping[str, Value], high: Mapping[str, Value]) -> Bounds:
-    """How far down and how far up a side moves between two sets of values; NaN if that is not known."""
+    """Return how far down and up a side moves between two sets of values; NaN if that is not known."""
     with np.errstate(all="ignore"):
         one, other = (np.asarray(side.value(end)) - middle for end in (low, high))
         less, more = np.minimum(np.minimum(one, other), 0.0), np.maximum(np.maximum(one, other), 0.0)

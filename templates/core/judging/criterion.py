@@ -123,7 +123,7 @@ class Criterion:
 
 @cache
 def is_angle(name: str) -> bool:
-    """Whether a unit measures an angle; the errors of angles are relative to 90°."""
+    """Return whether a unit measures an angle; the errors of angles are relative to 90°."""
     return bool(unit(name).base == _RADIAN)
 
 

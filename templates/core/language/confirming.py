@@ -64,7 +64,7 @@ def _distinct(roots: list[Root], span: float) -> list[Root]:
 
 
 def _is_finer(requested: SampledCurve, scanned: SampledCurve) -> bool:
-    """Whether a level is requested that is not the scan's."""
+    """Return whether a level is requested that is not the scan's."""
     return requested.level is not None and requested.level != scanned.level
 
 

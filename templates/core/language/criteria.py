@@ -126,7 +126,7 @@ def judged(evaluated: Evaluated) -> list[Judgement]:
 
 
 def is_due(evaluated: Evaluated, criterion: Criterion) -> bool:
-    """Whether judging computes no output beyond those evaluated."""
+    """Return whether judging computes no output beyond those evaluated."""
     return evaluated.computed.intersection(criterion.names) <= evaluated.answers.keys()
 
 
@@ -144,7 +144,7 @@ def missing_of(evaluated: Evaluated, criterion: Criterion) -> Missing | None:
 
 
 def _is_missing(value: Any) -> bool:
-    """Whether there is no value, or none at some point."""
+    """Return whether there is no value, or none at some point."""
     return value is None or (np.ndim(value) > 0 and bool(np.isnan(value).any()))
 
 
@@ -255,7 +255,7 @@ def _stated_reason(evaluated: Evaluated, missing: Missing) -> Absent | None:
 
 
 def _fits(shape: tuple[int, ...], wanted: tuple[int, ...]) -> bool:
-    """Whether an array of this shape goes with one of the wanted shape without making it larger."""
+    """Return whether an array of this shape goes with one of the wanted shape without making it larger."""
     try:
         return np.broadcast_shapes(shape, wanted) == wanted
     except ValueError:

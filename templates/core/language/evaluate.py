@@ -66,7 +66,7 @@ class Evaluation:
     criteria: list[Judgement] = field(default_factory=list)
 
     def count(self) -> int:
-        """How many values all outputs have together."""
+        """Number of values that all outputs have together."""
         return sum(
             answer.value.size if isinstance(answer.value, np.ndarray) else 1
             for answer in self.outputs.values()
@@ -250,7 +250,7 @@ def _with_reasons(
 
 
 def is_reported(template: Template, declared: Input) -> bool:
-    """Whether an answer reports an input: it is given, or has a default that is not an output as well."""
+    """True if an answer reports an input: it is given, or has a default that is not an output as well."""
     if declared.name in template.ledger.typed:
         return True
     if isinstance(declared, Derived):

@@ -209,12 +209,12 @@ def check_shapes(self: Template) -> None:
 
 
 def is_single(declared: Declaration) -> bool:
-    """Whether an input is one value for all points."""
+    """Return whether an input is one value for all points."""
     return isinstance(declared, Given) and declared.single
 
 
 def is_curve(self: Template, attribute: str) -> bool:
-    """Whether an attribute is an input along the crank angle."""
+    """Return whether an attribute is an input along the crank angle."""
     return isinstance(self.declarations[attribute], Curve)
 
 

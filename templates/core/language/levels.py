@@ -44,7 +44,7 @@ class Condition:
     measured: Mapping[str, Mapping[str, float | None]]  # by level and output: the error that comes on top
 
     def holds(self, template: Template) -> bool:
-        """Whether any of the inputs is given."""
+        """Return whether any of the inputs is given."""
         return not template.ledger.typed.keys().isdisjoint(self.inputs)
 
     def added(self, template: Template, output: str) -> float:
@@ -73,7 +73,7 @@ class Accuracy:
         return {case: _tables(levels) for case, levels in self.content.get("cases", {}).items()}
 
     def states_any(self, level: str) -> bool:
-        """Whether any error is stated at a level, in any case."""
+        """Return whether any error is stated at a level, in any case."""
         measured = (self.errors, *self.cases.values())
         return any(
             np.isfinite(table).any() for levels in measured for table in levels.get(level, {}).values()
@@ -141,7 +141,7 @@ class Accuracy:
 
 
 def _same_at_all_levels(template: Template, output: str) -> bool:
-    """Whether an output, which is not text, has no other value at another level."""
+    """Return whether an output, which is not text, has no other value at another level."""
     formula = template.formulas[output]
     if isinstance(formula, Text):
         return False

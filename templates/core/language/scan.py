@@ -120,7 +120,7 @@ class SampledCurve(ABC):
 
     @property
     def rows(self) -> int:
-        """How many samples one call takes."""
+        """Number of samples that one call takes."""
         return CELLS
 
     def at_one_level(self, x: Array) -> tuple[Self, Samples]:
@@ -201,7 +201,7 @@ class TargetCurve(SampledCurve):
 
     @property
     def rows(self) -> int:
-        """How many samples one call takes."""
+        """Number of samples that one call takes."""
         curves = (n for n, declared in self.cls.inputs.items() if isinstance(declared, Curve))
         longest = max((np.size(_magnitude(self.raw.get(name))) for name in curves), default=1)
         most = self.cls.most_points.get(self.level or "", CELLS)

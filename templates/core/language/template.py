@@ -203,7 +203,7 @@ class Template:
         return self.levels
 
     def is_measured(self) -> bool:
-        """Whether the measured errors are those of such inputs."""
+        """Return whether the measured errors are those of such inputs."""
         return True
 
     def measured_case(self) -> str:
@@ -242,7 +242,7 @@ class Template:
 
     @classmethod
     def _waits(cls, rule: Requirement, pending: Collection[str]) -> bool:
-        """Whether a rule is about any of the inputs that are pending, by name or beneath what it uses."""
+        """True if a rule is about any of the inputs that are pending, by name or beneath what it uses."""
         beneath = {name for used in rule.uses for name in cls.dependencies(used)}.union(rule.uses_as_given)
         attributes = {cls.inputs[name].attribute for name in pending}
         return not (attributes.isdisjoint(beneath) and frozenset(pending).isdisjoint(rule.names))

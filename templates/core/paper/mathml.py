@@ -103,7 +103,7 @@ def expression(formula: Formula[Any], symbols: Mapping[str, str], times: str = r
 
 
 def tightness(text: str) -> int:
-    """How tightly a symbol or a number with its unit binds."""
+    """Return the precedence of a symbol or a number with its unit."""
     if text.startswith("-"):
         return SUM
     return PRODUCT if r"\," in text or "cdot" in text else ATOM

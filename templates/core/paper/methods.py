@@ -45,7 +45,7 @@ def _words(cls: type[Template], formula: Formula[Any], level: str) -> str | None
 
 
 def _is_read(node: ast.expr) -> bool:
-    """Whether an expression is nothing but a part of a record, as `self.film.attitude`."""
+    """Return whether an expression is nothing but a part of a record, as `self.film.attitude`."""
     return isinstance(node, ast.Attribute) and _of_self(node.value) is not None
 
 

@@ -63,7 +63,7 @@ def checks(template: Template) -> Iterator[Check]:
 
 
 def _has_number(value: float | NDArray[np.generic]) -> bool:
-    """Whether there is a finite number in a value; a text for each point has no bounds."""
+    """Return whether there is a finite number in a value; a text for each point has no bounds."""
     numbers = np.asarray(value)
     return numbers.dtype.kind in "fiu" and bool(np.isfinite(numbers).any())
 
@@ -135,7 +135,7 @@ def _of_rule(template: Template, rule: Requirement) -> Check | None:
 
 
 def _lacks_an_input(template: Template, rule: Requirement) -> bool:
-    """Whether one of the inputs that a rule names was not given, and follows from nothing."""
+    """Return whether one of the inputs that a rule names was not given, and follows from nothing."""
     inputs = (template.inputs[name] for name in rule.names if name in template.inputs)
     values = (vars(template).get(declared.attribute) for declared in inputs)
     return any(isinstance(value, (float, np.ndarray)) and bool(np.isnan(value).all()) for value in values)
@@ -217,7 +217,7 @@ def _scale(template: Template, side: Operand) -> Unit | None:
 
 
 def _misleads(template: Template, left: Operand, right: Operand) -> bool:
-    """Whether a side is a small number in SI whose unit is not known, as lengths in metres are."""
+    """Return whether a side is a small number in SI whose unit is not known, as lengths in metres are."""
     pairs = ((left, right), (right, left))
     return any(_is_small(one.constant) and _scale(template, other) is None for one, other in pairs)
 

@@ -61,7 +61,7 @@ class Builder:
                     self._try(getattr(self, f"_{statement.kind}"), statement)
 
     def _goes_on(self, statement: Parsed) -> bool:
-        """Whether to read a statement on: one fault of it is enough, and so is a worksheet too large."""
+        """Return whether to go on with a statement: one fault of it is enough, or a worksheet too large."""
         return statement.chunk.line not in self.refused and self.names.fuel >= 0
 
     def _try(self, step: Callable[[Any], None], statement: Parsed | Chunk) -> None:

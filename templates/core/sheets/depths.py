@@ -1,4 +1,4 @@
-"""How deep formulas call each other: a long chain of them is calculated from its beginning, step by step.
+"""Depth of formulas that call each other: a long chain is calculated from its beginning, step by step.
 
 A formula asks for what it uses when it is first asked itself. In a worksheet of 400 statements in any order
 that would nest too deep for Python; so some formulas of a long chain are asked first, the deepest before all.
@@ -44,7 +44,7 @@ def set_order(built: Built) -> Iterator[SheetFault]:
 
 
 def _height(body: Any) -> int:
-    """How deep the expression of a formula is."""
+    """Return the depth of a formula's expression."""
     height, level = 0, [body.node]
     while level:
         height += 1

@@ -160,7 +160,7 @@ class Reader:
 
 
 def is_literal(axis: str) -> bool:
-    """Whether an axis is that of a list that is written out: `3 items`."""
+    """Return whether an axis is that of a list that is written out: `3 items`."""
     return " " in axis
 
 
@@ -183,7 +183,7 @@ def no_temperature(parameter: str) -> str:
 
 
 def is_temperature(node: Any, got: Sort) -> bool:
-    """Whether a tree gives one temperature: not a difference, and no sum of several."""
+    """Return whether a tree gives one temperature: not a difference, and no sum of several."""
     if isinstance(node, Constant) and " " in node.text:
         return not unit(node.text.partition(" ")[2]).difference
     return abs((got.weight or 0.0) - 1) < 1e-9

@@ -75,7 +75,7 @@ def _faults_of_text(text: str) -> Iterator[SheetFault]:
 
 
 def _is_no_text(sign: str) -> bool:
-    """Whether a sign is a lone surrogate, controls a terminal, or shows another text than is read."""
+    """Return whether a sign is a lone surrogate, controls a terminal, or shows another text than is read."""
     return "\ud800" <= sign <= "\udfff" or (sign < " " and sign != "\t") or sign in _CONTROLS
 
 

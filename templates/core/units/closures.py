@@ -50,7 +50,7 @@ def closure(node: Any) -> Closure:
 
 
 def is_condition(node: Any) -> bool:
-    """Whether a tree is a condition."""
+    """Return whether a tree is a condition."""
     operation = getattr(node, "operation", None)
     if operation is IF:
         return is_condition(node.arguments[1])

@@ -104,7 +104,7 @@ def built(tree: lark.Tree[Any]) -> Any:
 
 
 def height(tree: lark.Tree[Any]) -> int:
-    """How deep a parser's tree is; without recursion."""
+    """Return the depth of a parser's tree; without recursion."""
     deep, level = 0, [tree]
     while level:
         deep += 1

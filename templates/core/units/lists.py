@@ -30,7 +30,7 @@ def _item(values: Value, index: Value) -> Value:
 
 
 def _count(values: Value) -> Value:
-    """How many items; NaN where one of them is missing."""
+    """Return the number of items; NaN where one of them is missing."""
     return np.where(np.isnan(np.sum(values, axis=-1)), np.nan, float(np.shape(values)[-1]))[()]
 
 

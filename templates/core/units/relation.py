@@ -126,7 +126,7 @@ class Relation:
 
 
 def is_relation(raw: Any) -> bool:
-    """Whether a value is a relation: a text that begins with `=`."""
+    """Return whether a value is a relation: a text that begins with `=`."""
     return isinstance(raw, str) and raw.lstrip().startswith("=")
 
 

@@ -112,7 +112,7 @@ def whole(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
 
 
 def is_number(kind: Kind) -> bool:
-    """Whether a kind is a pure number, or an angle."""
+    """Return whether a kind is a pure number, or an angle."""
     return bool(registry.get_dimensionality(kind.base) == registry.get_dimensionality(Kind().base))
 
 

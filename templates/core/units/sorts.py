@@ -88,7 +88,7 @@ def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> So
 
 
 def _truth(operation: Operation, sorts: list[Sort]) -> bool:
-    """Whether the result is a condition, if conditions and quantities stand in their places."""
+    """Return whether the result is a condition, if conditions and quantities stand in their places."""
     if operation is not IS and (words := next((sort.words for sort in sorts if sort.words), ())):
         raise FaultyText("no_truth", f"a choice is not a quantity: test it, as in law is {words[0]}")
     truths = [sort.truth for sort in sorts]
@@ -147,7 +147,7 @@ def _widened(node: Any, sort: Sort) -> Any:
 
 
 def _weight(operation: Operation, kind: Kind, parts: Sequence[Part]) -> float | None:
-    """How many temperatures a result adds up; None where that cannot be said."""
+    """Return the number of temperatures that a result adds up; None where that cannot be said."""
     if kind.base != registry.kelvin:
         return 0.0
     sign, nodes, weights = operation.sign, [node for node, _ in parts], [sort.weight for _, sort in parts]

@@ -123,7 +123,7 @@ def _signed(sign: str, number: str) -> float:
 
 
 def is_toleranced(raw: Any) -> bool:
-    """Whether a quantity as its user wrote it, or any of a list, has a tolerance."""
+    """Return whether a quantity as its user wrote it, or any of a list, has a tolerance."""
     match raw:
         case str():
             return _has_tolerance(raw)
@@ -146,7 +146,7 @@ def _has_tolerance(text: str) -> bool:
 
 
 def is_zone(text: str) -> bool:
-    """Whether a text names a zone that is shipped."""
+    """Return whether a text names a zone that is shipped."""
     return text in zones()
 
 

@@ -105,7 +105,7 @@ def _hint(text: str) -> str:
 
 
 def compatible(one: pint.Unit, other: pint.Unit) -> bool:
-    """Whether two base units mean the same kind of quantity; a rate in rad/s is none in 1/s."""
+    """Return whether two base units mean the same kind of quantity; a rate in rad/s is none in 1/s."""
     dimensions = registry.get_dimensionality(one)
     if dimensions != registry.get_dimensionality(other):
         return False
@@ -146,7 +146,7 @@ def _mixes_difference(got: Unit, want: Unit) -> bool:
 
 
 def _counts_angle(got: Unit, want: Unit) -> bool:
-    """Whether a pure number would be wrong by 2π: 1e6 cycles are an angle to Pint."""
+    """Return whether a pure number would be wrong by 2π: 1e6 cycles are an angle to Pint."""
     return want.text == "1" and _radians(got.base) != 0
 
 

@@ -84,7 +84,7 @@ def nodes_of(node: Any) -> Iterator[Any]:
 
 
 def depth_of(node: Any) -> int:
-    """How deep a tree is."""
+    """Return the depth of a tree."""
     depth, level = 0, [node]
     while level:
         depth += 1

@@ -35,7 +35,7 @@ _LONGEST = 1.0
 
 @dataclass(frozen=True)
 class Feed:
-    """How a bearing is fed; without grooves by a line at the widest gap."""
+    """Grooves that feed a bearing; without grooves a line at the widest gap."""
 
     pressure: float = 0.0
     """Supply pressure above ambient P = p psi²/(eta omega_h) [-]."""

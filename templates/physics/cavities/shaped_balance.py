@@ -36,7 +36,7 @@ SMALLEST = 1e-3
 """Eccentricity of the plain film below which a load is taken as this one's, in proportion [-]."""
 _STEPS = 40
 _TURNS = 8
-"""How often the mesh is graded again before the place is taken as it is."""
+"""Limit on how often the mesh is graded again before the place is taken as it is."""
 _ACCURACY = 1e-7
 """Step over the least gap at which a search on one mesh ends."""
 _AGREED = 1e-5

@@ -45,7 +45,7 @@ class Nodes:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """How many nodes there are around and across."""
+        """Number of nodes around and across."""
         return self.phi.size - 1, self.zeta.size
 
     @property
@@ -128,7 +128,7 @@ def gaps(nodes: Nodes, bore: Bore, lie: Lie) -> Gaps:
 
 
 def displaced(nodes: Nodes) -> tuple[Gaps, Gaps]:
-    """How the gap changes with the journal's displacement along and ahead of the load."""
+    """Return the derivative of the gap by the journal's displacement along and ahead of the load."""
     n, m = nodes.shape
     at_nodes, between = directions(nodes.phi[:-1]), directions(midpoints(nodes.phi))
 

@@ -83,7 +83,7 @@ def stepped(
 
 
 def _share(eps: Array, de: Array) -> float:
-    """How much of a step is taken, so that the journal stays in its bearing."""
+    """Return the share of a step that keeps the journal in its bearing."""
     share, gap = 1.0, 1 - np.hypot(*eps)
     while share > 1e-6 and 1 - np.hypot(*(eps + share * de)) < _THINNER * gap:
         share /= 2
@@ -136,7 +136,7 @@ def _by_eps(
     loss: Array,
     motion: tuple[float, float],
 ) -> list[Array]:
-    """How the loss changes with the eccentricity along each axis."""
+    """Return the derivative of the loss by the eccentricity along each axis."""
     nudge = _NUDGE * (1 - np.hypot(*eps))
     moved = (balance(journal, eps + nudge * axis, *motion) for axis in np.eye(2))
     return [(_loss(flows, P, void, stored) - loss) / nudge for flows in moved]

@@ -211,7 +211,7 @@ def _sizes(R: Array, small: Array) -> Array:
 
 @units("m", "m", "m", "m", returns="1")
 def play_of_each_main(clearance: Array, x: Array, y: Array, mains: Array) -> Truth:
-    """Whether clearances and offsets are one number, or a list with one for each main."""
+    """Return whether clearances and offsets are one number, or a list with one for each main."""
     given = (clearance, x, y)
     return all(np.ndim(one) == 0 or np.ndim(mains) == 0 or np.shape(one) == np.shape(mains) for one in given)
 

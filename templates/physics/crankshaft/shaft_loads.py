@@ -90,7 +90,7 @@ def reactions_of(
 
 
 def fits(mains: Array, cylinders: Array, throw: Places, sections: CrankSections) -> bool:
-    """Whether rods stand on their pins, throws do not overlap, and no main stands within a throw."""
+    """Return whether rods stand on their pins, throws do not overlap, and no main stands within a throw."""
     middles = throw_places(cylinders, throw)
     on_pins = np.abs(cylinders - middles[throw]) < sections.pin_length / 2
     length = sections.pin_length + 2 * sections.web_thickness
@@ -101,7 +101,7 @@ def fits(mains: Array, cylinders: Array, throw: Places, sections: CrankSections)
 
 @units("m", "m", None, None, returns="1")
 def crank_fits(mains: Array, cylinders: Array, throw: Places, sections: CrankSections) -> Truth:
-    """Whether the sections, if given, fit between mains and cylinders."""
+    """Return whether the sections, if given, fit between mains and cylinders."""
     if not np.ndim(mains) or np.size(cylinders) != throw.size:
         return True
     if np.isnan([vars(sections)[n] for n in vars(sections)]).any():
@@ -111,13 +111,13 @@ def crank_fits(mains: Array, cylinders: Array, throw: Places, sections: CrankSec
 
 @units("N/m", "m", returns="1")
 def has_one_for_each_main(stiffness: Array, mains: Array) -> Truth:
-    """Whether the supports' stiffness is one number, or a list with one for each main."""
+    """Return whether the supports' stiffness is one number, or a list with one for each main."""
     return np.ndim(stiffness) == 0 or np.ndim(mains) == 0 or np.shape(stiffness) == np.shape(mains)
 
 
 @units("m", "kg*m", "kg*m", "1", None, returns="1")
 def webs_are_whole(places: Array, unbalance: Array, counterweight: Array, throws: Array, count: int) -> Truth:
-    """Whether webs with an unbalance have places and, if named, a throw that exists."""
+    """Return whether webs with an unbalance have places and, if named, a throw that exists."""
     if np.ndim(places) == 0:
         return bool(np.all(unbalance == 0) and np.all(counterweight == 0))
     named = np.ndim(throws) == 0 or bool(np.all(throws <= count))

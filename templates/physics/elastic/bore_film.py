@@ -39,14 +39,14 @@ _TURNED = 1e-9
 _LARGEST_TURN = 0.3
 """Of one step [rad]."""
 _SHORTER = 3
-"""How often such a step may become a third."""
+"""Limit on how often such a step may be divided by three."""
 _GRADED = 1.25
 """Change of the least gap beyond which the mesh is graded again."""
 
 
 @dataclass(frozen=True)
 class BoreSoftness(Softness):
-    """How gap and oil answer to the pressure, the bore by a matrix; `ring` holds the harmonics above it."""
+    """Response of gap and oil to the pressure, the bore by a matrix; `ring` holds the harmonics above it."""
 
     matrix: Array = field(default_factory=lambda: np.zeros((len(MODES), len(MODES))))
     """(38, 38) deformation in each mode per mode of P [-]."""
@@ -97,7 +97,7 @@ class BoreFilm(SoftFilm):
         return np.concatenate([plain[self.modes.compliance != 0], self.bent])
 
     def jacobian(self, film: Mask) -> tuple[csc_array, Array, Array]:
-        """How the loss inside the film changes with P, with the amplitudes and with eps."""
+        """Return the derivative of the loss inside the film by P, by the amplitudes and by eps."""
         matrix, plain, by_eps = super().jacobian(film)
         shapes = self.shapes[..., BENDING]
         around, across = (shapes[:-1] + shapes[1:]) / 2, (shapes[:, :-1] + shapes[:, 1:]) / 2
@@ -114,7 +114,7 @@ class BoreFilm(SoftFilm):
 
     @cached_property
     def _by_gap(self) -> tuple[Array, Array]:
-        """How the flows around (n, m + 1) and across (n + 1, m) change with the gap where they pass."""
+        """Derivatives of the flows around (n, m + 1) and across (n + 1, m) by the gap where they pass."""
         H, eta, _, rise = self.around
         H_side, eta_side, _, rise_side = self.across
         width, cells = dual_widths(self.mesh.zeta), dual_widths(self.mesh.phi)[:, None] / self.ratio**2

@@ -155,7 +155,7 @@ def neglected_in_bore(
     level: str, p_max: Array, load: Array, radius: Array, width: Array, liner: Array, inner: Array,
     outer: Array, modulus: Array, poisson: Array, rows: Rows, bore_width: Array, peak: Array,
 ) -> Array:  # fmt: skip
-    """How far what a level leaves out would give way under its largest pressure, by an estimate [m].
+    """Estimate the displacement, under the largest pressure, of what a level leaves out [m].
 
     With a matrix the bore is the one that the matrix describes, not a ring. The shape of the pressure is that
     of `neglected_deformation`, about the place of the largest.

@@ -1,4 +1,4 @@
-r"""How far a bore gives way to an oil film, as a matrix between modes of the pressure.
+r"""Displacement of a bore under an oil film, as a matrix between modes of the pressure.
 
 A mode is a pressure, and a radial displacement, over the whole bore: 1, cos n theta or sin n theta up to
 n = 9, even along the bore or times Legendre's second polynomial, each with a mean square of 1. C_ij is the
@@ -54,7 +54,7 @@ def modes_along(zeta: Array) -> Array:
 
 
 def half_plane(radius: Array, modulus: Array, poisson: Array) -> Array:
-    """How far a half plane sinks under 1 Pa cos(n theta) for n = 10 … `HARMONICS`; 0 below [m/Pa].
+    """Displacement of a half plane under 1 Pa cos(n theta) for n = 10 … `HARMONICS`; 0 below [m/Pa].
 
     Parameters
     ----------
@@ -70,13 +70,13 @@ def half_plane(radius: Array, modulus: Array, poisson: Array) -> Array:
 
 @units(None, returns="1")
 def is_square(rows: Rows) -> Truth:
-    """Whether a matrix has a row for each mode, or none at all."""
+    """Return whether a matrix has a row for each mode, or none at all."""
     return len(rows) in (0, len(MODES))
 
 
 @units(None, returns="1")
 def is_mutual(rows: Rows) -> Truth:
-    """Whether a matrix is symmetric; one that is not square is judged elsewhere."""
+    """Return whether a matrix is symmetric; one that is not square is judged elsewhere."""
     if len(rows) != len(MODES):
         return True
     C = np.array(rows)
@@ -87,7 +87,7 @@ def is_mutual(rows: Rows) -> Truth:
 
 @units(None, returns="1")
 def gains_no_energy(rows: Rows) -> Truth:
-    """Whether no pressure moves the bore against itself; one that is not square is judged elsewhere."""
+    """True if no pressure moves the bore against itself; one that is not square is judged elsewhere."""
     if len(rows) != len(MODES):
         return True
     C = np.array(rows)
@@ -101,7 +101,7 @@ def gains_no_energy(rows: Rows) -> Truth:
 
 @units(None, returns="1")
 def count_modes(rows: Rows) -> Array:
-    """How many rows a matrix has."""
+    """Return the number of rows of a matrix."""
     return np.asarray(float(len(rows)))[()]
 
 

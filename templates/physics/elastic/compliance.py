@@ -1,4 +1,4 @@
-r"""How far a bearing gives way: its liner as columns, its housing as a thick ring in plane strain.
+r"""Displacement of a bearing: its liner as columns, its housing as a thick ring in plane strain.
 
 A bonded liner much thinner than the pressure is wide cannot spread sideways: each column shortens by
 p t (1 + nu)(1 − 2 nu)/(E (1 − nu)).
@@ -33,7 +33,7 @@ _ENDLESS = 1e-6
 
 @units("m", "Pa", "1", returns="m/Pa", latex=r"\frac{{{0}\,(1+{2})(1-2\,{2})}}{{{1}\,(1-{2})}}")
 def liner_compliance(thickness: Array, modulus: Array, poisson: Array) -> Array:
-    """How much a bonded layer shortens under pressure [m/Pa].
+    """Shortening of a bonded layer under pressure [m/Pa].
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def liner_compliance(thickness: Array, modulus: Array, poisson: Array) -> Array:
 
 
 def ring_compliance(inner: Array, outer: Array, modulus: Array, poisson: Array) -> Array:
-    """How far a ring's bore widens under a pressure of 1 Pa cos(n theta), n = 0 … `HARMONICS` [m/Pa].
+    """Widening of a ring's bore under a pressure of 1 Pa cos(n theta), n = 0 … `HARMONICS` [m/Pa].
 
     Parameters
     ----------

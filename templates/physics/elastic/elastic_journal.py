@@ -248,7 +248,7 @@ def neglected_deformation(
     level: str, p_max: Array, load: Array, radius: Array, width: Array, liner: Array, inner: Array,
     outer: Array, modulus: Array, poisson: Array,
 ) -> Array:  # fmt: skip
-    """How far what a level leaves out would give way under its largest pressure, by an estimate [m].
+    """Estimate the displacement, under the largest pressure, of what a level leaves out [m].
 
     The mean pressure across is 2/3 of the largest. Around it is a cosine squared as wide as the load needs.
 

@@ -32,7 +32,7 @@ from templates.physics.films.film_mesh import Mesh, swell
 
 @dataclass(frozen=True)
 class Softness:
-    """How gap and oil answer to the pressure P = p psi²/(eta omega_h); lengths over the radial clearance."""
+    """Response of gap and oil to the pressure P = p psi²/(eta omega_h); lengths over the radial clearance."""
 
     liner: float
     """Deformation of the liner per P, l [-]."""
@@ -135,7 +135,7 @@ class SoftFilm:
         return _gathered(onward * width, outward)
 
     def jacobian(self, film: Mask) -> tuple[csc_array, Array, Array]:
-        """How the loss inside the film changes with P, with the ring's amplitudes and with eps.
+        """Return the derivative of the loss inside the film by P, by the ring's amplitudes and by eps.
 
         Parameters
         ----------

@@ -250,7 +250,7 @@ def on_big_ends(pins: Vectors, motion: RodMotion) -> Vectors:
 
 @units("1", "1", "rad", "rad", returns="1")
 def masters_are_named(masters: Array, order: Array, pins: Array, firing: Array) -> Truth:
-    """Whether each cylinder has a master that has none itself, or 0, if masters are given."""
+    """Return whether each cylinder has a master that has none itself, or 0, if masters are given."""
     if not np.ndim(masters):
         return True
     count = count_of(order, pins, firing)
@@ -264,7 +264,7 @@ def masters_are_named(masters: Array, order: Array, pins: Array, firing: Array) 
 
 @units("1", "m", returns="1")
 def arms_are_given(masters: Array, radius: Array) -> Truth:
-    """Whether each articulated rod has a radius above 0."""
+    """Return whether each articulated rod has a radius above 0."""
     if not np.ndim(masters):
         return True
     given = np.ndim(radius) <= 1 and np.shape(radius) in ((), np.shape(masters))
@@ -273,7 +273,7 @@ def arms_are_given(masters: Array, radius: Array) -> Truth:
 
 @units(None, None, "m", returns="1")
 def rods_share_a_pin(crank: OffsetCrank, layout: Layout, places: Array) -> Truth:
-    """Whether articulated rods stand on the throw, at the pin, place and radius of their master."""
+    """Return whether articulated rods stand on the throw, at the pin, place and radius of their master."""
     if not isinstance(crank, ArticulatedCrank):
         return True
     carrier, places = crank.carrier, each(places)
@@ -293,7 +293,7 @@ def rods_share_a_pin(crank: OffsetCrank, layout: Layout, places: Array) -> Truth
 
 @units(None, returns="1")
 def articulated_rods_reach(crank: OffsetCrank) -> Truth:
-    """Whether articulated rods are longer than their pins are ever far from the axis of their cylinder."""
+    """True if articulated rods are longer than their pins are ever far from the axis of their cylinder."""
     if not isinstance(crank, ArticulatedCrank):
         return True
     if not (np.isfinite(crank.arm).all() and np.isfinite(crank.r).all()):

@@ -95,7 +95,7 @@ def mid_plane(places: Array) -> Array:
 
 @units("1", "1", returns="1")
 def is_firing_order(order: Array, count: Array) -> Truth:
-    """Whether every cylinder from 1 to `count` fires once."""
+    """Return whether every cylinder from 1 to `count` fires once."""
     order = np.atleast_1d(order)
     if order.shape[-1] != count:
         return False
@@ -104,7 +104,7 @@ def is_firing_order(order: Array, count: Array) -> Truth:
 
 @units(None, "1", returns="1")
 def is_one_each(value: Array, count: Array) -> Truth:
-    """Whether there is a value for each cylinder."""
+    """Return whether there is a value for each cylinder."""
     return bool(np.atleast_1d(value).shape[-1] == count)
 
 

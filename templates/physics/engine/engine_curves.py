@@ -39,7 +39,7 @@ def balancers(unbalance: Array, ratios: Array, phases: Array, places: Array) -> 
 
 @units("kg*m", "1", "m", returns="1")
 def balancers_are_whole(unbalance: Array, ratios: Array, places: Array) -> Truth:
-    """Whether the balance shafts have one list of each, or nothing is given."""
+    """Return whether the balance shafts have one list of each, or nothing is given."""
     lists = [np.ndim(one) for one in (unbalance, ratios, places)]
     return lists in ([0, 0, 0], [1, 1, 1])
 

@@ -96,13 +96,13 @@ def gas_force(p: Array, p_c: Array, factor: Array, bore: Array) -> Array:
 
 @units(None, None, returns="1")
 def burns_in_time(name: str, gas: Callable[[], GasCycle]) -> Truth:
-    """Whether combustion ends before the exhaust opens in every cylinder."""
+    """Return whether combustion ends before the exhaust opens in every cylinder."""
     holds = np.asarray(burns_before_exhaust(name, gas))
     return np.all(holds, axis=-1) if holds.ndim else bool(holds)
 
 
 @units(None, returns="1")
 def combustion_raises(gas: GasCycle) -> Truth:
-    """Whether combustion does not begin below the pressure of the compression's end in any cylinder."""
+    """True if combustion does not begin below the pressure of the compression's end in any cylinder."""
     holds = np.asarray(pressure_rises(gas))
     return np.all(holds, axis=-1) if holds.ndim else bool(holds)

@@ -42,7 +42,7 @@ class Layout:
 
     @cached_property
     def throws(self) -> int:
-        """How many throws there are."""
+        """Number of throws."""
         return int(self.throw.max()) + 1
 
     @cached_property
@@ -66,7 +66,7 @@ class Layout:
 
 
 def listed(value: Array) -> bool:
-    """Whether an input that may be missing is a list."""
+    """Return whether an input that may be missing is a list."""
     return np.ndim(value) > 0
 
 
@@ -129,20 +129,20 @@ def _with_turns(gaps: Array, turns: int) -> Iterator[Array]:
 
 @units("1", "rad", "rad", returns="1")
 def says_layout(order: Array, pins: Array, firing: Array) -> Truth:
-    """Whether any of the lists is given that say how the engine is laid out."""
+    """Return whether any of the lists is given that say how the engine is laid out."""
     return listed(order) or listed(pins) or listed(firing)
 
 
 @units("1", "rad", "rad", returns="1")
 def is_one_layout(order: Array, pins: Array, firing: Array) -> Truth:
-    """Whether these are lists of one length and no tables of several engines."""
+    """Return whether these are lists of one length and no tables of several engines."""
     lists = [one for one in (order, pins, firing) if listed(one)]
     return all(np.ndim(one) == 1 for one in lists) and len({np.shape(one) for one in lists}) <= 1
 
 
 @units("1", "rad", "rad", returns="1")
 def is_order(order: Array, pins: Array, firing: Array) -> Truth:
-    """Whether every cylinder from 1 on is named once, if an order is given."""
+    """Return whether every cylinder from 1 on is named once, if an order is given."""
     if not listed(order):
         return True
     count = count_of(order, pins, firing)
@@ -151,7 +151,7 @@ def is_order(order: Array, pins: Array, firing: Array) -> Truth:
 
 @units("1", "1", "rad", "rad", returns="1")
 def times_are_said(strokes: Array, order: Array, pins: Array, firing: Array) -> Truth:
-    """Whether it is said when cylinders fire: in four strokes pins alone leave two turns to choose from."""
+    """True if the firing is given: in a four-stroke engine the pins alone leave two turns to choose from."""
     return listed(order) or listed(firing) or bool(strokes == 2)
 
 
@@ -162,13 +162,13 @@ def _is_near(one: Array, other: Array, period: float) -> bool:
 
 @units(None, returns="1")
 def has_times(layout: Layout) -> Truth:
-    """Whether some firing angles within one cycle keep the order with these pins."""
+    """Return whether some firing angles within one cycle keep the order with these pins."""
     return bool(np.isfinite(layout.firing).all())
 
 
 @units(None, "rad", returns="1")
 def pins_agree(layout: Layout, top: Array) -> Truth:
-    """Whether pins and firing angles agree to 1e-6°."""
+    """Return whether pins and firing angles agree to 1e-6°."""
     if not np.isfinite(layout.firing).all():
         return True  # another rule reports it
     expected = layout.bank - layout.firing + np.atleast_1d(top)
@@ -177,7 +177,7 @@ def pins_agree(layout: Layout, top: Array) -> Truth:
 
 @units(None, "1", returns="1")
 def order_agrees(layout: Layout, order: Array) -> Truth:
-    """Whether the firing angles keep the firing order, if one is given."""
+    """Return whether the firing angles keep the firing order, if one is given."""
     if not listed(order) or not is_order(order, order, order) or not np.isfinite(layout.firing).all():
         return True
     places = np.rint(order).astype(int) - 1
@@ -190,7 +190,7 @@ def order_agrees(layout: Layout, order: Array) -> Truth:
 
 @units("1", "1", "rad", "rad", returns="1")
 def throws_are_named(throws: Array, order: Array, pins: Array, firing: Array) -> Truth:
-    """Whether there is a throw for each cylinder, numbered from 1 without a gap, if throws are given."""
+    """True if there is a throw for each cylinder, numbered from 1 without a gap, if throws are given."""
     if not listed(throws):
         return True
     named = np.unique(throws)
@@ -201,7 +201,7 @@ def throws_are_named(throws: Array, order: Array, pins: Array, firing: Array) ->
 
 @units(None, None, returns="1")
 def pins_are_shared(layout: Layout, pins_of_a_throw: str) -> Truth:
-    """Whether the pins of each throw stand at one angle, unless they are named split."""
+    """Return whether the pins of each throw stand at one angle, unless they are named split."""
     if pins_of_a_throw == "split" or layout.throw.size != layout.pin.shape[-1]:
         return True
     if not np.isfinite(layout.pin).all():

@@ -35,39 +35,39 @@ def _at_all(holds: NDArray[np.bool_]) -> Truth:
 
 @units("m", "m", returns="1")
 def is_either(one: Array, other: Array) -> Truth:
-    """Whether exactly one of two inputs is given."""
+    """Return whether exactly one of two inputs is given."""
     return bool(np.isnan(one).all()) != bool(np.isnan(other).all())
 
 
 @units("m", "m", returns="1")
 def is_within(place: Array, length: Array) -> Truth:
-    """Whether places lie within lengths."""
+    """Return whether places lie within lengths."""
     return _at_all(place <= length)
 
 
 @units(None, "1", "rad", "rad", returns="1")
 def has_one_each(values: tuple[Array, ...], order: Array, pins: Array, firing: Array) -> Truth:
-    """Whether each of these is one number, or has one for each cylinder."""
+    """Return whether each of these is one number, or has one for each cylinder."""
     count = max((np.shape(one)[-1] for one in (order, pins, firing) if np.ndim(one)), default=1)
     return all(np.ndim(value) == 0 or np.shape(value)[-1] in (1, count) for value in values)
 
 
 @units("m", "1", "rad", "rad", returns="1")
 def has_a_place_each(places: Array, order: Array, pins: Array, firing: Array) -> Truth:
-    """Whether there is one place for each cylinder."""
+    """Return whether there is one place for each cylinder."""
     count = max((np.shape(one)[-1] for one in (order, pins, firing) if np.ndim(one)), default=1)
     return np.ndim(places) <= 1 and each(places).size == count
 
 
 @units("rad", returns="1")
 def is_one_list(values: Array) -> Truth:
-    """Whether this is one number or one list, and no table of several engines."""
+    """Return whether this is one number or one list, and no table of several engines."""
     return np.ndim(values) <= 1
 
 
 @units(None, "1", returns="1")
 def is_manageable(points: tuple[int, ...], steps: Array) -> Truth:
-    """Whether curves of so many steps for up to 32 cylinders at points of this shape fit into memory."""
+    """True if curves of so many steps for up to 32 cylinders at points of this shape fit into memory."""
     return bool(np.prod(points, dtype=float) * steps <= 200_000)
 
 
@@ -78,5 +78,5 @@ def or_none(value: Array) -> Array:
 
 @units("1", returns="1")
 def orders_are_whole(orders: Array) -> Truth:
-    """Whether orders are one list without points of their own."""
+    """Return whether orders are one list without points of their own."""
     return np.ndim(orders) <= 1

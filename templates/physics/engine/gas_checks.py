@@ -21,26 +21,26 @@ _QUARTER = np.pi / 2
 
 @units(None, None, None, returns="1")
 def known_for(name: str, cycles: tuple[str, ...], value: Array) -> Truth:
-    """Whether a value that these cycles need is given at each point, if the cycle is one of them."""
+    """Return whether a value that these cycles need is given at each point, if the cycle is one of them."""
     return np.logical_or(name not in cycles, ~np.isnan(value))
 
 
 @units(None, "Pa", returns="1")
 def table_is_known(name: str, p: Array) -> Truth:
-    """Whether a table is given, if the cycle is one."""
+    """Return whether a table is given, if the cycle is one."""
     return name != "table" or np.ndim(p) > 0
 
 
 @units("rad", "rad", "rad", "rad", returns="1")
 def valves_in_order(io: Array, ic: Array, eo: Array, ec: Array) -> Truth:
-    """Whether inlet opening and exhaust closing lie within 90° of the dead centre of the exchange."""
+    """Return whether inlet opening and exhaust closing lie within 90° of the dead centre of the exchange."""
     near = (np.abs(wrapped(io)) <= _QUARTER) & (np.abs(wrapped(ec)) <= _QUARTER)
     return near & (ic >= _QUARTER) & (eo <= 4 * np.pi - _QUARTER)
 
 
 @units(None, None, returns="1")
 def burns_before_exhaust(name: str, gas: Callable[[], GasCycle]) -> Truth:
-    """Whether combustion ends before the exhaust opens; other rules report what is not given."""
+    """Return whether combustion ends before the exhaust opens; other rules report what is not given."""
     if name not in POLYTROPIC or not isinstance(cycle := gas(), Polytropic):
         return True
     return ~(cycle.v_cut >= cycle.v_opened)
@@ -48,7 +48,7 @@ def burns_before_exhaust(name: str, gas: Callable[[], GasCycle]) -> Truth:
 
 @units(None, returns="1")
 def pressure_rises(gas: GasCycle) -> Truth:
-    """Whether combustion does not begin below the pressure of the compression's end."""
+    """Return whether combustion does not begin below the pressure of the compression's end."""
     if not isinstance(gas, Polytropic):
         return True
     return gas.charge.combustion >= gas.p_compressed * (1 - 1e-12)
@@ -56,7 +56,7 @@ def pressure_rises(gas: GasCycle) -> Truth:
 
 @units(None, "rad", "Pa", returns="1")
 def angles_rise(name: str, angle: Array, p: Array) -> Truth:
-    """Whether the angles of a table are one rising list, of as many values as pressures, or not given."""
+    """True if the angles of a table are one rising list, of as many values as pressures, or not given."""
     if name != "table" or np.ndim(angle) == 0:
         return True
     return np.ndim(angle) == 1 and np.shape(p)[-1:] == angle.shape and bool((np.diff(angle) > 0).all())
@@ -64,7 +64,7 @@ def angles_rise(name: str, angle: Array, p: Array) -> Truth:
 
 @units(None, "1", "rad", "Pa", returns="1")
 def full_cycle(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
-    """Whether a table of rising angles covers the cycle: from its end to its begin is at most a step."""
+    """True if a table of rising angles covers the cycle: from its end to its begin is at most a step."""
     if name != "table" or np.ndim(p) == 0 or not angles_rise(name, angle, p):
         return True  # another rule reports it
     if np.shape(p)[-1:] < (FEWEST,):
@@ -77,7 +77,7 @@ def full_cycle(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
 
 @units(None, "1", "rad", "Pa", returns="1")
 def table_closes(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
-    """Whether a point that repeats the first, a cycle later, repeats its pressure."""
+    """Return whether a point that repeats the first, a cycle later, repeats its pressure."""
     if name != "table" or np.ndim(angle) == 0 or not full_cycle(name, strokes, angle, p):
         return True
     repeats = np.isclose(angle[-1] - angle[0], np.pi * strokes, rtol=1e-9)
@@ -86,5 +86,5 @@ def table_closes(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
 
 @units(None, "1", returns="1")
 def is_manageable(points: tuple[int, ...], steps: Array) -> Truth:
-    """Whether curves of so many steps at points of this shape fit into memory."""
+    """Return whether curves of so many steps at points of this shape fit into memory."""
     return bool(math.prod(points) * steps <= MOST_VALUES)

@@ -147,7 +147,7 @@ def radius_of_stroke(stroke: Array, rod: Array, offset: Array) -> Array:
 
 @units("m", "m", "m", "m", returns="1")
 def turns_through(stroke: Array, radius: Array, rod: Array, offset: Array) -> Truth:
-    """Whether the mechanism turns all the way round: the rod exceeds crank radius and offset together."""
+    """True if the mechanism turns all the way round: the rod exceeds crank radius and offset together."""
     by_stroke = np.where(np.isnan(stroke), 2 * radius, stroke) / 2
     reach = np.where(np.isnan(radius), by_stroke, radius)
     return _at_all_cylinders(rod > 1.000001 * (reach + np.abs(offset)))

@@ -117,5 +117,5 @@ def crank_angles(strokes: Array, step: Array) -> Array:
 
 @units("1", "rad", returns="1")
 def steps_in(strokes: Array, step: Array) -> Array:
-    """How many steps a cycle of 2 or 4 strokes has."""
+    """Number of steps of a cycle of 2 or 4 strokes."""
     return np.pi * strokes / step

@@ -67,7 +67,7 @@ def _to_cycles(value: Array) -> Array:
 
 @units(None, None, returns="1")
 def one_tensor_leads(criterion: str, history: Array) -> Truth:
-    """Whether one tensor carries the stress of every point, where a sign is given to it."""
+    """Return whether one tensor carries the stress of every point, where a sign is given to it."""
     return criterion != SIGNED or np.all(leading_tensor(history)[1] >= PROPORTIONAL, axis=-1)[()]
 
 
@@ -198,6 +198,6 @@ def inverse_or_none(value: Array) -> Array:
 
 @units("1", returns="1")
 def life_in_words(damage: Array) -> Any:
-    """Whether a life is finite or endless."""
+    """Return whether a life is finite or endless."""
     words = np.select([np.isnan(damage), damage > 0], ["", "finite"], "endless")
     return words if words.ndim else str(words)

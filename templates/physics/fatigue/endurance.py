@@ -119,5 +119,5 @@ def slope_of_line(at_1000: Array, endurance: Array, knee: Array) -> Array:
 
 @units("1", "1", returns="1")
 def both_or_none(K_t: Array, other: Array) -> Truth:
-    """Whether a stress concentration comes with what its sensitivity needs."""
+    """Return whether a stress concentration comes with what its sensitivity needs."""
     return np.isnan(K_t) | ~np.isnan(other)

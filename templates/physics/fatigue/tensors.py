@@ -35,37 +35,37 @@ _PURE_SHEAR = 1e-6  # |p1 + p3| of the length of a tensor: neither tension nor c
 
 
 def is_given(load: Array) -> bool:
-    """Whether a load is given."""
+    """Return whether a load is given."""
     return not bool(np.isnan(load).all())
 
 
 @units(None, None, returns="1")
 def go_together(loads: Sequence[Array], stresses: Sequence[Rows]) -> Truth:
-    """Whether every load has its stresses, and all stresses their load."""
+    """Return whether every load has its stresses, and all stresses their load."""
     return all(is_given(load) == bool(rows) for load, rows in zip(loads, stresses, strict=True))
 
 
 @units(None, returns="1")
 def has_any(stresses: Sequence[Rows]) -> Truth:
-    """Whether there is any table of stresses."""
+    """Return whether there is any table of stresses."""
     return any(len(rows) > 0 for rows in stresses)
 
 
 @units(None, returns="1")
 def same_points(stresses: Sequence[Rows]) -> Truth:
-    """Whether all tables of stresses have the same number of points."""
+    """Return whether all tables of stresses have the same number of points."""
     return len({len(rows) for rows in stresses if rows}) < 2
 
 
 @units(None, returns="1")
 def changes(loads: Sequence[Array]) -> Truth:
-    """Whether at least one load is a curve, of two values or more."""
+    """Return whether at least one load is a curve, of two values or more."""
     return any(np.ndim(load) > 0 and np.shape(load)[-1] > 1 for load in loads)
 
 
 @units(None, None, returns="1")
 def is_manageable(loads: Sequence[Array], stresses: Sequence[Rows]) -> Truth:
-    """Whether points, angles and curves together make no more tensors than are calculated at once."""
+    """Return whether points, angles and curves together make no more tensors than are calculated at once."""
     curves = np.broadcast_shapes(*(np.shape(load)[:-1] for load in loads if np.ndim(load)))
     angles = max((np.shape(load)[-1] for load in loads if np.ndim(load)), default=1)
     rows = max((len(rows) for rows in stresses), default=0)

@@ -31,7 +31,7 @@ class Bore:
     """Shape of a bore; without arguments a plain cylinder."""
 
     lobes: int = 1
-    """How many arcs there are; 1 with a preload of 0 is a cylinder."""
+    """Number of arcs; 1 with a preload of 0 is a cylinder."""
     preload: float = 0.0
     """1 − c_b/c_p of each lobe, 0 to below 1 [-]."""
     angle: float = 0.0
@@ -39,7 +39,7 @@ class Bore:
     offset: float = 0.5
     """Which share of a lobe's arc lies before its least gap: ½ centred, 1 at its end [-]."""
     mouth: float = 0.0
-    """How far the bell mouth opens at the ends over the radial clearance [-]."""
+    """Opening of the bell mouth at the ends over the radial clearance [-]."""
     mouth_length: float = 0.0
     """Axial length of each of the two mouths over half the bearing's width, 0 to 1 [-]."""
 

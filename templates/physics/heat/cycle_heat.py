@@ -49,7 +49,7 @@ LEVELS = ("mobility_short", "mobility", "mobility_grooved")
 """Those of `fed_cycle` that are cheap enough to be solved at many viscosities."""
 _STEPS = 6
 _STEP = float(np.log(4))
-"""How often, and by how much in ln, the viscosity of the supply is lowered in search of the root."""
+"""Steps, at most so many and of so much in ln, by which the search lowers the viscosity of the supply."""
 
 
 @dataclass(frozen=True)

@@ -149,7 +149,7 @@ def heat_balance(running: Running) -> HeatBalance:
 
 
 def asked_for(T_supply: Array, T_ambient: Array, kA: Array) -> Mask:
-    """Whether a supply temperature, or air and its heat transfer, is given."""
+    """Return whether a supply temperature, or air and its heat transfer, is given."""
     return np.asarray(np.isfinite(T_supply) | (np.isfinite(T_ambient) & np.isfinite(kA)))
 
 

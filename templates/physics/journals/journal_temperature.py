@@ -31,12 +31,12 @@ def or_reference(T: Array, T_ref: Array) -> Array:
 def viscosity_known(
     eta: Array, T_in: Array, T_out: Array, T_supply: Array, T_ambient: Array, kA: Array
 ) -> Mask:
-    """Whether the viscosity is given (NaN: not) or some temperature from which it follows."""
+    """Return whether the viscosity is given (NaN: not) or some temperature from which it follows."""
     means = np.isfinite(T_in) & np.isfinite(T_out)
     return np.asarray(np.isfinite(eta) | means | asked_for(T_supply, T_ambient, kA))[()]
 
 
 def mean_is_used(T_in: Array, T_out: Array, T_supply: Array, T_ambient: Array, kA: Array) -> Mask:
-    """Whether inlet and outlet temperature, where given, make the film's temperature."""
+    """Return whether inlet and outlet temperature, where given, make the film's temperature."""
     given = np.isfinite(T_in) | np.isfinite(T_out)
     return np.asarray(~(given & asked_for(T_supply, T_ambient, kA)))[()]

@@ -1,4 +1,4 @@
-"""How well surfaces are parted by a film: the film parameter lambda, and the regime that it stands for.
+"""Separation of surfaces by a film: the film parameter lambda, and the regime that it stands for.
 
 References
 ----------

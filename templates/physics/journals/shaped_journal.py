@@ -39,7 +39,7 @@ class Shape:
     bore: str
     """One of `BORES`."""
     lobes: int
-    """How many lobes a bore multi_lobe has."""
+    """Return the number of lobes of a bore multi_lobe."""
     preload: Array
     """1 − c_b/c_p of each lobe [-]."""
     angle: Array
@@ -47,7 +47,7 @@ class Shape:
     offset: Array
     """Which share of a lobe's arc lies before its least gap [-]."""
     mouth: Array
-    """How far the bell mouth opens at the ends [-]."""
+    """Return the opening of the bell mouth at the ends [-]."""
     mouth_length: Array
     """Axial length of each mouth over half the width [-]."""
     tilt_x: Array
@@ -111,13 +111,13 @@ def middle_of_least_gap(bore: str) -> Array:
 
 
 def is_shaped(shape: Shape) -> bool:
-    """Whether any point has a bore that is not plain, or a tilted journal."""
+    """Return whether any point has a bore that is not plain, or a tilted journal."""
     return bool(np.any(departure(shape.preload, shape.mouth, shape.tilt_x, shape.tilt_y) > 0))
 
 
 @units("1", "1", "1", "1", returns="1", latex=r"\max\left({0},\,{1},\,|{2}|,\,|{3}|\right)")
 def departure(preload: Array, mouth: Array, tilt_x: Array, tilt_y: Array) -> Array:
-    """How far bore and journal depart from plain and aligned: the largest of what describes them [-]."""
+    """Return the largest departure of bore and journal from plain and aligned [-]."""
     return np.asarray(np.maximum(np.maximum(preload, mouth), np.maximum(np.abs(tilt_x), np.abs(tilt_y))))[()]
 
 

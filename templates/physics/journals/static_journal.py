@@ -65,7 +65,7 @@ FED = "mass_conserving"
 
 
 def is_fed(pressure: Array, grooves: tuple[tuple[float, float], ...]) -> bool:
-    """Whether there is any supply pressure, or a groove."""
+    """Return whether there is any supply pressure, or a groove."""
     return bool(grooves) or bool(np.any(np.asarray(pressure) > 0))
 
 

@@ -44,13 +44,13 @@ def _largest(difference: Array) -> Array:
 
 @units("rad", returns="1")
 def rises(angles: Array) -> Truth:
-    """Whether these are one list of three angles or more that rise."""
+    """Return whether these are one list of three angles or more that rise."""
     return np.ndim(angles) == 1 and np.size(angles) > 2 and bool(np.all(np.diff(angles) > 0))
 
 
 @units("rad", "rad", returns="1")
 def covers(angles: Array, cycle: Array) -> Truth:
-    """Whether angles lie within one cycle and leave no gap above a quarter of it."""
+    """Return whether angles lie within one cycle and leave no gap above a quarter of it."""
     if np.ndim(angles) != 1 or np.size(angles) < 3:
         return True  # another rule reports it
     gaps = np.diff(angles, append=angles[0] + cycle)

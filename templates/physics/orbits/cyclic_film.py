@@ -171,7 +171,7 @@ def cycle_film(level: str, duty: Duty, orbit: CycleOrbit) -> CycleFilm:
 
 
 def level_spread(level: str, duty: Duty, eps_max: Array) -> Array:
-    """How far apart the smallest films of the levels are, this one's, mobility's and the short bearing's.
+    """Return the spread of the smallest films of the levels: this one's, mobility's and the short bearing's.
 
     Largest less smallest over the smallest; NaN where a level has no film [-].
     """

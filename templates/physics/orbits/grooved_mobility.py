@@ -31,9 +31,9 @@ from templates.physics.orbits.turning import Turning
 SECTOR = np.pi / 4
 """Half of the sector about the load's direction in which the groove counts [rad]."""
 _FINENESSES = 1, 4
-"""How many times finer than usual the finest rings of `periodic_orbit` are."""
+"""Factors by which the finest rings of `periodic_orbit` are finer than usual."""
 _HALVINGS = 12
-"""How often such a ring is thinned to every other node, at most."""
+"""Limit on how often such a ring is thinned to every other node."""
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ ROUGHEST = 2e-3
 UNKNOWN = 0.1
 """The same beyond which an orbit is not taken for one: it may owe its film to the steps [-]."""
 _FINER = 4
-"""How many times: where the film is thin, a degree is a long time."""
+"""Factor on the number of steps: where the film is thin, a degree is a long time."""
 _BLOCK = 1 << 16
 """Nodes of all cases solved together."""
 
@@ -146,7 +146,7 @@ def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
 
 
 def node_counts(load: CyclicLoad, finer: int = 1) -> NDArray[np.intp]:
-    """How many steps each interval between the load's angles is divided into, (N,)."""
+    """Return the number of steps into which each interval between the load's angles is divided, (N,)."""
     widths = np.diff(load.angle, append=load.angle[0] + load.period)
     return np.maximum(1, np.ceil(finer * widths / LARGEST_STEP - 1e-6)).astype(np.intp)
 

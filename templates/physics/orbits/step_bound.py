@@ -1,4 +1,4 @@
-"""How far the smallest gap of an orbit may be off by the step: from three rings of nodes, each twice as fine.
+"""Bound of the error of an orbit's smallest gap by the step: from three rings of nodes, each twice as fine.
 
 The nodes rarely meet the smallest gap: it lies between them, at the vertex of a parabola through the lowest
 three. The error of that gap falls with the square of the step, once the step is small enough. With the

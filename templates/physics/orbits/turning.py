@@ -1,4 +1,4 @@
-"""How far sleeve and journal have turned in the frame of the load, from their speeds over the cycle.
+"""Angles of sleeve and journal in the frame of the load, from their speeds over the cycle.
 
 The axes of frame, sleeve and journal coincide at crank angle 0, as in `supply`. What the cycle brings back to
 its place turns whole times in the frame; a groove in anything else is elsewhere in every cycle.

@@ -120,7 +120,7 @@ def collar_temperature(collar: Collar, film: CollarFilm) -> Array:
 
 
 def _excess(level: str, law: Law, logarithm: Array, collar: Collar, oil: tuple[Array, ...]) -> Array:
-    """How much thicker the oil is than the load needs it at a film ratio of 1 + e to the logarithm [-]."""
+    """Logarithm of the oil's viscosity over what the load needs, at a film ratio of 1 + e to `logarithm`."""
     wedge = np.exp(logarithm)
     film = collar_film(level, 1 + wedge, collar.angle, collar.reach)
     T = np.minimum(collar_temperature(collar, film), HOTTEST)

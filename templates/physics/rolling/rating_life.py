@@ -36,14 +36,14 @@ def relative_axial_load(F_a: Array, f_0: Array, C_0: Array) -> Array:
 
 @units("N", "1", returns="1")
 def factor_is_known(F_a: Array, f_0: Array) -> Truth:
-    """Whether f0 is given where there is an axial load."""
+    """Return whether f0 is given where there is an axial load."""
     largest = np.max(F_a, axis=-1) if np.ndim(F_a) else F_a
     return (largest == 0) | ~np.isnan(f_0)
 
 
 @units("N", None, returns="1")
 def is_bearable(F_a: Array, elements: str) -> Truth:
-    """Whether the axial load is one that these elements bear by this calculation."""
+    """Return whether the axial load is one that these elements bear by this calculation."""
     return elements == "ball" or bool(np.all(np.asarray(F_a) == 0))
 
 
@@ -97,7 +97,7 @@ def rating_life(ratio: Array, p: Array) -> Array:
 
 @units("1", "rad/s", returns="s", latex=r"\frac{{2\pi\,{0}}}{{{1}}}")
 def time_of_turns(turns: Array, omega: Array) -> Array:
-    """How long so many revolutions take [s]."""
+    """Return the time of so many revolutions [s]."""
     return 2 * np.pi * turns / omega
 
 

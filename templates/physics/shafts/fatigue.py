@@ -93,30 +93,30 @@ def ratio_or_none(strength: Array, stress: Array) -> Array:
 
 @units(None, "Pa", returns="1")
 def mean_is_used(correction: str, mean: Array) -> Any:
-    """Whether the correction takes the mean stress [Pa] as it is, not a compressive one as zero."""
+    """Return whether the correction takes the mean stress [Pa] as it is, not a compressive one as zero."""
     return ~((mean < 0) & (correction in (GOODMAN, GERBER)))
 
 
 @units(None, "Pa", returns="1")
 def either_is_given(one: Array, other: Array) -> Any:
-    """Whether at least one of two stresses [Pa] is no NaN."""
+    """Return whether at least one of two stresses [Pa] is no NaN."""
     return ~(np.isnan(one) & np.isnan(other))
 
 
 @units("Pa", "Pa", "Pa", returns="1")
 def is_borne_once(amplitude: Array, mean: Array, ultimate: Array) -> Any:
-    """Whether amplitude plus mean is below the ultimate strength [Pa]; what is missing harms nothing."""
+    """True if amplitude plus mean is below the ultimate strength [Pa]; what is missing harms nothing."""
     return ~(amplitude + mean >= ultimate)
 
 
 @units("Pa", "Pa", returns="1")
 def is_below(one: Array, other: Array) -> Any:
-    """Whether one stress [Pa] is below another, or is missing."""
+    """Return whether one stress [Pa] is below another, or is missing."""
     return ~(one >= other)
 
 
 @units("1", "Pa", returns="1")
 def life_in_words(cycles: Array, amplitude: Array) -> Any:
-    """Whether a life is finite or endless; empty where the amplitude [Pa] means nothing."""
+    """Return whether a life is finite or endless; empty where the amplitude [Pa] means nothing."""
     words = np.select([np.isnan(amplitude), np.isnan(cycles)], ["", "endless"], "finite")
     return words if words.ndim else str(words)

@@ -46,27 +46,27 @@ def shoulder_fillet_Pilkey_2008(loading: str, D: Array, d: Array, r: Array) -> A
 
 @units(None, "1", None, returns="1")
 def is_charted(loading: str, slope: Array, K_t: Array) -> Any:
-    """Whether the height of a shoulder over its fillet [1] is within the chart, or a K_t [1] is given."""
+    """True if the height of a shoulder over its fillet [1] is within the chart, or a K_t [1] is given."""
     low, high = _CHARTED[loading]
     return ~((slope < low) | (slope > high)) | ~np.isnan(K_t)
 
 
 @units("m", "m", returns="1")
 def is_wider(D: Array, d: Array) -> Any:
-    """Whether one diameter is larger than the other [m], or one of them is missing."""
+    """Return whether one diameter is larger than the other [m], or one of them is missing."""
     return ~(D <= d)
 
 
 @units(None, "1", None, "Pa", None, "Pa", returns="1")
 def notch_is_known(K_t: Array, slope: Array, amplitude: Array, S_a: Array, mean: Array, S_m: Array) -> Any:
-    """Whether a factor K_t [1] is given or follows from a shoulder, or no nominal stress [Pa] needs one."""
+    """True if a factor K_t [1] is given or follows from a shoulder, or no nominal stress [Pa] needs one."""
     needed = (np.isnan(amplitude) & ~np.isnan(S_a)) | (np.isnan(mean) & ~np.isnan(S_m))
     return ~needed | ~np.isnan(K_t) | ~np.isnan(slope)
 
 
 @units("1", "1", returns="1", latex=r"1+{1}\left({0}-1\right)")
 def fatigue_notch_factor_Peterson(K_t: Array, q: Array) -> Array:
-    """How much of a stress concentration K_t [1] counts in fatigue at a notch sensitivity q [1]."""
+    """Fatigue notch factor [1] of a stress concentration K_t [1] at a notch sensitivity q [1]."""
     return 1 + q * (K_t - 1)
 
 

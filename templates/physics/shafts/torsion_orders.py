@@ -41,7 +41,7 @@ def excitation(orders: Array, speeds: Array) -> Array:
 
 @units("rad/s", returns="1")
 def ascending(speeds: Array) -> bool:
-    """Whether a range [rad/s] has two speeds, the lower one first."""
+    """Return whether a range [rad/s] has two speeds, the lower one first."""
     return np.shape(speeds)[-1:] == (2,) and bool(np.all(speeds[..., 0] < speeds[..., 1]))
 
 

@@ -45,7 +45,7 @@ TOO_SHORT = (
 
 @units("m", "m", "m", returns="1", latex=r"3x^{{2}}-2x^{{3}},\ x=\frac12+\frac{{5\,{0}}}{{{1}+{2}}}")
 def share_of_wilson(overlap: Array, journal: Array, pin: Array) -> Array:
-    """How much of Ker Wilson's formula counts [1] at an overlap of journal and pin diameters [m]: 0 to 1."""
+    """Share of Ker Wilson's formula [1] at an overlap of journal and pin diameters [m]: 0 to 1."""
     place = np.clip(0.5 + overlap / (2 * HALF_WIDTH * (journal + pin)), 0.0, 1.0)
     return place**2 * (3 - 2 * place)
 

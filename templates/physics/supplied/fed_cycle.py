@@ -71,7 +71,7 @@ class FedDuty:
     groove_start: Array
     """Where it begins, from the sleeve's axis, (...) [rad]."""
     groove_extent: Array
-    """How far it goes in the sense x to y, (...) [rad]."""
+    """Extent in the sense x to y, (...) [rad]."""
     supply: Supply | None = None
     """Grooves and holes and their pressure, of the one point of level supplied."""
     lift: Array | None = None
@@ -113,7 +113,7 @@ class FedOrbit:
 
     @property
     def verdict(self) -> str:
-        """How a march ended; empty without one."""
+        """End of a march; empty without one."""
         return self.marched.verdict.value if self.marched else ""
 
     @property

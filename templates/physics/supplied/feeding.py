@@ -1,4 +1,4 @@
-"""How oil gets into a bearing, as a drawing has it: a groove and a hole in the sleeve, a hole in the pin.
+"""Oil supply of a bearing as on a drawing: a groove and a hole in the sleeve, a hole in the pin.
 
 Angles count in the sense x to y. At crank angle 0 the axes of frame, sleeve and journal coincide: a hole in
 the pin counts from the throw, groove and hole of a rod's bore from the rod's axis.
@@ -36,7 +36,7 @@ class Feeding:
     groove_start: Array
     """Where it begins, from the sleeve's axis [rad]."""
     groove_extent: Array
-    """How far it goes around [rad]."""
+    """Return its extent around [rad]."""
     sleeve_length: Array
     """Hole or slot in the sleeve: along the width [m]."""
     sleeve_arc: Array
@@ -67,7 +67,7 @@ class Feeding:
 
     @property
     def count(self) -> Array:
-        """How many of the three there are."""
+        """Return how many of the three exist."""
         return np.asarray(1.0 * self.grooved + self.sleeve_holed + self.pin_holed)[()]
 
     def partial(self) -> Mask:
@@ -75,7 +75,7 @@ class Feeding:
         return np.asarray(self.grooved & (self.groove_extent < AROUND))
 
     def parts(self) -> Iterator[tuple[Mask, Array, Array, Array, bool]]:
-        """Whether there is each, its middle, half extent [rad] and length [m], and whether in the pin."""
+        """Existence of each, its middle, half extent [rad] and length [m], and whether it is in the pin."""
         half = self.groove_extent / 2
         yield self.grooved, self.groove_start + half, half, self.groove_width, False
         yield self.sleeve_holed, self.sleeve_angle, self.sleeve_arc / self.D, self.sleeve_length, False
@@ -115,14 +115,14 @@ def supply_kind(feeding: Feeding) -> str:
 
 
 def within_bearing(length: Array, W: Array, arc: Array, D: Array) -> Truth:
-    """Whether a groove or hole leaves a land at the ends and is no longer than the bearing is around."""
+    """True if a groove or hole leaves a land at the ends and is no longer than the bearing is around."""
     inside = (length <= LONGEST * W) & ~(arc > np.pi * D)
     return np.asarray(np.isnan(length) | inside)[()]
 
 
 @units(None, "rad/s", None, returns="1")
 def is_back(duty: Duty, speed: Array, needed: Mask) -> Truth:
-    """Whether a part is back at its place in the load's frame after the cycle, where that is needed.
+    """Return whether a part is back at its place in the load's frame after the cycle, where that is needed.
 
     Angles that cover no cycle are not judged here.
     """

@@ -35,7 +35,7 @@ NEAREST = 1e4
 
 @compiled
 def covered(mesh: Mesh, places: Array) -> Array:
-    """How the nodes see the pockets, (3, n, m): 1 in a pocket, and the nearness of an edge ahead and behind.
+    """Return, (3, n, m), 1 for nodes in a pocket, and the nearness of a pocket's edge ahead and behind.
 
     The nearness is step/d − 1 with d the distance to an edge that lies before the next node; 0 if none does.
 
@@ -287,7 +287,7 @@ def solved(
     mesh: Mesh, state: tuple[Array, Array, Array], S: Array, seen: Array, supply: float,
     rate: float, rest: Array, mass: float, inertia: Array, smooth: bool,
 ) -> tuple[bool, Array, Array, Array, float, float]:  # fmt: skip
-    """Whether Newton's method settled; then eccentricity, pressure and void, feed and side flow times 24.
+    """True if Newton's method settled; then eccentricity, pressure and void, feed and side flow times 24.
 
     Pressure and void may be below 0 by what Newton's method leaves.
 

@@ -178,7 +178,7 @@ def stepped(mesh: Mesh, duty: Duty, states: list[State], h: float) -> State | No
 
 
 def _size(last: State, after: State, step: float) -> float:
-    """How large a step was, over what it should be: by the change of the gap, and by that of the velocity."""
+    """Return a step over the best one: by the change of the gap, and by that of the velocity."""
     before, now = (1 - np.hypot(*state.e) for state in (last, after))
     gap = abs(np.log(now / before)) / GAP_CHANGE
     strayed = np.hypot(*(after.e - last.e - after.step * last.velocity)) / min(before, now)

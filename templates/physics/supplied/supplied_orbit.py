@@ -32,7 +32,7 @@ _REPORTED = 0.05  # share of a cycle between two reports of progress
 
 
 class Verdict(StrEnum):
-    """How a march ended."""
+    """End of a march."""
 
     REPEATING = "repeating"
     """The orbit repeats: its least gap to 1e-3."""
@@ -128,7 +128,7 @@ class SuppliedOrbit:
     mass_balance: float
     """Oil fed less oil lost at the ends less oil stored, over the oil lost [-]."""
     halvings: int
-    """How often a step was halved in the last cycle, because it had not converged."""
+    """Number of halvings in the last cycle, of steps that had not converged."""
     under_load: float
     """Share of the cycle in which every pocket lies under the load, within 60° of its direction [-]."""
 
@@ -306,7 +306,7 @@ def _measured(duty: Duty, runs: list[Run], mesh_error: float = 0.0) -> SuppliedO
 
 
 def _verdict(run: Run, share: float) -> Verdict:
-    """How the last run ended; `share` of the cycle the pockets are under the load."""
+    """Return how the last run ended; `share` of the cycle the pockets are under the load."""
     if run.ending is Ending.REPEATING:
         return Verdict.REPEATING
     if run.ending is Ending.THINNING or (run.ending is Ending.FAILED and share >= OFTEN):

@@ -42,7 +42,7 @@ _SAMPLES = 361
 
 
 class Ending(StrEnum):
-    """How a run on one mesh ended."""
+    """End of a run on one mesh."""
 
     REPEATING = "repeating"
     UNSETTLED = "unsettled"
@@ -126,12 +126,12 @@ def change(gaps: list[float], cycles: int) -> float:
 
 
 def returns(turned: float, within: float = 0.02) -> bool:
-    """Whether an angle is one of whole turns [rad]."""
+    """Return whether an angle is one of whole turns [rad]."""
     return bool(abs((turned + np.pi) % (2 * np.pi) - np.pi) <= within)
 
 
 def thins(gaps: list[float]) -> bool:
-    """Whether the least gaps of all cycles on a mesh fall towards none, like 1/sqrt(n) or faster.
+    """Return whether the least gaps of all cycles on a mesh fall towards none, like 1/sqrt(n) or faster.
 
     A film that no oil enters is squeezed out: under a constant load its gap falls like 1/sqrt(n) with the
     cycle n. A line in 1/sqrt(n) through the later half of the gaps then ends near zero; that of an orbit

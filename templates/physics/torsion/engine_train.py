@@ -48,32 +48,32 @@ def response_of(
 
 @units("1", "rad", returns="1")
 def fire_each(excited: Array, firing: Array) -> bool:
-    """Whether there is a firing angle [rad] for each excited inertia, and not too many of them."""
+    """Return whether there is a firing angle [rad] for each excited inertia, and not too many of them."""
     count = np.shape(excited)[-1:]
     return np.ndim(excited) == 1 and count == np.shape(firing)[-1:] and count[0] <= MOST_CYLINDERS
 
 
 @units("N*m", "N*m", returns="1")
 def are_excited(gas: Array, inertia: Array) -> bool:
-    """Whether there is a torque [N m] of gas, of inertia, or both."""
+    """Return whether there is a torque [N m] of gas, of inertia, or both."""
     return bool(np.ndim(gas) or np.ndim(inertia))
 
 
 @units("N*m", "rad/s", returns="1")
 def has_its_speed(inertia: Array, speed: Array) -> bool:
-    """Whether a torque of inertia [N m] and the speed [rad/s] at which it is that stand together."""
+    """Return whether a torque of inertia [N m] and the speed [rad/s] at which it is that stand together."""
     return bool(np.ndim(inertia)) != bool(np.all(np.isnan(speed)))
 
 
 @units("1", "N*m", "rad/s", returns="1")
 def is_whole_propeller(number: Array, torque: Array, speed: Array) -> bool:
-    """Whether inertia, torque [N m] and speed [rad/s] of the propeller are given, or none of them."""
+    """Return whether inertia, torque [N m] and speed [rad/s] of the propeller are given, or none of them."""
     return len({bool(np.all(np.isnan(one))) for one in (number, torque, speed)}) == 1
 
 
 @units(None, "kg*m**2", "rad/s", "rad", "1", returns="1")
 def is_manageable(points: tuple[int, ...], J: Array, speeds: Array, theta: Array, highest: Array) -> bool:
-    """Whether all points, speeds and orders together are of a size to calculate."""
+    """Return whether all points, speeds and orders together are of a size to calculate."""
     cycle, count = cycle_of(theta), np.shape(J)[-1]
     if cycle is None:
         return True

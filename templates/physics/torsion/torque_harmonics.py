@@ -67,13 +67,13 @@ def cycle_of(theta: Array) -> Cycle | None:
 
 @units("rad", returns="1")
 def is_one_cycle(theta: Array) -> bool:
-    """Whether crank angles [rad] rise in equal steps over one cycle of one or two turns."""
+    """Return whether crank angles [rad] rise in equal steps over one cycle of one or two turns."""
     return cycle_of(theta) is not None
 
 
 @units("rad", "N*m", returns="1")
 def closes(theta: Array, T: Array) -> bool:
-    """Whether a last point of a torque [N m; ..., angle] that repeats the first angle has its torque."""
+    """True if a last point of a torque [N m; ..., angle] that repeats the first angle has its torque."""
     cycle = cycle_of(theta)
     if cycle is None or np.ndim(T) == 0 or np.shape(T)[-1] != cycle.count + 1:
         return True
@@ -83,13 +83,13 @@ def closes(theta: Array, T: Array) -> bool:
 
 @units("rad", "1", returns="1")
 def resolves(theta: Array, highest: Array) -> bool:
-    """Whether a cycle has more than two points for each period of the highest order, and this order."""
+    """Return whether the highest order is at least 1 and each of its periods has more than two points."""
     cycle = cycle_of(theta)
     return cycle is None or 1 <= _lines(cycle, highest) < cycle.count / 2
 
 
 def _lines(cycle: Cycle, highest: Array) -> int:
-    """How many orders there are up to the highest."""
+    """Number of orders up to the highest."""
     return int(np.floor(float(highest) * cycle.strokes / 2 + 1e-9))
 
 

@@ -138,7 +138,7 @@ def train_layout(
 
 @units("kg*m**2", "1", "1", returns="1")
 def are_few(J: Array, first: Array, drivers: Array) -> bool:
-    """Whether there are no more inertias, shafts and gears than are calculated."""
+    """Return whether there are no more inertias, shafts and gears than are calculated."""
     return (
         np.shape(J)[-1] <= MOST_INERTIAS
         and np.size(first) <= MOST_SHAFTS
@@ -148,19 +148,19 @@ def are_few(J: Array, first: Array, drivers: Array) -> bool:
 
 @units("1", "1", returns="1")
 def are_pairs(first: Array, second: Array) -> bool:
-    """Whether two lists have one number for each shaft."""
+    """Return whether two lists have one number for each shaft."""
     return np.ndim(first) == 1 and np.shape(first) == np.shape(second)
 
 
 @units("1", "N*m/rad", returns="1")
 def have_stiffness(first: Array, k: Array) -> bool:
-    """Whether each shaft has a stiffness [N m/rad; ..., shaft]."""
+    """Return whether each shaft has a stiffness [N m/rad; ..., shaft]."""
     return np.shape(k)[-1:] == np.shape(first)[-1:]
 
 
 @units("kg*m**2", "1", "1", returns="1")
 def name_inertias(J: Array, first: Array, second: Array) -> bool:
-    """Whether two lists of numbers name inertias that exist, and never the same one twice."""
+    """Return whether two lists of numbers name inertias that exist, and never the same one twice."""
     one, other = listed(first), listed(second)
     count = np.shape(J)[-1]
     exist = np.all(one <= count) and np.all(other <= count)
@@ -169,38 +169,38 @@ def name_inertias(J: Array, first: Array, second: Array) -> bool:
 
 @units("1", "1", "1", returns="1")
 def are_gears(drivers: Array, driven: Array, ratios: Array) -> bool:
-    """Whether three lists describe gears, or none is given."""
+    """Return whether three lists describe gears, or none is given."""
     given = [np.shape(one) for one in (drivers, driven, ratios)]
     return given[0] == given[1] == given[2] and len(given[0]) <= 1 and bool(np.all(listed(ratios) != 0))
 
 
 @units(None, returns="1")
 def has_no_loop(layout: TrainLayout | None) -> bool:
-    """Whether gears drive each inertia once at most, and not in a circle."""
+    """Return whether gears drive each inertia once at most, and not in a circle."""
     return layout is None or not layout.has_gear_loop
 
 
 @units(None, returns="1")
 def is_joined(layout: TrainLayout | None) -> bool:
-    """Whether shafts and gears join all inertias."""
+    """Return whether shafts and gears join all inertias."""
     return layout is None or bool(np.all(np.isfinite(layout.speeds)))
 
 
 @units(None, returns="1")
 def turns_freely(layout: TrainLayout | None) -> bool:
-    """Whether the train turns without twisting its shafts."""
+    """Return whether the train turns without twisting its shafts."""
     return layout is None or layout.turns_freely
 
 
 @units("kg*m**2", "1", returns="1")
 def exist(J: Array, numbers: Array) -> bool:
-    """Whether one list of numbers, or nothing, names inertias that exist."""
+    """Return whether one list of numbers, or nothing, names inertias that exist."""
     return np.ndim(numbers) <= 1 and bool(np.all(~(np.asarray(numbers) > np.shape(J)[-1])))
 
 
 @units(None, "1", returns="1")
 def turn_alike(layout: TrainLayout | None, numbers: Array) -> bool:
-    """Whether the excited inertias have one mean speed."""
+    """Return whether the excited inertias have one mean speed."""
     places = numbered(numbers)
     if layout is None or places.size == 0 or np.any(places >= layout.count):
         return True
