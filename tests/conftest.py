@@ -20,12 +20,14 @@ from components import cluster, object_store, own_postgres, postgres, s3  # noqa
 from hypothesis import settings  # noqa: E402
 from lanes import group_of, left_out, name_group, rank, require_distinct  # noqa: E402
 from patience import BUDGET, FACTOR, SLOW_TEST, TEST  # noqa: E402
-from seeds import CHOSEN, SEED  # noqa: E402
+from seeds import CHOSEN, SEED, examples  # noqa: E402
 
 from app.workers import isolated  # noqa: E402
 
 # No timed assertions, and the same examples in every run, unless a seed is chosen.
-settings.register_profile("lanes", deadline=None, derandomize=CHOSEN is None, print_blob=True)
+settings.register_profile(
+    "lanes", deadline=None, derandomize=CHOSEN is None, print_blob=True, max_examples=examples(100)
+)
 settings.load_profile("lanes")
 
 if FACTOR != 1:

@@ -134,6 +134,7 @@ class TestAnswer:
 
 
 class TestSurface:
+    @pytest.mark.slow
     def test_an_analysis_links_to_it(self, http, painted):
         surface = painted["outputs"]["surface"]
         assert painted["outputs"].keys() == {"surface"}

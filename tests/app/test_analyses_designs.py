@@ -99,6 +99,7 @@ class TestRelation:
         stored = revision(http, design)["models"]["bar"]["analyses"]["torsion"]["outputs"]["stiffness"]
         assert change == {"old": stored, "new": stored}
 
+    @pytest.mark.slow
     def test_it_is_found_beside_other_jobs(self, http):
         design = created(http, train("17 mm"))
         items = http.get(f"{API}/jobs?limit=200").json()["items"]

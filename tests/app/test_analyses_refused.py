@@ -22,6 +22,7 @@ class TestRefused:
         assert named == {"train.stiffnesses": "unknown_name"}
         assert "torsional_frequency" in detail
 
+    @pytest.mark.slow
     def test_a_surface_is_no_quantity(self, http):
         design = created(http, train())
         http.post(

@@ -37,7 +37,7 @@ def interface(*phases):
 
 INTERFACE = interface("examples", "fuzzing")
 QUICK = settings(
-    max_examples=3,
+    max_examples=2,
     database=None,
     phases=[Phase.explicit, Phase.generate],
     suppress_health_check=list(HealthCheck),

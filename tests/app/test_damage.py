@@ -66,7 +66,7 @@ def design(http):
 class TestServed:
     @DAMAGES
     @pytest.mark.parametrize("kind", ["step", "png"])
-    @pytest.mark.sampled(2)
+    @pytest.mark.sampled(1)
     def test_an_artifact_comes_back_under_its_hash(self, served, http, design, damage, kind):
         sha = files(http, design)[kind]
         damage(place(served, sha))
@@ -182,6 +182,7 @@ class TestServed:
         assert http.post(path, json=body, headers=WAIT).status_code == 200
         assert http.get(url, headers={"Prefer": "respond-async"}).content == whole.content
 
+    @pytest.mark.slow
     def test_an_analysis_reads_a_good_step_file(self, served, http):
         parameters = {"diameter": "27 mm", "length": "41 mm"}
         built = http.post(f"{API}/models/bar/versions/1/build", json={"parameters": parameters}, headers=WAIT)

@@ -164,6 +164,7 @@ def test_engines_of_the_gallery_have_their_crankshaft(http, example, pins, journ
     assert revision(http, changed)["models"]["crankshaft"]["build"] != shaft["build"]
 
 
+@pytest.mark.slow
 def test_all_thirteen_bearings_of_the_v8_are_variants(http):
     whole = bearings_of(GALLERY["v8"].document)
     document = {name: value for name, value in whole.items() if name != "models"}

@@ -5,10 +5,11 @@ import json
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
+from seeds import examples
 from serving import API, HANG, created
 
 QUICK = settings(
-    max_examples=60,
+    max_examples=examples(60),
     database=None,
     phases=[Phase.explicit, Phase.generate],
     suppress_health_check=list(HealthCheck),

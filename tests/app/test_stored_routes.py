@@ -10,6 +10,7 @@ sys.path.append(str(Path(__file__).parent / "worksheet_import"))  # mathcad_file
 from stored_routes import ROUTES, check_conditions, path_of
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("route", ROUTES)
 def test_conditions_of_a_file_in_a_folder(http, route):
     check_conditions(http, path_of(http, route))

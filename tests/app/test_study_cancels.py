@@ -34,7 +34,7 @@ def own_calculations(served, study):
 
 @pytest.mark.parametrize("by", ["study", "job"])
 @pytest.mark.parametrize(("document", "body"), [(TWICE, SAMPLE), (FILM, SEARCH)], ids=["sample", "optimise"])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(1)
 def test_a_cancelled_study_keeps_no_further_chunk(served, http, document, body, by):
     study = begun(http, new_design(http, document), **body)
     place = f"{API}/studies/{study['id']}"

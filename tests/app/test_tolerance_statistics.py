@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
+from seeds import examples
 
 from app.tolerances.factors import Factor, inverse, lattice, placed, scattered, sobol
 from app.tolerances.scatter import SCRAMBLINGS, Rows, scatter
@@ -243,7 +244,7 @@ def test_ishigamis_shares_are_those_published():
     ),
     st.integers(0, 100),
 )
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_first_shares_sum_to_at_most_one(terms, seed):
     factors = [Factor(f"x{n}", 0.0, -1.0, 1.0, name) for n, (_, _, name) in enumerate(terms)]
 

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from openpyxl import Workbook, load_workbook
+from seeds import examples
 
 from app.designs.variant_sheets.csv_files import read_csv, write_csv
 from app.designs.variant_sheets.grid import address
@@ -108,19 +109,19 @@ tables = st.dictionaries(
 ).map(lambda table: {name: row for name, row in table.items() if name != "base"})
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(tables)
 def test_a_round_trip_through_csv_changes_no_value(variants):
     assert read_variants(through_csv(variants), UNITS, variants).variants == variants
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(tables)
 def test_a_round_trip_through_xlsx_changes_no_value(variants):
     assert read_variants(through_xlsx(variants), UNITS, variants).variants == variants
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(st.text(max_size=200))
 def test_any_text_is_read_or_refused(text):
     variants, faults = attempt(
@@ -334,7 +335,7 @@ def test_damaged_files_are_refused(content):
 SOUND = book_of(["variant", "clearance"], ["unit", "um"], ["main_1", 55])
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.integers(0, len(SOUND) - 1), st.integers(1, 255))
 def test_a_damaged_byte_is_refused_or_read_and_never_raises_anything_else(place, change):
     content = bytearray(SOUND)

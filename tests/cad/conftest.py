@@ -11,16 +11,21 @@ from cad.regenerate import Build, regenerate
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """A test that asks for `model` runs for every model found: a new file is covered when it is there.
 
-    Some belong to the slow lane: those in `SLOW_MODELS` of the file, or of `@slow_for` at the test.
+    Some belong to the slow lane (`slow_models.py`).
     """
     if "model" in metafunc.fixturenames:
-        slow = {*getattr(metafunc.module, "SLOW_MODELS", ()), *getattr(metafunc.function, "slow_for", ())}
-        marks = {True: pytest.mark.slow, False: ()}
         result = [
-            pytest.param(cls, id=f"{cls.id}_v{cls.version}", marks=marks[(cls.id, cls.version) in slow])
+            pytest.param(cls, id=f"{cls.id}_v{cls.version}", marks=pytest.mark.slow if is_slow else ())
             for cls in models()
+            for is_slow in (_is_slow(metafunc, (cls.id, cls.version)),)
         ]
         metafunc.parametrize("model", result, scope="session")
+
+
+def _is_slow(metafunc: pytest.Metafunc, model: tuple[str, int]) -> bool:
+    slow = {*getattr(metafunc.module, "SLOW_MODELS", ()), *getattr(metafunc.function, "slow_for", ())}
+    quick = {*getattr(metafunc.module, "QUICK_MODELS", ()), *getattr(metafunc.function, "quick_for", ())}
+    return model in slow or (bool(quick) and model not in quick)
 
 
 class Derived(dict[str, bytes]):

@@ -1,6 +1,7 @@
 """Which models belong to the slow lane, in a whole file or in one test.
 
-A file names them in `SLOW_MODELS`, a test by `@slow_for(...)`; tests/cad/conftest.py reads both.
+A file names them in `SLOW_MODELS`, a test by `@slow_for(...)`. Or else it names those of the quick lane, in
+`QUICK_MODELS` or by `@quick_for(...)`, and all others are slow. tests/cad/conftest.py reads these.
 """
 
 from collections.abc import Callable
@@ -17,7 +18,21 @@ LARGE = (*SHAFTS, ("bearing_assembly", 1), *EARLIER)
 housings, are models of their own, in the quick lane; so is a later version."""
 
 BALLS = ("deep_groove_bearing", 1)
-"""To draw one takes as long as all other models in the quick lane together: its drawing is read, once."""
+"""To draw one takes as long as all other models in the quick lane together."""
+
+DRAWN = (("connecting_rod", 1), ("plain_bearing", 3), ("thrust_washer", 2))
+"""Models whose drawings and files of all kinds are in the quick lane: they are made from the STEP file by the
+same code for every model. These have holes, grooves, colours, and the simplest solid."""
+
+
+def quick_for(*models: Model) -> Callable[[Test], Test]:
+    """Leave a test of these models in the quick lane, and put those of all others into the slow one."""
+
+    def mark(test: Test) -> Test:
+        test.quick_for = models  # type: ignore[attr-defined]
+        return test
+
+    return mark
 
 
 def slow_for(*models: Model) -> Callable[[Test], Test]:

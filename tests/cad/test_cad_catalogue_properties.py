@@ -3,16 +3,17 @@
 import hashlib
 import json
 import math
-import subprocess
-import sys
+import os
 from typing import Any
 
 import numpy as np
 import pytest
+from forked import Forked
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from netgen.occ import OCCGeometry
-from slow_models import BALLS, LARGE, slow_for
+from patience import patient
+from slow_models import BALLS, DRAWN, LARGE, quick_for, slow_for
 
 from cad.catalogue import models
 from cad.checks import check_box
@@ -27,12 +28,6 @@ from templates.core.language.spec import Choice, Curve, Derived
 HOSTILE = [math.nan, math.inf, -math.inf, -1.0, 1e12]
 UNSEEN = {("plain_bearing", 3): {"free_spread"}}
 """Numbers that the solid of the example does not show; test_free_shell.py reads the spread of free shells."""
-IN_ANOTHER_PROCESS = """
-import hashlib, json, sys
-from cad.regenerate import regenerate
-for build in json.load(sys.stdin):
-    print(hashlib.sha256(regenerate(*build).step).hexdigest())
-"""
 
 
 def test_example_builds_and_shows_its_parameters(model: type[CadModel], example: Build) -> None:
@@ -91,7 +86,7 @@ def test_model_is_made_again_from_the_text_in_its_file(model: type[CadModel], ex
 
 
 @pytest.fixture(scope="session")
-def elsewhere(request: pytest.FixtureRequest) -> dict[str, str]:
+def elsewhere(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     """The hashes of the examples of all models that the next test takes, built in another process."""
     name = test_bytes_are_the_same_in_another_process.__name__
     chosen = {
@@ -101,19 +96,22 @@ def elsewhere(request: pytest.FixtureRequest) -> dict[str, str]:
     examples = (cls.from_quantities(cls.example).inputs_si() for cls in classes)
     given = [{name: np.asarray(value).tolist() for name, value in one.items()} for one in examples]
     builds = [[cls.id, cls.version, one] for cls, one in zip(classes, given, strict=True)]
-    command = [sys.executable, "-c", IN_ANOTHER_PROCESS]
-    done = subprocess.run(command, input=json.dumps(builds), capture_output=True, text=True, check=True)
-    return dict(zip((f"{cls.id}_v{cls.version}" for cls in classes), done.stdout.split(), strict=True))
+    asked, answer, log = (tmp_path_factory.mktemp("elsewhere") / name for name in ("asked", "answer", "log"))
+    asked.write_text(json.dumps(builds))
+    process = Forked([asked, answer], dict(os.environ), log, call="another_process:write_digests")
+    assert process.wait(patient(200)) == 0, log.read_text()
+    digests = json.loads(answer.read_text())
+    return dict(zip((f"{cls.id}_v{cls.version}" for cls in classes), digests, strict=True))
 
 
-@slow_for(*LARGE)
+@quick_for(*DRAWN)
 def test_bytes_are_the_same_in_another_process(
     model: type[CadModel], example: Build, elsewhere: dict[str, str]
 ) -> None:
     assert elsewhere[f"{model.id}_v{model.version}"] == hashlib.sha256(example.step).hexdigest()
 
 
-@slow_for(*LARGE, ("crank_throw", 1), ("plain_bearing", 3))
+@quick_for(("connecting_rod", 1), ("plain_bearing", 1), ("thrust_washer", 2))
 def test_bytes_are_the_same_each_time(model: type[CadModel], example: Build) -> None:
     # Six times: the order of three colours was once that of memory addresses, so two equal files were luck.
     colours = {part.colour for part in model.from_quantities(model.example).build()}
@@ -138,7 +136,7 @@ def test_hostile_numbers_are_refused_by_name(model: type[CadModel], example: Bui
         assert name in {fault.name for fault in refused.value.faults}
 
 
-@slow_for(*LARGE, ("plain_bearing", 3))
+@slow_for(*LARGE, BALLS, ("plain_bearing", 3))
 def test_required_parameter_may_have_any_size_in_range(model: type[CadModel]) -> None:
     for share in (0.0, 0.25, 0.5, 0.75, 1.0):
         required = {n: _between(d, share) for n, d in model.inputs.items() if d.required}

@@ -91,6 +91,7 @@ def test_one_throw_is_the_shaft_of_version_1() -> None:
     assert other["centre_z"] == pytest.approx(one["centre_z"] + half, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_analytic_rotating_couple_of_any_angles(cross: Build) -> None:
     """Throws of the same shape, turned: each adds what one throw has, at its place and angle."""
     angles = (17.0, 105.0, 260.0)

@@ -23,6 +23,7 @@ def refused(**given):
     return {name for fault in caught.value.faults for name in fault.names}
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("designation", "sizes"),
     [("61810", (50, 65, 7)), ("6010", (50, 80, 16)), ("6210", (50, 90, 20)), ("6310", (50, 110, 27))],

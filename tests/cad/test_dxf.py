@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from ezdxf.document import Drawing
 from ezdxf.entitydb import EntityDB
-from slow_models import BALLS, LARGE, slow_for
+from slow_models import DRAWN
 
 from cad.drafting.hatching import hatch
 from cad.drafting.matching import matched
@@ -31,7 +31,7 @@ SHEETS = {
 }  # ISO 216
 SHOWN = 0.9  # of the lengths and angles of an example
 NOT_DRAWN = {"free_spread"}  # of a shell that its housing holds
-SLOW_MODELS = LARGE
+QUICK_MODELS = DRAWN
 
 
 @pytest.fixture
@@ -93,7 +93,6 @@ def test_dimensions_are_drawn_with_their_numbers(drawing: Drawing) -> None:
         assert float(number) == pytest.approx(entity.get_measurement(), abs=5.1e-4), reported
 
 
-@slow_for(BALLS)
 def test_views_are_true_to_the_part(example: Build) -> None:
     bodies = read_step(example.step)
     section, end = views(bodies)
@@ -127,7 +126,6 @@ def test_equal_files_from_equal_steps(example: Build, dxf: bytes) -> None:
     assert derive(example.step, "dxf") == dxf
 
 
-@slow_for(BALLS)
 def test_svg_shows_the_same(svg: bytes, drawing: Drawing) -> None:
     root = ElementTree.fromstring(svg)
     formats = {text.dxf.text for text in drawing.modelspace().query("TEXT")} & SHEETS.keys()
@@ -194,7 +192,6 @@ def test_hatch_stays_within_its_outline() -> None:
         assert abs((b[1] - a[1]) - (b[0] - a[0])) < 1e-9  # at 45°
 
 
-@slow_for(BALLS, ("crank_throw", 1))
 @pytest.mark.parametrize("backwards", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_the_order_of_sets_does_not_show(
     example: Build, dxf: bytes, monkeypatch: pytest.MonkeyPatch, backwards: bool

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from PIL import Image
-from slow_models import BALLS, LARGE, slow_for
+from slow_models import DRAWN
 
 from cad.export import DERIVED, MEDIA_TYPES, derive
 from cad.inspect import measure
@@ -15,11 +15,10 @@ from cad.regenerate import Build
 from cad.step import read_step
 
 STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-SLOW_MODELS = LARGE
+QUICK_MODELS = DRAWN
 PRINTED = "drawing.pdf"  # typeset of the picture of a drawing
 
 
-@slow_for(BALLS)
 def test_every_kind_has_a_media_type_and_can_be_had(files: dict[str, bytes]) -> None:
     assert set(MEDIA_TYPES) == {"step", *DERIVED}
     for kind in set(DERIVED) - {PRINTED}:

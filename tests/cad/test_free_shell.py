@@ -55,6 +55,7 @@ def test_a_small_spread_approaches_the_shell_in_its_seat() -> None:
             assert free.measures[name] == pytest.approx(value, rel=1e-3), name
 
 
+@pytest.mark.slow
 def test_equal_parameters_give_equal_bytes() -> None:
     """Once as typed, once from SI as rows hold them, whose last digits differ."""
     model = CLS.from_quantities({**CLS.example, "state": "free"})

@@ -11,7 +11,7 @@ from ezdxf import path
 from ezdxf.document import Drawing
 from ezdxf.math import is_point_in_polygon_2d
 from PIL import ImageFont
-from slow_models import LARGE
+from slow_models import DRAWN
 
 from benchmarks.drawings import SIZES, latest, sized
 from cad.catalogue import models
@@ -21,7 +21,7 @@ from cad.export import derive
 from cad.model import CadModel
 from cad.regenerate import Build, as_text, regenerate_from_text
 
-SLOW_MODELS = LARGE
+QUICK_MODELS = DRAWN
 SVG = "{http://www.w3.org/2000/svg}"
 FIELDS = ("owner title author checker approver status number revision date material mass part").split()
 

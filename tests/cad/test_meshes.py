@@ -6,7 +6,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from slow_models import LARGE, slow_for
+from slow_models import DRAWN, quick_for
 
 from cad.catalogue import models
 from cad.deflection import COARSEST, FINEST, STEPS, deflection_of, plain_kind, with_deflection
@@ -68,7 +68,7 @@ def degenerate(corners):
     return np.linalg.norm(np.cross(b - a, c - a), axis=1) <= 1e-5 * longest**2
 
 
-@slow_for(*LARGE)
+@quick_for(*DRAWN)
 def test_files_are_closed_without_degenerate_triangles_and_nodes_have_the_names_of_parts(files, model):
     content, meshes = glb(files["glb"])
     whole = stl(files["stl"])

@@ -9,6 +9,7 @@ import pytest
 from cadquery import Location, func
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from seeds import examples
 
 from cad.drafting.lettering import clipped, width_of
 from cad.export import derive
@@ -61,7 +62,7 @@ def test_the_kernel_reads_the_product_back(shell, design):
     assert not is_copy(shell, step.replace(b"PRODUCT(", b"PRODUKT(", 1))
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(st.text("ab'\\,;)(# X204µ轴/*🔩", min_size=1, max_size=30))
 def test_property_the_kernel_reads_odd_names(shell, design):
     (body,) = read_step(stamped(shell, "step", stamp(design)))
@@ -69,7 +70,7 @@ def test_property_the_kernel_reads_odd_names(shell, design):
     assert plain(quoted(design)) == design
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(NAME)
 def test_property_a_stamp_changes_nothing_else(shell, design):
     step = stamped(shell, "step", stamp(design))
@@ -79,7 +80,7 @@ def test_property_a_stamp_changes_nothing_else(shell, design):
     assert plain(quoted(design)) == design
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(st.data())
 def test_property_a_change_of_one_byte_outside_the_stamp_is_noticed(shell, data):
     step = stamped(shell, "step", stamp("x"))
@@ -129,7 +130,7 @@ def test_a_drawing_of_an_older_program_keeps_its_lines(kind):
         assert line in text
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(st.text(max_size=300), st.floats(5, 120))
 def test_property_a_clipped_text_is_one_line_that_has_room(text, width):
     line = clipped(text, width, 2.5)
@@ -166,7 +167,7 @@ def test_fields_of_a_title_block(drawings):
         assert re.search(rf'<text data-stamp="iso-{mark}"[^>]*>{re.escape(field)}</text>', text), mark
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(NAME)
 def test_property_names_of_files_are_safe(design):
     for name in (stem(design, "model", 1), wide_stem(design, "model", 1)):

@@ -27,6 +27,7 @@ def built():
     return regenerate(cls.id, cls.version, cls.from_quantities(cls.example).inputs_si()).step
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("digits", ["9", "57", "999", "12345678"])
 def test_a_counter_that_has_run_on_leaves_no_trace(digits, monkeypatch):
     fresh, finished = built(), step.finished

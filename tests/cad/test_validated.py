@@ -4,6 +4,7 @@ import re
 
 import pytest
 from part21_reader import File
+from slow_models import DRAWN, quick_for
 
 from cad.errors import UnreadableStep
 from cad.export import VALIDATED, derive
@@ -19,6 +20,7 @@ def stated(step: bytes) -> list[tuple[str, object]]:
     return [(what, items) for name, what, items in File(step).properties() if "validation" in name]
 
 
+@quick_for(*DRAWN)
 def test_a_plain_file_gets_volume_area_and_centroid_of_each_part(
     model: type[CadModel], example: Build, files: dict[str, bytes]
 ) -> None:
@@ -33,6 +35,7 @@ def test_a_plain_file_gets_volume_area_and_centroid_of_each_part(
     assert not list(File(files[VALIDATED]).dangling())
 
 
+@quick_for(*DRAWN)
 def test_solids_and_header_stay_as_they_are(example: Build, files: dict[str, bytes]) -> None:
     validated = files[VALIDATED]
     head, _, tail = example.step.rpartition(b"ENDSEC;")

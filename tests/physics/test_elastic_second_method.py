@@ -21,6 +21,7 @@ def softness():
     return BoreSoftness(2e-3, tail, 5.0, 0.01, 0.3, matrix=0.1 / matrix[3, 3] * matrix, share=0.8)
 
 
+@pytest.mark.slow
 def test_second_method_finite_elements_find_the_same_film(softness):
     pairs = bore_balances(SO, RATIO, 0.75, softness, TO_LOAD)
     coarse, fine = (measured(soft.film) for _, soft in pairs)

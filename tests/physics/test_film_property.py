@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from seeds import examples
 
 from templates.physics.films.film_dynamics import plain_coefficients
 from templates.physics.films.film_fit import attitude_ISO_7902, load_ISO_7902
@@ -20,7 +21,7 @@ ECCENTRICITIES = st.one_of(
     st.floats(-7, 0).map(lambda k: 1 - 10.0**k),
     st.just(0.0),
 )
-MANY = settings(max_examples=300, suppress_health_check=[HealthCheck.too_slow])
+MANY = settings(max_examples=examples(300), suppress_health_check=[HealthCheck.too_slow])
 LOADS = [load_Ocvirk_1952, load_ISO_7902, load_Sommerfeld_1904, load_Gumbel_1914, load_Swift_Stieber]
 
 
@@ -47,7 +48,7 @@ def test_moving_film_resists_its_motion(eps: float, ratio: float, angle: float) 
     assert force @ [np.cos(angle), np.sin(angle)] > 0
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(eps=ECCENTRICITIES.filter(lambda eps: eps > 0), ratio=RATIOS)
 def test_coefficients_are_finite_and_the_film_damps(eps: float, ratio: float) -> None:
     film = plain_coefficients(eps, ratio, 64, 8)

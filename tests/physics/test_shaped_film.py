@@ -67,6 +67,7 @@ class TestLimits:
         assert np.arctan2(e[1], e[0]) == pytest.approx(attitude, abs=2e-4)
         assert film.peak[0] == pytest.approx(fine.P_max, rel=2e-3)
 
+    @pytest.mark.sampled(1)
     @pytest.mark.parametrize("bore", [Bore(), Bore(2, 0.5)])
     def test_property_small_tilt_tends_to_none_with_its_square(self, bore):
         """On the whole width; the gap's change is of second order in the tilt, the couple of first."""
@@ -134,6 +135,7 @@ class TestSecondMethods:
         np.testing.assert_allclose(film.force, force, rtol=0.01)
         np.testing.assert_allclose(film.couple, couple, rtol=0.02)
 
+    @pytest.mark.sampled(1)
     @pytest.mark.parametrize("conserving", [False, True])
     def test_analytic_stiffness_is_the_slope_of_the_force(self, conserving):
         loaded = Loaded(1.0, 0.5, Bore(2, 0.5, 0.2), np.array([0.1, -0.05]), SPLIT, conserving)

@@ -75,6 +75,7 @@ def test_a_corrected_front_is_met_everywhere_and_near_the_closed_form():
     assert any("not_met" in one.verdicts for one in promised)
 
 
+@pytest.mark.slow
 def test_equal_seeds_give_equal_fronts():
     first, again, other = (
         pareto_front(PROBLEM, level(0, 0), level(0, 0), seed=seed, effort=SMALL) for seed in (3, 3, 4)

@@ -1,5 +1,6 @@
 """A Dask scheduler and workers for tests, run by the commands that an operator uses."""
 
+import json
 import sys
 from contextlib import suppress
 
@@ -10,8 +11,6 @@ from app.settings import Settings
 from app.team.processes import LOOPBACK, Tied, free_port, listens
 from app.workers.remote.engine import DaskWorker
 
-LANES = '{"geometry": 1, "analysis": 1}'
-
 
 def commanded(name, folder, *arguments, **environment):
     """A command of the program, as `crankwright …` would run it."""
@@ -21,10 +20,11 @@ def commanded(name, folder, *arguments, **environment):
 
 
 class Network:
-    """A scheduler and workers, any of which may be killed and started again."""
+    """A scheduler and workers, any of which may be killed and started again; a worker has so many places."""
 
-    def __init__(self, folder, workers=2, scheme="tcp", **environment):
+    def __init__(self, folder, workers=2, places=1, scheme="tcp", **environment):
         self.folder, self.port, self.environment = folder, free_port(), environment
+        self.places = places
         self.address = f"{scheme}://{LOOPBACK}:{self.port}"
         self.scheduler = self.start_scheduler()
         self.workers = [self.start_worker(f"worker-{number}") for number in range(workers)]
@@ -36,7 +36,8 @@ class Network:
         return self.scheduler
 
     def start_worker(self, name):
-        options = ("--scheduler", self.address, "--lanes", LANES)
+        lanes = json.dumps({"geometry": self.places, "analysis": self.places})
+        options = ("--scheduler", self.address, "--lanes", lanes)
         return commanded(name, self.folder, "worker", *options, **self.environment)
 
     def until_listening(self):
@@ -45,7 +46,7 @@ class Network:
     def engine(self, **settings):
         """A server's worker, connected; it sees the places of all workers."""
         engine = DaskWorker.of(Settings(engine=self.address, **settings))
-        until(lambda: engine.capacity("geometry"), lambda count: count == len(self.workers))
+        until(lambda: engine.capacity("geometry"), lambda count: count == self.places * len(self.workers))
         return engine
 
     def stop(self):

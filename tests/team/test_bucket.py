@@ -158,6 +158,7 @@ class TestPuts:
         assert not one.store.delete_unchanged(older)
         assert keys(raw) == {sha}
 
+    @pytest.mark.slow
     def test_two_processes_put_the_same_bytes(self, s3, server, tmp_path):
         script = dedent(f"""
             from pathlib import Path

@@ -165,6 +165,7 @@ class TestOutage:
         until(lambda: one.get("/readyz").status_code == 200)
         problem(one.get(f"{API}/artifacts/{'0' * 64}"), 404, "no-such-artifact")
 
+    @pytest.mark.slow
     def test_a_job_waits_for_the_bucket(self, servers, cutter):
         one, before = servers[0], failed_puts(servers[0])
         cutter.most = 0

@@ -154,6 +154,7 @@ def test_servers_of_one_database_are_no_copies(original, store):
         database.close()
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(1)
 def test_the_server_says_why_it_keeps_files(original, store, cloned, caplog):
     own, copy = cloned()

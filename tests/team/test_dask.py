@@ -28,7 +28,7 @@ LONG = Limits(deadline=patient(100), memory_mb=512)
 
 @pytest.fixture(scope="module")
 def network(tmp_path_factory):
-    network = Network(tmp_path_factory.mktemp("dask"))
+    network = Network(tmp_path_factory.mktemp("dask"), workers=1, places=2)  # each worker imports for seconds
     yield network
     network.stop()
 

@@ -166,6 +166,7 @@ def test_who_asks_at_another_server_gets_stage_and_share(own_postgres):
         assert here.get(id).progress == 1.0
 
 
+@pytest.mark.slow
 def test_what_a_stopping_server_gives_back_is_queued_for_all(own_postgres):
     began = threading.Event()
 
@@ -182,6 +183,7 @@ def test_what_a_stopping_server_gives_back_is_queued_for_all(own_postgres):
         assert names(own_postgres, id) == ["running", "queued"]
 
 
+@pytest.mark.slow
 def test_a_job_of_a_kind_that_only_newer_servers_know_waits_for_them(own_postgres):
     """The older server takes the one behind it. What it does not know would fail there for good."""
     with server(own_postgres, lambda job, context: lambda session: None, threads=1, lane=FAST) as older:

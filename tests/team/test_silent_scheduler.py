@@ -4,7 +4,7 @@ import asyncio
 import threading
 
 import pytest
-from dask_processes import LANES, commanded
+from dask_processes import commanded
 from patience import until
 from silence import Silence
 
@@ -47,7 +47,9 @@ def test_a_client_raises_and_leaves_no_thread(silence):
 def test_a_server_finds_the_scheduler_that_takes_the_place_of_a_silent_one(silence, tmp_path):
     address = f"tcp://127.0.0.1:{silence.port}"
     engine = DaskWorker.of(Settings(engine=address))
-    worker = commanded("worker", tmp_path, "worker", "--scheduler", address, "--lanes", LANES)
+    worker = commanded(
+        "worker", tmp_path, "worker", "--scheduler", address, "--lanes", '{"geometry": 1, "analysis": 1}'
+    )
     scheduler = None
     try:
         until(lambda: len(silence.held), lambda count: count > 3)  # it and the worker have tried again

@@ -99,6 +99,7 @@ def test_a_lost_file_is_named_and_missing_in_the_backup(kept, run, tmp_path):
         data.release()
 
 
+@pytest.mark.slow
 def test_a_backup_without_files_is_much_smaller_and_restores(run, cluster, tmp_path):
     archives = [tmp_path / "all.tar", tmp_path / "rows.tar"]
     assert run("backup", archives[0]).exit_code == 0

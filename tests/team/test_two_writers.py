@@ -124,6 +124,7 @@ class TestUnits:
         with database.read() as session:
             assert session.scalar(select(func.count()).select_from(DesignRow)) == 1
 
+    @pytest.mark.slow
     def test_a_deadlock_is_run_again(self, database):
         rows = [DesignRow(id=id, name=id, created="", head=0) for id in "ab"]
         database.write(lambda session: session.add_all(rows))
@@ -143,6 +144,7 @@ class TestUnits:
 
         assert sum(at_once([locking("a", "b"), locking("b", "a")])) > 2
 
+    @pytest.mark.sampled(1)
     @pytest.mark.parametrize("key", [None, "key"])
     def test_a_connection_lost_during_the_commit(self, database, monkeypatch, key):
         """With a key the row decides; without one nobody knows, and the error says so."""
@@ -176,6 +178,7 @@ class TestUnits:
         with database.read() as session:
             assert session.scalar(select(func.count()).select_from(DesignRow)) == 1
 
+    @pytest.mark.slow
     def test_one_of_eight_appends_wins(self, database):
         written = designs.Written({"name": "a"}, None, [], "current", None)
         id, _ = database.write(lambda session: designs.create(session, "a", written))
@@ -218,6 +221,7 @@ class TestClaims:
         at_once([lambda n=n: work(f"owner {n}") for n in range(4)])
         assert len(ends) == len(set(ends)) == count
 
+    @pytest.mark.slow
     def test_what_nobody_prolongs_is_queued_again_and_its_owner_is_fenced(self, database):
         database.write(lambda session: repository.add(session, "k", {}, None, None))
         late = database.write(lambda session: repository.claim(session, owner="late", lease=-1.0))

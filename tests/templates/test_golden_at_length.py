@@ -25,9 +25,11 @@ from templates.oil_film import (
     oil_film_cycle_v1,
     oil_film_cycle_v2,
     oil_film_cycle_v3,
+    oil_film_v3,
     thermal_film_v1,
     thrust_bearing_v1,
 )
+from templates.stiffness import fatigue_life_v2, forced_torsion_v1
 
 pytestmark = pytest.mark.slow
 VERSIONS = [
@@ -35,7 +37,10 @@ VERSIONS = [
     cycle_heat_balance_v2.CycleHeatBalance,
     engine_v2.Engine,
     engine_v3.Engine,
+    fatigue_life_v2.FatigueLife,
+    forced_torsion_v1.ForcedTorsion,
     mixed_friction_v1.MixedFriction,
+    oil_film_v3.OilFilm,
     thermal_film_v1.ThermalFilm,
     thrust_bearing_v1.ThrustBearing,
     oil_film_cycle_v1.OilFilmCycle,

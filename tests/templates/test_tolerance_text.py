@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from seeds import examples
 
 from templates import get
 from templates.core.errors import FaultyText, InvalidInputs
@@ -219,7 +220,7 @@ def reading(raw, declared):
 
 
 @given(st.lists(st.one_of(number, part, st.text(max_size=4)), max_size=12).map("".join))
-@settings(max_examples=400)
+@settings(max_examples=examples(400))
 def test_any_text_is_read_or_refused(text):
     for declared in ("mm", "degC", "1"):
         typed, code = reading(text, declared)
@@ -244,7 +245,7 @@ JSON = st.recursive(
 @given(
     JSON | st.fixed_dictionaries({"value": st.just(48), "unit": st.just("mm"), "plus": JSON, "zone": JSON})
 )
-@settings(max_examples=400)
+@settings(max_examples=examples(400))
 def test_any_object_is_read_or_refused(raw):
     typed, code = reading(raw, "mm")
     assert code if typed is None else np.all(np.isfinite(typed.si))

@@ -4,8 +4,8 @@ import re
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from browsing import created
-from patience import patient, until
+from browsing import created, settled
+from patience import patient
 from playwright.sync_api import expect
 
 from app.presentation.numbers import aligned, unit
@@ -78,7 +78,6 @@ def test_no_page_asks_an_outside_address_fails_or_breaks_the_policy(watched, req
         assert watched.page.get_by_text("could not be drawn").count() == 0, path
 
 
-@pytest.mark.usefixtures("plotted")
 @pytest.mark.parametrize("all_or_one", ["some", pytest.param("paths", marks=pytest.mark.slow)])
 def test_no_page_is_wider_than_a_narrow_screen(browser, watched, http, kinds, request, all_or_one):
     paths = request.getfixturevalue(all_or_one)
@@ -91,7 +90,6 @@ def test_no_page_is_wider_than_a_narrow_screen(browser, watched, http, kinds, re
         assert watched.page.evaluate("document.documentElement.scrollWidth") <= NARROW["width"], path
 
 
-@pytest.mark.usefixtures("plotted")
 @pytest.mark.parametrize("is_all", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_pages_have_no_serious_fault_of_accessibility(watched, kinds, is_all):
     for path in (*kinds, "/nowhere") if is_all else kinds[2:3]:
@@ -120,6 +118,17 @@ def test_the_keyboard_reaches_fields_and_save_in_the_order_of_the_page(watched, 
     assert fields.index("note") > fields.index("film.speed")
 
 
+def test_what_the_first_page_names_is_light(http):
+    """The same without a browser, of what the page names; not of what its scripts ask for."""
+    page = http.get("/").text
+    named = set(re.findall(r'(?:src|href)="(/static/[^"]+)"', page))
+    assert 1 < len(named) < MOST_REQUESTS
+    sent = sum(len(http.get(address).raise_for_status().content) for address in named)
+    assert len(page) < sent + len(page) < MOST_BYTES
+    assert not any("plotly" in address for address in named)
+
+
+@pytest.mark.slow
 @pytest.mark.usefixtures("plotted")
 def test_the_first_page_is_light(watched, http):
     created(http, "paper")
@@ -149,12 +158,9 @@ def test_without_a_script_all_is_readable_and_a_form_saves(plain, http):
     page.get_by_label("scale", exact=True).fill("1")
     page.get_by_role("button", name=re.compile("Save as revision")).click()
     expect(page.locator(".page-head")).to_contain_text("revision 2")
-
-    def state():
-        page.reload()
-        return page.locator("[data-design-state]").inner_text()
-
-    until(state, lambda shown: shown != "regenerating")
+    settled(http, place)
+    page.reload()
+    expect(page.locator("[data-design-state]")).to_have_text("current")
     expect(page.locator('[data-parameter="model.inner_diameter"] .comes-to')).to_have_text("50 → 48 mm")
     page.get_by_label("Radial load").fill("25 mm")
     page.get_by_role("button", name=re.compile("Save as revision")).click()

@@ -80,6 +80,7 @@ def test_a_job_is_followed_and_its_answer_is_not_saved(watched, http):
     assert len(asked) == 3
 
 
+@pytest.mark.slow
 def test_why_a_file_cannot_be_made_is_said_and_nothing_is_saved(watched, http):
     page, saved = watched.page, []
     page.on("download", lambda file: saved.append(file))
@@ -94,6 +95,7 @@ def test_why_a_file_cannot_be_made_is_said_and_nothing_is_saved(watched, http):
     assert saved == []
 
 
+@pytest.mark.slow
 def test_fields_of_a_title_block_are_typed_before_a_download(watched, http):
     page = watched.page
     page.goto(f"{watched.url}/designs/{design(http, 'typed')}")
@@ -112,6 +114,7 @@ def test_fields_of_a_title_block_are_typed_before_a_download(watched, http):
     expect(status).to_contain_text("approval", timeout=PATIENCE)
 
 
+@pytest.mark.slow
 def test_the_page_of_a_model_shows_its_drawing(watched):
     page = watched.page
     page.goto(f"{watched.url}/models/plain_bearing/1")

@@ -160,6 +160,7 @@ def test_analyses_and_iterations_are_added_changed_and_removed_without_json(watc
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "typed",
     [

@@ -154,6 +154,7 @@ def test_the_table_of_the_script_is_that_of_the_server(watched, http):
     assert panel.locator("table", has_text="Torsion").first.inner_text() == written
 
 
+@pytest.mark.slow
 def test_a_job_that_is_cancelled_says_so(watched):
     page = watched.page
     watched.open("/models/crank_throw/1")

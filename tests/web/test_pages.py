@@ -50,15 +50,13 @@ def test_the_list_of_designs_is_filtered_by_a_form(http):
     assert http.get("/designs?state=done").status_code == 422
 
 
-@pytest.mark.parametrize("is_newest", [True, pytest.param(False, marks=pytest.mark.slow)])
-def test_every_template_and_model_has_its_page(http, is_newest):
+@pytest.mark.parametrize("step", [5, pytest.param(1, marks=pytest.mark.slow)])
+def test_every_template_and_model_has_its_page(http, step):
+    """Every fifth one in the quick lane."""
     for group in ("templates", "models"):
         items = http.get(f"/api/v1/{group}", params={"limit": 500}).json()["items"]
         assert len(items) >= 5
-        latest = {one["id"]: max(i["version"] for i in items if i["id"] == one["id"]) for one in items}
-        for item in items:
-            if (latest[item["id"]] == item["version"]) is not is_newest:
-                continue
+        for item in items[::step]:
             answer = http.get(f"/{group}/{item['id']}/{item['version']}")
             assert answer.status_code == 200, item
             assert item["title"].partition(",")[0] in answer.text.replace("&#39;", "'")

@@ -78,6 +78,7 @@ def test_the_levels_of_a_search_show_the_output_that_a_criterion_judges(http, be
     assert "of thick_enough" in promise
 
 
+@pytest.mark.slow
 def test_a_front_is_listed_with_what_its_levels_promise(http, bearing):
     body = {
         "design": bearing.rpartition("/")[2],

@@ -105,6 +105,7 @@ def test_a_design_without_tolerances_has_no_section(http):
     assert "data-tolerances" not in http.get(design(http)).text
 
 
+@pytest.mark.slow
 def test_without_a_script_the_analysis_is_a_page(http, toleranced):
     assert "data-tolerances" in http.get(toleranced).text
     page = http.get(f"{toleranced}/tolerances")

@@ -235,6 +235,7 @@ def test_a_link_of_the_verdict_unfolds_its_step_and_the_fold_is_kept(watched, tw
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [pytest.param((1440, 900), marks=pytest.mark.slow), (390, 844)])
 def test_the_governing_criterion_stands_on_the_first_screen(browser, served, two_steps, size):
     width, height = size

@@ -39,6 +39,7 @@ def at_end(area, text):
     area.press_sequentially(text)
 
 
+@pytest.mark.slow
 def test_each_line_stands_on_paper_beside_its_text(watched, http):
     opened(watched, stored(http, "beside"))
     rows = watched.page.locator(".typeset-line")
@@ -134,6 +135,7 @@ def test_what_is_typed_survives_a_reload_and_can_be_discarded(watched, http):
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("choice", ["Keep mine", "Take theirs"])
 @pytest.mark.sampled(1)
 def test_somebody_elses_text_is_shown_and_nothing_is_lost(watched, http, choice):

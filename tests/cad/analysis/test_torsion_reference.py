@@ -30,6 +30,7 @@ def stiffness(step: bytes, asked: AnalysisRequest) -> AnalysisResult:
     return analyse(step, Shaft(-54.0, 54.0), asked, ["stiffness"], lambda done, what: None)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("level", "within"), [("default", 5e-3), pytest.param("fine", 1e-3, marks=pytest.mark.slow)]
 )

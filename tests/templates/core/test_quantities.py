@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from seeds import examples
 
 from templates.core.errors import FaultyText, excerpt, plain, unknown_name
 from templates.core.units.quantity import read, read_any, require_same_kind
@@ -241,7 +242,7 @@ UNITS = st.sampled_from(["1", "mm", "rpm", "degC", "delta_degC", "mPa*s"])
 
 
 class TestFuzz:
-    @settings(max_examples=400)
+    @settings(max_examples=examples(400))
     @given(json_values | surrogates | st.builds("1 {}".format, unit_like), UNITS)
     def test_property_read_gives_a_finite_quantity_or_a_reason(self, raw, declared):
         try:
@@ -254,7 +255,7 @@ class TestFuzz:
             assert np.all(np.isfinite(si))
         assert code
 
-    @settings(max_examples=400)
+    @settings(max_examples=examples(400))
     @given(unit_like | surrogates)
     def test_property_unit_is_known_or_refused(self, text):
         try:

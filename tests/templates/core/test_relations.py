@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from seeds import examples
 
 from templates.core.errors import FaultyText
 from templates.core.units.quantity import registry
@@ -283,7 +284,7 @@ def python_value(text):
 
 
 class TestFuzz:
-    @settings(max_examples=200)
+    @settings(max_examples=examples(200))
     @given(arithmetic)
     def test_property_arithmetic_agrees_with_python(self, text):
         try:
@@ -293,7 +294,7 @@ class TestFuzz:
         else:
             assert value(f"= {text}") == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
-    @settings(max_examples=500)
+    @settings(max_examples=examples(500))
     @given(st.text("ab.()[]+-*/ 019eE mkN°²_,=sincopimax\t", max_size=80) | st.text(max_size=60))
     def test_property_any_text_is_a_relation_or_refused(self, text):
         try:

@@ -9,6 +9,7 @@ import lark
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from seeds import examples
 
 from templates.core.errors import FaultyText
 from templates.core.paper.expressions import latex, relation_latex
@@ -141,7 +142,7 @@ def of_point(columns, row):
     return {name: column[row] if column.ndim > 1 else float(column[row]) for name, column in columns.items()}
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(expressions, points())
 def test_property_one_point_as_many_closures_as_trees_and_as_numpy(expression, columns):
     text, numpy = expression
@@ -159,7 +160,7 @@ def test_property_one_point_as_many_closures_as_trees_and_as_numpy(expression, c
     ElementTree.fromstring(mathml(latex(node, {"a": "3~\\text{mm}"})))
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=examples(50), deadline=None)
 @given(simple, simple, points())
 def test_property_single_values_meet_lists_at_each_point(one, other, columns):
     text = f"({one[0]}) * v - (if v > {other[0]} then v else {one[0]})"
@@ -207,7 +208,7 @@ def closed(text):
 PIECES = st.lists(st.sampled_from([*WORDS.split(), '"SAE"']), max_size=30).map(" ".join)
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=examples(400), deadline=None)
 @given(PIECES | st.text(max_size=60))
 def test_property_any_text_is_calculated_or_refused(text):
     assert attempt(calculated, f"= {text}")
