@@ -96,6 +96,11 @@ class _Entity:
     numbers: tuple[float, ...]
 
 
+def is_validated(step: bytes) -> bool:
+    """Whether a STEP file states validation properties, such as the volume of a part."""
+    return f"'{VALIDATION}'".encode() in step
+
+
 def read_statements(step: bytes) -> list[Statement]:
     """Every statement of a STEP file, in the order of the file, each kind by itself."""
     return list(_Reader(_entities(step)).statements())

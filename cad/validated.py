@@ -11,7 +11,8 @@ import re
 from collections.abc import Iterator
 
 from cad.errors import UnreadableStep
-from cad.properties import VALIDATION, Measures, measured, validations
+from cad.properties import Measures, measured, validations
+from cad.statements import is_validated
 from cad.step import read_step
 
 _NUMBER = re.compile(rb"^#(\d+) *=", re.MULTILINE)
@@ -35,7 +36,7 @@ def with_validation(step: bytes) -> bytes:
     UnreadableStep
         If the bytes are no STEP file, or two parts have one name.
     """
-    if f"'{VALIDATION}'".encode() in step:
+    if is_validated(step):
         return step
     data, end, rest = step.rpartition(b"ENDSEC;")
     lines = _lines(data.decode("latin-1"), dict(_measures(step)), _last_number(data))

@@ -19,6 +19,8 @@ Typed = Annotated[str, Query(max_length=LONGEST)]
 
 _SIGNED = {"author": "created_by", "checker": "checked_by", "approver": "approved_by"}
 """Names that steps of an approval give, and the parameters that type them."""
+_ONLY_SIGNED = {"checker", "approver"}
+"""Those that nobody types: a drawing would say on a client's word that it was checked or approved."""
 
 
 @dataclass(frozen=True)
@@ -59,8 +61,13 @@ def _contradictions(typed: dict[str, str], stamp: Stamp) -> list[Fault]:
     faults = []
     for field, name in _SIGNED.items():
         signed = getattr(stamp, field)
-        if signed and typed.get(name, signed) != signed:
+        if typed.get(name, signed) == signed:
+            continue
+        if signed:
             detail = f"this revision has {signed!r} here, from its record; leave it out"
+            faults.append(Fault(name, "signed_otherwise", detail))
+        elif field in _ONLY_SIGNED:
+            detail = "nobody has signed here; only a step of the approval gives this name: leave it out"
             faults.append(Fault(name, "signed_otherwise", detail))
     status = typed.get("document_status", stamp.status)
     if status != stamp.status and (stamp.status in ORDER or _letters(status) in ORDER):

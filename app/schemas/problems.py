@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TypedDict
+from collections.abc import Sequence
+from typing import NotRequired, TypedDict
 
+from fastapi.params import Depends
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.config import JsonDict
 from starlette.responses import Response
@@ -74,6 +76,7 @@ Responses = dict[int | str, dict[str, object]]
 class RouteOptions(TypedDict):
     """Options that the routes of several paths share."""
 
+    dependencies: NotRequired[Sequence[Depends]]
     response_class: type[Response]
     responses: Responses
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from pydantic import Field
 
 from app.schemas.answers import Answer, Quantity, Shown, Triple, Values, Version
@@ -101,6 +103,10 @@ class Verification(Answer):
     build: str
     model: Version
     revisions: list[BuildUse]
+    kind: Literal["step", "validated.step"] = Field(
+        description="which file of the build it was compared with: `validated.step` if it states validation "
+        "properties and the build's own file states none"
+    )
     intact: bool = Field(
         description="whether the bytes are still those that were written, but for the stamp of a download"
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from sqlalchemy.orm import Session
@@ -26,10 +26,12 @@ from cad.header import read_header
 from cad.model import CadModel
 from cad.regenerate import as_text, build_key
 from cad.stamp import is_copy
+from cad.statements import is_validated
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
 
 BUILD = "build"
+VALIDATED = "validated.step"
 FAILURES = (TemplateError, GeometryError, DeadlineExceeded, MemoryExceeded, CannotRebuild)
 """What a model brings about."""
 
@@ -128,7 +130,8 @@ class Models:
     def verify(self, step: bytes) -> Verification:
         """From which build a STEP file is, which revisions use it, and whether its bytes are still those.
 
-        What the file states beside its shape is read and compared. What a stamp says is not looked at.
+        A file with validation properties, of a build whose own file has none, is compared with the stored copy
+        that has them. What the file states beside its shape is read and compared. What a stamp says is not looked at.
 
         Raises
         ------
@@ -144,12 +147,25 @@ class Models:
         assert build.model is not None, "a recorded build has its model"
         with self.database.read() as session:
             uses = [BuildUse.model_validate(use) for use in rows.users_of(session, header.build)]
-        sha = build.artifacts["step"]
+        kind, sha = self._compared_with(step, build.artifacts)
         intact = self._is_intact(step, sha)
         original = step if intact else self.store.read(sha)
-        about = {"build": header.build, "model": build.model, "revisions": uses, "intact": intact}
+        about = {
+            "build": header.build,
+            "model": build.model,
+            "revisions": uses,
+            "kind": kind,
+            "intact": intact,
+        }
         read = statements(original, step)
         return Verification.model_validate({**about, "statements": read} if read else about)
+
+    def _compared_with(self, step: bytes, artifacts: Mapping[str, str]) -> tuple[str, str]:
+        """Kind and hash of the stored file of a build that a STEP file should be."""
+        copy = artifacts.get(VALIDATED)
+        if copy is not None and is_validated(step) and not is_validated(self.store.read(artifacts["step"])):
+            return VALIDATED, copy
+        return "step", artifacts["step"]
 
     def _is_intact(self, step: bytes, sha: str) -> bool:
         """Return whether a file is the artifact of this hash, with or without a stamp."""

@@ -128,6 +128,20 @@ def test_verify_ignores_the_stamp_and_nothing_else(http, design):
     assert verified(http, step.replace(b"steel", b"stool"))["intact"] is True
 
 
+def test_a_copy_with_validation_properties_is_one_of_ours(http, design):
+    copy = get(http, design, "models/shell/model.validated.step").content
+    answer = verified(http, copy)
+    assert (answer["kind"], answer["intact"]) == ("validated.step", True)
+    assert {one["kind"] for one in answer["statements"]} == {"volume", "surface area", "centroid"}
+    assert all(one["agrees"] for one in answer["statements"])
+    wrong = re.sub(rb"VOLUME_MEASURE\(\d", b"VOLUME_MEASURE(7", copy)
+    assert wrong != copy
+    answer = verified(http, wrong)
+    assert (answer["kind"], answer["intact"]) == ("validated.step", False)
+    assert [one["kind"] for one in answer["statements"] if not one["agrees"]] == ["volume"]
+    assert verified(http, get(http, design).content)["kind"] == "step"
+
+
 def test_a_tag_of_its_own_conditions_and_ranges(http, design):
     whole = get(http, design)
     etag = whole.headers["etag"]

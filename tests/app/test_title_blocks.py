@@ -18,8 +18,6 @@ TYPED = {
     "drawing_revision": "C",
     "legal_owner": "Werke AG",
     "created_by": "Anna",
-    "checked_by": "Bo",
-    "approved_by": "Cem",
     "document_status": "preliminary",
 }
 
@@ -58,6 +56,30 @@ def test_only_an_approval_gives_its_states(http, place):
     detail = problem(answer, 422, "invalid-inputs")["errors"]
     assert [one["name"] for one in detail] == ["document_status"]
     assert "only a step of the approval" in detail[0]["detail"]
+
+
+@pytest.mark.parametrize("name", ["checked_by", "approved_by"])
+def test_nobody_is_typed_who_has_not_signed(http, place, name):
+    answer = http.get(f"{place}.dxf", params={name: "Cem", "created_by": "Anna"})
+    (fault,) = problem(answer, 422, "invalid-inputs")["errors"]
+    assert (fault["name"], fault["code"]) == (name, "signed_otherwise")
+    assert "only a step of the approval" in fault["detail"]
+
+
+@pytest.mark.parametrize(
+    ("path", "name", "meant"),
+    [
+        ("{}.dxf", "drawing_nmber", "did you mean drawing_number?"),
+        ("{}.step", "zzzz", "deflection"),
+        ("{}", "deflecton", "did you mean deflection?"),
+        (f"{API}/builds/{'0' * 64}/model.dxf", "drawing_number", "this address takes none"),
+    ],
+)
+def test_a_misspelt_name_in_the_address_is_refused(http, place, path, name, meant):
+    answer = http.get(path.format(place), params={name: "1"})
+    (fault,) = problem(answer, 422, "invalid-inputs")["errors"]
+    assert (fault["name"], fault["code"]) == (name, "unknown_name")
+    assert meant in fault["detail"]
 
 
 @pytest.mark.parametrize(

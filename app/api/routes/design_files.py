@@ -24,6 +24,7 @@ from app.api.dependencies import (
 )
 from app.api.designs import Id, Number, Prefer
 from app.api.gate.clients import TheClient
+from app.api.query_names import KNOWN_NAMES
 from app.api.reading import StrictRoute
 from app.api.routes.models import PATIENCE, send_file
 from app.api.stored import UNAVAILABLE, UNCHANGED, lost
@@ -47,6 +48,7 @@ from cad.stamp import STAMPED, Stamp, stamped, takes_stamp
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
 
 FILES: RouteOptions = {
+    "dependencies": [KNOWN_NAMES],
     "response_class": FileResponse,
     "responses": {
         200: {"content": {media: {} for media in MEDIA_TYPES.values()}},
@@ -68,6 +70,14 @@ Deflection = Annotated[
         description="of GLB and STL, how far a facet may lie from the true surface: a length of 1/10 000 "
         "to 1/10 of the diagonal of the largest body's box",
         examples=["0.05 mm"],
+    ),
+]
+BuildSeen = Annotated[
+    str | None,
+    Query(
+        max_length=64,
+        description="changes nothing: a page writes the key of the build that it shows, so that a browser "
+        "fetches the file of another build again",
     ),
 ]
 IfNoneMatch = Annotated[str | None, Header(description="the ETags of files that are at hand")]
@@ -202,7 +212,10 @@ ThePlainFileRequest = Annotated[FileRequest, Depends(plain_file_request)]
 
 
 async def file_request(
-    plain: ThePlainFileRequest, title_block: TheTitleBlock, deflection: Deflection = None
+    plain: ThePlainFileRequest,
+    title_block: TheTitleBlock,
+    deflection: Deflection = None,
+    build: BuildSeen = None,
 ) -> FileRequest:
     """The same, with the options of a mesh and of a drawing."""
     return replace(plain, deflection=deflection, title_block=title_block)

@@ -15,6 +15,7 @@ from app.api.dependencies import TheCatalogues, TheDatabase, TheHealing, TheJobs
 from app.api.gate.clients import TheClient
 from app.api.gate.roles import needs
 from app.api.paging import Cursor, Limit
+from app.api.query_names import KNOWN_NAMES
 from app.api.reading import StrictRoute, require_step
 from app.api.routes.templates import Number, listed, versions_of
 from app.api.stored import UNAVAILABLE, UNCHANGED, StoredFile, lost
@@ -171,6 +172,7 @@ def show_build(key: str, models: TheModels) -> Build:
 
 @router.get(
     "/builds/{key}/model.{kind}",
+    dependencies=[KNOWN_NAMES],
     response_class=FileResponse,
     responses={
         200: {"content": {media: {} for media in MEDIA_TYPES.values()}},

@@ -1,0 +1,40 @@
+"""Names of parameters in an address: a misspelt one is refused, since it would change nothing."""
+
+from __future__ import annotations
+
+from itertools import islice
+
+from fastapi import Depends, Request
+from fastapi.dependencies.utils import get_flat_params
+from fastapi.params import Query
+
+from templates.core.errors import MOST_SUGGESTED, Fault, InvalidInputs, listed, plain
+from templates.core.nearest import nearest
+
+
+def refuse_unknown(request: Request) -> None:
+    """Refuse parameters of the address that the route does not have.
+
+    Raises
+    ------
+    InvalidInputs
+        Naming each of the first few, what comes nearest to it, and all that the route has.
+    """
+    if not request.scope["query_string"]:
+        return
+    fields = get_flat_params(request.scope["route"].dependant)
+    known = sorted(field.alias for field in fields if isinstance(field.field_info, Query))
+    unknown = [name for name in dict.fromkeys(request.query_params.keys()) if name not in known]
+    if unknown:
+        raise InvalidInputs(_fault(name, known) for name in islice(unknown, MOST_SUGGESTED))
+
+
+def _fault(name: str, known: list[str]) -> Fault:
+    near = nearest(name, known)
+    meant = f"did you mean {near[0]}? " if near else ""
+    there_are = f"there are {listed(known)}" if known else "this address takes none"
+    return Fault(plain(name), "unknown_name", f"{meant}{there_are}")
+
+
+KNOWN_NAMES = Depends(refuse_unknown)
+"""Of a route whose parameters of the address are all declared."""
