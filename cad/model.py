@@ -127,6 +127,9 @@ class CadModel(Template):
     toleranced: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
     """Which faces carry which parameter, in the words of `cad.toleranced`."""
 
+    sections: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
+    """Removed sections of its drawing, in the words of `cad.drafting.removed`."""
+
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         carried(cls)

@@ -130,8 +130,9 @@ class Models:
     def verify(self, step: bytes) -> Verification:
         """From which build a STEP file is, which revisions use it, and whether its bytes are still those.
 
-        A file with validation properties, of a build whose own file has none, is compared with the stored copy
-        that has them. What the file states beside its shape is read and compared. What a stamp says is not looked at.
+        A file with validation properties, of a build whose own file has none, is compared with the stored
+        copy that has them. What the file states beside its shape is read and compared; what a stamp says is
+        not looked at.
 
         Raises
         ------

@@ -12,11 +12,12 @@ from math import cos, pi, radians, sin
 from cad.drafting.curves import Point
 from cad.drafting.declared import Control, Declared
 from cad.drafting.formats import FORMATS
+from cad.drafting.frames import Frame
 from cad.drafting.lettering import width_of
 from cad.drafting.page import Page
 from cad.drafting.placing import TEXT, NoRoom, Placed
 from cad.drafting.room import Rectangle, Room, around
-from cad.drafting.symbols import Symbol, arrow, datum, geometric, texture
+from cad.drafting.symbols import Symbol, arrow, datum, texture
 
 _HIGH = 2 * TEXT  # of a frame [mm on paper]
 _INTO = 3.0  # from the corner of a face to where a leader points [mm on paper]
@@ -31,8 +32,8 @@ class Controls:
     def __init__(self, page: Page, room: Room, *, is_last: bool) -> None:
         self.page, self.plan, self.room, self.is_last = page, page.plan, room, is_last
 
-    def draw(self, declared: Declared, placed: Sequence[Placed]) -> None:
-        """Everything that belongs to a dimension that is drawn.
+    def draw(self, declared: Declared, placed: Sequence[Placed]) -> str:
+        """Everything that belongs to a dimension that is drawn; returns the letter of the first datum.
 
         Raises
         ------
@@ -43,12 +44,14 @@ class Controls:
         for name, letter in declared.datums.items():
             if name in of:
                 self._datum(of[name], letter)
+        drawn = [letter for name, letter in declared.datums.items() if name in of]
         for control in declared.controls:
             if control.parameter in of:
                 self._frame(of[control.parameter], control)
         for name, height in declared.textures.items():
             if name in of:
                 self._texture(of[name], f"Ra {height:g}")
+        return drawn[0] if drawn else ""
 
     def _datum(self, placed: Placed, letter: str) -> None:
         tries = list(self._stems(placed))
@@ -79,24 +82,15 @@ class Controls:
 
     def _frame(self, placed: Placed, control: Control) -> None:
         """A frame: sign, width, datum."""
-        text = f"{control.width:.6f}".rstrip("0").rstrip(".")
-        cells = [_HIGH, width_of(text, TEXT) + 2.0, *([_HIGH] if control.to else [])]
-        width = sum(cells)
+        frame = Frame(control.form, control.width, control.to, TEXT)
+        width, height = frame.width, frame.height
         target = self._target(placed)
         left, low = self._place(
-            target, lambda x, y: (x - 0.5, y - 0.5, x + width + 0.5, y + _HIGH + 0.5), width
+            target, lambda x, y: (x - 0.5, y - 0.5, x + width + 0.5, y + height + 0.5), width
         )
-        places = [left + sum(cells[:i]) for i in range(len(cells) + 1)]
-        lines = [[(left, low), (left + width, low)], [(left, low + _HIGH), (left + width, low + _HIGH)]]
-        lines += [[(x, low), (x, low + _HIGH)] for x in places]
-        sign = geometric(control.form, _HIGH).moved(left + _HIGH / 2, low + _HIGH / 2)
-        start = (left if target[0] < left + width / 2 else left + width), low + _HIGH / 2
-        self.page.symbol(Symbol(lines=lines).joined(sign, arrow(target, start)))
-        self.page.write(text, places[1] + 1.0, low + TEXT / 2, TEXT)
-        if control.to:
-            self.page.write(
-                control.to, places[2] + (_HIGH - width_of(control.to, TEXT)) / 2, low + TEXT / 2, TEXT
-            )
+        start = (left if target[0] < left + width / 2 else left + width), low + height / 2
+        self.page.symbol(arrow(target, start))
+        frame.draw(self.page, left, low)
         self.room.add_line([target, start])
 
     def _texture(self, placed: Placed, text: str) -> None:

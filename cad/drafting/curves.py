@@ -7,7 +7,7 @@ line or one circle are joined, each is drawn once, and a hidden line gives way t
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import atan2, ceil, cos, degrees, hypot, pi, radians, sin, tan
 from typing import Any
@@ -67,6 +67,14 @@ class Curve:
 
     points: Polyline
     arc: Round | None = None
+
+    def moved(self, shift: Point) -> Curve:
+        """The line at another place."""
+        points = [(x + shift[0], y + shift[1]) for x, y in self.points]
+        if self.arc is None:
+            return Curve(points)
+        centre = self.arc.centre[0] + shift[0], self.arc.centre[1] + shift[1]
+        return Curve(points, replace(self.arc, centre=centre))
 
     def vertices(self) -> list[Vertex]:
         """The curve as corners with bulges, as DXF writes outlines."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from cad.assemblies import AssemblyModel
 from cad.catalogue import models
@@ -36,9 +37,11 @@ class Declared:
     limits
         Limit deviations by parameter.
     datums
-        Letters of datums by parameter, of those to which a tolerance refers.
+        Letters of datums by parameter; in an assembly only of those to which a tolerance refers.
     textures
         Greatest roughness Ra [µm] by parameter, where it is less than that of all other faces.
+    sections
+        Removed sections by letter, in the words of `cad.drafting.removed`.
     """
 
     is_shaft: bool = False
@@ -46,9 +49,10 @@ class Declared:
     controls: tuple[Control, ...] = ()
     datums: Mapping[str, str] = field(default_factory=dict)
     textures: Mapping[str, float] = field(default_factory=dict)
+    sections: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     @staticmethod
-    def of(header: Header | None) -> Declared:
+    def of(header: Header | None, *, is_assembly: bool = False) -> Declared:
         """What the model of a STEP file declares."""
         if header is None:
             return Declared()
@@ -58,12 +62,13 @@ class Declared:
             return Declared(limits=limits)
         carriers = carried(model)
         controls = tuple(_controls(model, limits))
-        used = {control.to for control in controls}
+        every = {one.datum for one in carriers.values()}
+        shown = ({control.to for control in controls} if is_assembly else every) - {""}
         return Declared(
             _is_shaft(model),
             limits,
             controls,
-            {name: one.datum for name, one in carriers.items() if one.datum in used - {""}},
+            {name: one.datum for name, one in carriers.items() if one.datum in shown},
             {
                 name: height
                 for name, one in carriers.items()
@@ -71,6 +76,7 @@ class Declared:
                 and one.faces in _FACES
                 and (height := roughness(limits[name].width)) < TEXTURE
             },
+            model.sections,
         )
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import dist, isclose
 
+from cad.drafting.curves import Point
 from cad.drafting.measures import Measure, Sort
 from cad.toleranced import Limits
 from templates.core.units.units import unit
@@ -109,6 +110,20 @@ def _sorts(name: str, is_angle: bool) -> tuple[Sort, ...]:
     return _LENGTHS if {"length", "width", "thickness", "height"} & set(words) else _ANY
 
 
+def length_of(text: str) -> float:
+    """A length in millimetres.
+
+    Raises
+    ------
+    ValueError
+        If the text is none.
+    """
+    size = _size(text)
+    if size is None or size[1]:
+        raise ValueError(f"{text!r} is no length")
+    return size[0]
+
+
 def _size(text: str) -> tuple[float, bool] | None:
     """A length in millimetres or an angle in degrees, and which of them it is."""
     match = _AMOUNT.fullmatch(text)
@@ -122,11 +137,14 @@ def _size(text: str) -> tuple[float, bool] | None:
     return None
 
 
-def references(taken: Sequence[Dimension], measures: Sequence[Measure]) -> Iterator[Dimension]:
+def references(
+    taken: Sequence[Dimension], measures: Sequence[Measure], elsewhere: Sequence[Point] = ()
+) -> Iterator[Dimension]:
     """Lengths that complete the drawing: between planes across the shaft that nothing locates, and the whole.
 
-    What dimensions join is located by them; two planes that lie alike on either side of the origin are joined
-    with it by the dimension between them.
+    What dimensions join is located by them, also those `elsewhere`, of which the two ends along the shaft are
+    given; two planes that lie alike on either side of the origin are joined with it by the dimension between
+    them.
     """
     lengths = [m for m in measures if m.sort == "length" and m.place == "section"]
     places = sorted({round(point[0], 6) for m in lengths for point in m.points})
@@ -134,7 +152,7 @@ def references(taken: Sequence[Dimension], measures: Sequence[Measure]) -> Itera
         _span(d.measure) for d in taken if (d.measure.form, d.measure.place) == ("across", "section")
     ]
     groups = _Groups()
-    for low, high in dimensioned:
+    for low, high in [*dimensioned, *elsewhere]:
         groups.join(low, high)
         if abs(low + high) < _PRECISION:
             groups.join(low, 0.0)

@@ -73,6 +73,7 @@ class Page:
     """Draws the pieces; places on the paper are in millimetres from the sheet's lower left corner."""
 
     def __init__(self, document: Drawing, plan: Plan) -> None:
+        self.document = document
         self.space: Any = document.modelspace()
         self.plan = plan
 

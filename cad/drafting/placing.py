@@ -83,6 +83,35 @@ class Placing:
         ordered = sorted(self.plan.lanes.local, key=lambda one: one.measure.form != "angle")
         return placed + [self._local(one) for one in ordered]
 
+    def lane(self, lane: Lane) -> list[Placed]:
+        """The dimensions of one side of a view."""
+        placed = list(self._in_lanes(lane))
+        for one in placed:
+            self._take_lines(one)
+        return placed
+
+    def within(self, one: Dimension, along: float, high: float) -> Placed:
+        """An upright dimension whose line runs within a view, as across a web; its words stand above that.
+
+        Parameters
+        ----------
+        one
+            The dimension.
+        along
+            Where its line runs [mm].
+        high
+            The upper side of the view [mm].
+        """
+        label = label_of(one)
+        points = tuple((along, y) for _, y in one.measure.points)
+        moved = replace(one, measure=replace(one.measure, points=points))
+        ends = sorted(y for _, y in self._on_paper(moved, 0.0))
+        half = label.width(TEXT) / 2
+        place, top = self.plan.paper((along, high))
+        middle = top + 2.5 + half
+        self.room.add((place - GAP - label.height(TEXT) - 0.5, middle - half, place + 0.5, middle + half))
+        return self._laned(moved, label, 1, place, (ends[0], ends[1]), middle, 0.0)
+
     def _in_lanes(self, lane: Lane) -> Iterator[Placed]:
         right = self.plan.beside if lane.is_of_end else 0.0
         ends = [sorted(p[lane.along] for p in self._on_paper(one, right)) for one in lane.dimensions]

@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from itertools import islice
 
 from ezdxf._options import options
@@ -18,16 +19,19 @@ from cad.drafting.controls import Controls
 from cad.drafting.declared import Declared
 from cad.drafting.formats import Format
 from cad.drafting.marks import Centres, centre_lines, cutting_line, pitch_circles, section_label
-from cad.drafting.matching import matched, references
+from cad.drafting.matching import Dimension, matched, references
 from cad.drafting.measures import measures
 from cad.drafting.page import Page, document_of
 from cad.drafting.placing import NoRoom, Placed, Placing
 from cad.drafting.plan import Plan, plans
+from cad.drafting.removed import Removed, mark, place, removed_sections
 from cad.drafting.room import Rectangle, Room
 from cad.drafting.standing import standing
-from cad.drafting.titling import frame, notes, table, title_block
-from cad.drafting.views import View, views
+from cad.drafting.title import general_profile
+from cad.drafting.titling import General, frame, notes, table, title_block
+from cad.drafting.views import View, is_assembly, views
 from cad.header import Header
+from cad.inspect import bounding_box
 from cad.step import Body
 
 _MOST_PLANS = 8  # sheets and scales that are tried
@@ -60,34 +64,94 @@ def _no_times() -> Iterator[None]:
         options.write_fixed_meta_data_for_testing = kept
 
 
+@dataclass(frozen=True)
+class _Content:
+    """What a drawing shows: views, removed sections, dimensions; and the parameters that none shows."""
+
+    section: View
+    end: View
+    removed: Sequence[Removed]
+    dimensions: Sequence[Dimension]
+    unseen: Sequence[str]
+
+    def plans(self) -> list[Plan]:
+        """The sheets and scales that are tried."""
+        others = sum(len(one.dimensions) for one in self.removed)
+        return list(islice(plans(self.section, self.end, self.dimensions, others), _MOST_PLANS))
+
+
+@dataclass(frozen=True)
+class _Laid:
+    """A sheet on which everything has a place."""
+
+    page: Page
+    room: Room
+    centres: Centres
+    placed: Sequence[Placed]
+    datum: str
+
+
 def draw(bodies: Sequence[Body], header: Header | None) -> tuple[Drawing, Format]:
     """The drawing as a document of ezdxf, and its sheet."""
-    declared = Declared.of(header)
+    declared = Declared.of(header, is_assembly=is_assembly(bodies))
+    content, laid = _laid_out(bodies, header, declared)
+    page = laid.page
+    section_label(page, content.section, laid.room)
+    _fill(page, content.section, content.end, laid.centres, laid.placed)
+    frame(page)
+    box = bounding_box(bodies)
+    longest = max(high - low for low, high in zip(box.low, box.high, strict=True))
+    general = General(general_profile(longest), "" if is_assembly(bodies) else laid.datum)
+    title_block(page, header, general)
+    notes(page, header, content.unseen, general)
+    table(page, header.parameters if header else {}, content.unseen)
+    return page.document, page.plan.format
+
+
+def _laid_out(bodies: Sequence[Body], header: Header | None, declared: Declared) -> tuple[_Content, _Laid]:
+    """The first sheet on which everything has a place; one without removed sections if there is no other."""
     section, end = views(bodies, is_shaft=declared.is_shaft)
     seen = [*measures(bodies, section, end), *standing(bodies, section, end)]
     parameters = header.parameters if header else {}
-    matches, unseen = matched(parameters, seen, declared.limits)
-    tried = list(islice(plans(section, end, [*matches, *references(matches, seen)]), _MOST_PLANS))
-    for plan in tried:
-        document = document_of(plan)
-        page = Page(document, plan)
-        centres = centre_lines(section, end, bodies, plan)
-        room = _room(section, end, centres, plan)
-        cutting_line(page, section, end, room)
-        try:
-            is_last = plan is tried[-1]
-            placed = Placing(plan, room, is_last=is_last).all()
-            Controls(page, room, is_last=is_last).draw(declared, placed)
-        except NoRoom:
-            continue
-        break
-    section_label(page, section, room)
-    _fill(page, section, end, centres, placed)
-    frame(page)
-    title_block(page, header)
-    notes(page, header, unseen)
-    table(page, parameters, unseen)
-    return document, page.plan.format
+    removed = removed_sections(declared.sections, parameters, declared.limits, bodies, end)
+    for some in ([removed] if removed else []) + [[]]:
+        names = {name for one in some for name in one.names}
+        rest = {name: text for name, text in parameters.items() if name not in names}
+        matches, unseen = matched(rest, seen, declared.limits)
+        along = [ends for one in some for ends in one.along]
+        content = _Content(section, end, some, [*matches, *references(matches, seen, along)], unseen)
+        tried = content.plans()
+        for plan in tried:
+            is_last = plan is tried[-1] and not some
+            try:
+                return content, _laid(content, bodies, declared, plan, is_last=is_last)
+            except NoRoom:
+                continue
+    raise AssertionError("the last sheet takes everything")
+
+
+def _laid(
+    content: _Content, bodies: Sequence[Body], declared: Declared, plan: Plan, *, is_last: bool
+) -> _Laid:
+    """Dimensions, removed sections and symbols on one sheet.
+
+    Raises
+    ------
+    NoRoom
+        If something has no place, unless it is the last sheet to be tried.
+    """
+    page = Page(document_of(plan), plan)
+    centres = centre_lines(content.section, content.end, bodies, plan)
+    room = _room(content.section, content.end, centres, plan)
+    cutting_line(page, content.section, content.end, room)
+    for one in content.removed:
+        mark(page, room, one)
+    placing = Placing(plan, room, is_last=is_last)
+    placed = placing.all()
+    for one in content.removed:
+        placed += place(page, room, one, placing)
+    datum = Controls(page, room, is_last=is_last).draw(declared, placed)
+    return _Laid(page, room, centres, placed, datum)
 
 
 def _fill(

@@ -112,6 +112,7 @@ def geometric(form: str, size: float) -> Symbol:
                 [(half * 0.1, -half), (half, half)],
             ]
         ),
+        "profile": Symbol(lines=[[(-half, -half / 2), (half, -half / 2)], _half_round(half)]),
         "circularity": Symbol(circles=[((0.0, 0.0), half * 0.8)]),
         "position": Symbol(
             lines=[[(-half, 0.0), (half, 0.0)], [(0.0, -half), (0.0, half)]],
@@ -135,6 +136,12 @@ def geometric(form: str, size: float) -> Symbol:
         ),
     }
     return signs[form]
+
+
+def _half_round(half: float) -> Polyline:
+    """The upper half of a circle of that radius over the base of the sign of a profile."""
+    turns = (pi * step / 16 for step in range(17))
+    return [(half * cos(turn), half * (sin(turn) - 0.5)) for turn in turns]
 
 
 def arrow(tip: Point, start: Point, length: float = 3.0) -> Symbol:

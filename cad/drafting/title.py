@@ -65,9 +65,9 @@ FIELDS = (
     Field("material", "material", 0, 9, 105, 9),
     Field("mass", "mass", 105, 9, 30, 9),
     Field("part", "part", 135, 9, 45, 9),
-    Field("model", "document type, model", 0, 0, 85, 9, is_stamped=False),
-    Field("general", "general tolerances", 85, 0, 40, 9, is_stamped=False),
-    Field("scale", "scale", 125, 0, 20, 9, is_stamped=False),
+    Field("model", "document type, model", 0, 0, 60, 9, is_stamped=False),
+    Field("general", "general tolerances", 60, 0, 67, 9, is_stamped=False),
+    Field("scale", "scale", 127, 0, 18, 9, is_stamped=False),
     Field("projection", "projection", 145, 0, 35, 9, is_stamped=False),
 )
 
@@ -75,7 +75,24 @@ STAMPED: Mapping[str, Field] = {field.mark: field for field in FIELDS if field.i
 """The fields that a stamp fills in, by their marks."""
 
 GENERAL = "ISO 2768-mK"
-"""General tolerances of sizes, angles and geometry where a drawing gives none."""
+"""General tolerances of sizes, angles and geometry of a drawing without a datum."""
+
+SIZES = "ISO 2768-m"
+"""General tolerances of sizes and angles of a drawing with one; ISO 22081 then holds for its surfaces."""
+
+SURFACES = "ISO 22081"
+
+_MEDIUM = ((6.0, 0.1), (30.0, 0.2), (120.0, 0.3), (400.0, 0.5), (1000.0, 0.8), (2000.0, 1.2), (4000.0, 2.0))
+"""ISO 2768-1, class m: limit deviations [mm] of lengths up to so many mm."""
+
+
+def general_profile(longest: float) -> float | None:
+    """Width [mm] of the general profile tolerance (ISO 22081) of a part whose longest side is so long [mm].
+
+    The rule is ours: the width that ISO 2768-m gives the longest side. None beyond 4 m, where it gives none.
+    """
+    return next((2 * deviation for most, deviation in _MEDIUM if longest <= most), None)
+
 
 TEXTURE = 3.2
 """Roughness Ra [µm] of every surface for which a drawing gives none."""

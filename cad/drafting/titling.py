@@ -4,12 +4,23 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from cad.drafting.formats import COLUMN, EDGE, LEFT
+from cad.drafting.frames import Frame
 from cad.drafting.lettering import clipped, width_of
 from cad.drafting.page import APP, Page
 from cad.drafting.symbols import basic_texture, first_angle, texture
-from cad.drafting.title import CAPTION, FIELDS, GENERAL, HEIGHT, TEXTURE, WIDTH
+from cad.drafting.title import (
+    CAPTION,
+    FIELDS,
+    GENERAL,
+    HEIGHT,
+    SIZES,
+    SURFACES,
+    TEXTURE,
+    WIDTH,
+)
 from cad.header import Header
 from cad.stamp import MARK
 
@@ -33,7 +44,40 @@ def frame(page: Page) -> None:
     page.line([(block, EDGE), (block, over)], "FRAME")
 
 
-def title_block(page: Page, header: Header | None) -> None:
+@dataclass(frozen=True)
+class General:
+    """General tolerances: with a datum the surfaces have a profile tolerance about it [mm] (ISO 22081)."""
+
+    profile: float | None = None
+    datum: str = ""
+
+    @property
+    def has_profile(self) -> bool:
+        """Whether ISO 22081 holds."""
+        return self.profile is not None and self.datum != ""
+
+    @property
+    def text(self) -> str:
+        """What the title block says, before the frame of the profile."""
+        return f"{SIZES}, {SURFACES}" if self.has_profile else GENERAL
+
+    @property
+    def note(self) -> str:
+        """What it means, for the notes."""
+        if not self.has_profile:
+            return f"sizes, angles and geometry without a tolerance: {GENERAL}"
+        return (
+            f"without a tolerance: sizes, angles {SIZES}; surfaces {SURFACES}, about those of the STEP file"
+        )
+
+    def draw(self, page: Page, left: float, low: float) -> None:
+        """The frame of the profile behind the words that begin at a place."""
+        if self.profile is not None and self.datum:
+            frame = Frame("profile", self.profile, self.datum, 2.5)
+            frame.draw(page, left + width_of(self.text, 2.5) + 1.5, low - 1.3)
+
+
+def title_block(page: Page, header: Header | None, general: General) -> None:
     """The fields of ISO 7200; a stamp fills in those that belong to a design."""
     left, low = page.plan.format.block
     model = f"{header.model.replace('_', ' ')}, version {header.version}" if header else "part"
@@ -42,7 +86,7 @@ def title_block(page: Page, header: Header | None) -> None:
         "language": "en",
         "format": page.plan.format.name,
         "model": model,
-        "general": GENERAL,
+        "general": general.text,
         "scale": page.plan.scale_text,
     }
     for field in FIELDS:
@@ -61,18 +105,20 @@ def title_block(page: Page, header: Header | None) -> None:
             line = page.write(text, left + field.text_at[0], low + field.text_at[1], field.letters)
             if field.is_stamped:
                 line.set_xdata(APP, [(1000, f"{MARK}{field.mark}")])
+        if field.name == "general":
+            general.draw(page, left + field.text_at[0], low + field.text_at[1])
         if field.name == "projection":
             page.symbol(first_angle(4.8).moved(x + 25.0, y + 3.6))
             page.write("first", left + field.text_at[0], low + field.text_at[1], 2.0)
 
 
-def notes(page: Page, header: Header | None, unseen: Sequence[str]) -> None:
+def notes(page: Page, header: Header | None, unseen: Sequence[str], general: General) -> None:
     """What holds for the whole drawing, to the left of the title block."""
     left, top = LEFT + 3.0, EDGE + HEIGHT - 6.0
     lines = [
         "dimensions in mm, measured on the solid, at 20 °C (ISO 1); ( ) for reference",
         "size is a two-point size, independent of form (ISO 8015)",
-        f"sizes, angles and geometry without a tolerance: {GENERAL}",
+        general.note,
         f"build {header.build[:32]}" if header else "",
         "* not between two surfaces that are drawn" if unseen else "",
     ]

@@ -10,67 +10,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from math import atan2, degrees
 
-from cadquery import BoundBox, Compound, Edge, Face, Plane, Shape, Solid, Vector
+from cadquery import Compound, Plane, Shape, Vector
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from OCP.HLRAlgo import HLRAlgo_Projector
 from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape
 
 from cad.drafting.breaks import breaks, opened
-from cad.drafting.curves import (
-    Curve,
-    Point,
-    Round,
-    Vertex,
-    curves_of,
-    joined,
-    outline,
-    recognised,
-    rounded,
-)
+from cad.drafting.curves import Curve, Point, Round, curves_of, joined
+from cad.drafting.cutting import CLEAR, Arc, Cut, Frame, arc_of, cut_of, faces_across, half_behind, reach_of
 from cad.step import Body
 from cad.surfaces import Surface, X, Y, Z, faces_of, look
 
 _DRAWN = 100.0  # [mm], the size at which edges are hidden: of a part of 5 m the kernel takes 25 times as long
-_TURN = 0.05  # [rad] between two points of a curve
 _LITTLE = 0.02  # of the depth on the other side: what is less is no side of its own
-_CLEAR = 1e-5  # [mm]; boxes of the kernel are good to some 1e-7
-
-
-@dataclass(frozen=True)
-class Frame:
-    """Directions of space on the paper: right and up in a view, and towards the eye."""
-
-    right: Vector
-    up: Vector
-
-    @property
-    def towards(self) -> Vector:
-        """From the paper to the eye."""
-        return self.right.cross(self.up)
-
-    def flat(self, point: Vector) -> Point:
-        """A point of space on the paper."""
-        return point.dot(self.right), point.dot(self.up)
-
-
-@dataclass(frozen=True)
-class Arc:
-    """A circular edge of a section."""
-
-    centre: Point
-    radius: float
-    middle: Point
-    whole: bool
-
-
-@dataclass(frozen=True)
-class Cut:
-    """A cut face: its outlines, holes among them, and of which part it is."""
-
-    part: int
-    outlines: list[list[Vertex]]
 
 
 @dataclass(frozen=True)
@@ -131,6 +84,12 @@ def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View
     return _section(placed, section), _end(placed, end, section)
 
 
+def is_assembly(bodies: Sequence[Body]) -> bool:
+    """Whether balls or bars stand among other parts: then the drawing is that of an assembly."""
+    whole = [_is_ball(body.shape) or _is_bar(body.shape) for body in bodies]
+    return any(whole) and not all(whole)
+
+
 def _end(placed: Sequence[_Placed], frame: Frame, section: Frame) -> View:
     """The view along the shaft, opened at holes that the section does not show."""
     plane = Plane((0, 0, 0), frame.right, frame.towards)
@@ -140,15 +99,15 @@ def _end(placed: Sequence[_Placed], frame: Frame, section: Frame) -> View:
         c.diameter
         for shape in shapes
         for c in look(shape).cylinders
-        if abs(c.point.dot(normal)) < _CLEAR and abs(c.direction.dot(normal)) < _CLEAR
+        if abs(c.point.dot(normal)) < CLEAR and abs(c.direction.dot(normal)) < CLEAR
     ]
     cuts = breaks(shapes, plane, shown)
-    reach = max((_reach(shape) for shape in shapes), default=0.0)
+    reach = max((reach_of(shape) for shape in shapes), default=0.0)
     seen = _projected(
         [one.shape if one.is_whole else opened(one.shape, cuts, plane, reach) for one in placed], frame
     )
     faces = [
-        Cut(one.part, [outline([_curve(edge, frame) for edge in wire.Edges()]) for wire in _wires(face)])
+        cut_of(one.part, face, frame)
         for one in placed
         if not one.is_whole
         for cut in cuts
@@ -172,7 +131,7 @@ def _axes_across(placed: Sequence[_Placed], frame: Frame) -> list[tuple[Point, P
     """Axes of cylinders that lie in the plane of the paper, from where to where these reach."""
     axes = []
     for cylinder in (c for one in placed for c in look(one.shape).cylinders):
-        if abs(cylinder.direction.dot(frame.towards)) < _CLEAR:
+        if abs(cylinder.direction.dot(frame.towards)) < CLEAR:
             foot = cylinder.point - cylinder.direction * cylinder.point.dot(cylinder.direction)
             low, high = (frame.flat(foot + cylinder.direction * reach) for reach in cylinder.reach)
             axes.append((low, high))
@@ -207,22 +166,22 @@ def _upright(bodies: Sequence[Body]) -> Vector:
     planes = [plane for one in seen for plane in one.planes]
 
     def is_joint(normal: Vector) -> bool:
-        return any(p.along(normal) and abs(p.point.dot(normal)) < _CLEAR for p in planes)
+        return any(p.along(normal) and abs(p.point.dot(normal)) < CLEAR for p in planes)
 
     def held(normal: Vector) -> int:
         return sum(
-            abs(c.point.dot(normal)) < _CLEAR and abs(c.direction.dot(normal)) < _CLEAR for c in cylinders
+            abs(c.point.dot(normal)) < CLEAR and abs(c.direction.dot(normal)) < CLEAR for c in cylinders
         )
 
     def area(normal: Vector) -> float:
         placed = (body.shape.moved(place) for body in bodies for place in body.places)
-        return sum(face.Area() for shape in placed for face in _cut(shape, normal))
+        return sum(face.Area() for shape in placed for face in faces_across(shape, normal))
 
     def parts(normal: Vector) -> bool:
         """True if there is material on both sides: a half shell ends in its joint, or a little beyond."""
         sides = [_sides(body.shape.moved(place), normal) for body in bodies for place in body.places]
         depths = sorted((-min(low for low, _ in sides), max(high for _, high in sides)))
-        return depths[0] > max(_CLEAR, _LITTLE * depths[1])
+        return depths[0] > max(CLEAR, _LITTLE * depths[1])
 
     def worth(up: Vector) -> tuple[bool, bool, int, float]:
         normal = up.cross(Z)
@@ -246,20 +205,16 @@ def _sides(shape: Shape, normal: Vector) -> tuple[float, float]:
 
 def _section(placed: Sequence[_Placed], frame: Frame) -> View:
     """What lies behind the plane, with what is not cut, and the faces that the plane cuts."""
-    sections = [(one, face) for one in placed for face in _cut(one.shape, frame.towards)]
+    sections = [(one, face) for one in placed for face in faces_across(one.shape, frame.towards)]
     faces = [face for _, face in sections]
     behind = [shape for one in placed for shape in _seen(one, frame.towards)]
     view = _projected(behind or [one.shape for one in placed], frame)  # a part beside the plane is seen whole
-    cuts = [
-        Cut(one.part, [outline([_curve(edge, frame) for edge in wire.Edges()]) for wire in _wires(face)])
-        for one, face in sections
-        if not one.is_whole
-    ]
+    cuts = [cut_of(one.part, face, frame) for one, face in sections if not one.is_whole]
     edges = [edge for face in faces for edge in face.Edges()]
     straight = [
         (frame.flat(e.startPoint()), frame.flat(e.endPoint())) for e in edges if e.geomType() == "LINE"
     ]
-    arcs = [_arc(edge, frame) for edge in edges if edge.geomType() == "CIRCLE"]
+    arcs = [arc_of(edge, frame) for edge in edges if edge.geomType() == "CIRCLE"]
     hidden = view.hidden if all(one.is_whole for one in placed) else []
     return View(frame, view.visible, view.smooth, hidden, cuts, arcs, straight)
 
@@ -267,33 +222,8 @@ def _section(placed: Sequence[_Placed], frame: Frame) -> View:
 def _seen(one: _Placed, normal: Vector) -> list[Shape]:
     """What a section leaves of a part: its half behind the plane, or all of it if it is not cut."""
     if not one.is_whole:
-        return _behind(one.shape, normal)
-    return [one.shape] if _sides(one.shape, normal)[0] < -_CLEAR else []
-
-
-def _wires(face: Face) -> list[Shape]:
-    return [face.outerWire(), *face.innerWires()]
-
-
-def _reach(shape: Shape) -> float:
-    box = BoundBox._fromTopoDS(shape.wrapped, None, False)  # loose, a hundred times as fast
-    sides = (box.xmin, box.xmax, box.ymin, box.ymax, box.zmin, box.zmax)
-    return 2.5 * float(max(abs(side) for side in sides))
-
-
-def _cut(shape: Shape, normal: Vector) -> list[Face]:
-    """The faces in which a plane through the origin cuts a shape."""
-    size = _reach(shape)
-    plane = Face.makePlane(2 * size, 2 * size, Vector(0, 0, 0), normal)
-    return list(plane.intersect(shape).Faces())
-
-
-def _behind(shape: Shape, normal: Vector) -> list[Shape]:
-    """The parts of a shape behind a plane through the origin."""
-    size = _reach(shape)
-    low = Vector(-size, -size, -size) + normal * -size
-    box = Solid.makeBox(2 * size, 2 * size, 2 * size, low)
-    return list(shape.intersect(box).Solids())
+        return half_behind(one.shape, normal)
+    return [one.shape] if _sides(one.shape, normal)[0] < -CLEAR else []
 
 
 def _projected(shapes: Sequence[Shape], frame: Frame) -> View:
@@ -318,31 +248,3 @@ def _projected(shapes: Sequence[Shape], frame: Frame) -> View:
     )
     visible = joined(visible)
     return View(frame, visible, joined(smooth, visible), joined(hidden, visible), [], [], [])
-
-
-def _curve(edge: Edge, frame: Frame) -> Curve:
-    """An edge of a cut face."""
-    if edge.geomType() == "LINE":
-        return Curve([frame.flat(edge.startPoint()), frame.flat(edge.endPoint())])
-    if edge.geomType() == "CIRCLE":
-        return _round(edge, frame)
-    steps = max(8, int(6.3 / _TURN))
-    return recognised([frame.flat(edge.positionAt(i / steps)) for i in range(steps + 1)])
-
-
-def _round(edge: Edge, frame: Frame) -> Curve:
-    """A circular edge in the plane of the paper."""
-    centre, radius = frame.flat(edge.arcCenter()), edge.radius()
-    turn = min(degrees(edge.Length() / radius), 360.0)
-    begin, middle, end = (frame.flat(edge.positionAt(share)) for share in (0.0, 0.25, 1.0))
-    is_counter = (begin[0] - centre[0]) * (middle[1] - centre[1]) > (begin[1] - centre[1]) * (
-        middle[0] - centre[0]
-    )
-    first = begin if is_counter else end
-    start = degrees(atan2(first[1] - centre[1], first[0] - centre[0]))
-    return rounded(Round(centre, radius, start, 360.0 if turn > 360 - 1e-6 else turn))
-
-
-def _arc(edge: Edge, frame: Frame) -> Arc:
-    whole = bool(edge.startPoint().sub(edge.endPoint()).Length < _CLEAR)
-    return Arc(frame.flat(edge.arcCenter()), edge.radius(), frame.flat(edge.positionAt(0.5)), whole)

@@ -62,6 +62,14 @@ class ConnectingRod(CadModel):
         "bolt_hole_diameter": {"of": "rod", "beside": "y"},
     }
 
+    sections = {
+        "B": {  # halfway along the shank
+            "of": "rod",
+            "at": {"shoulder_height": 0.5, "centre_distance": 0.5, "small_end_diameter": -0.25},
+            "shows": ["shank_width", "shank_thickness", "pocket_width", "web_thickness"],
+        },
+    }
+
     D: Array = given("mm", "big end bore", symbol="D_b", ge=2, le=2000)
 
     @derived("mm", "big end width", symbol="B_b", ge=0.2, le=2000)

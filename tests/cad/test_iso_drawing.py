@@ -17,6 +17,7 @@ from benchmarks.drawings import SIZES, latest, sized
 from cad.catalogue import models
 from cad.drafting.curves import Curve, Round, joined, recognised, rounded
 from cad.drafting.room import overlap
+from cad.drafting.title import general_profile
 from cad.export import derive
 from cad.model import CadModel
 from cad.regenerate import Build, as_text, regenerate_from_text
@@ -129,10 +130,12 @@ def test_checklist(model: type[CadModel], dxf: bytes) -> None:
     assert bool(hatches) is not is_shaft(model)
     assert ("A–A" in captions) is bool(hatches)
     assert captions.count("A") >= 2 * bool(hatches)
-    assert layers.get("CUTTING", []).count("LWPOLYLINE") == 2 * bool(hatches)
+    sections = sum("–" in caption for caption in captions)
+    assert sections == bool(hatches) + len(model.sections)
+    assert layers.get("CUTTING", []).count("LWPOLYLINE") == 2 * sections
     # ISO 129-1, ISO 2768, ISO 21920-1
     assert layers["DIMENSIONS"].count("DIMENSION") >= 1
-    assert "ISO 2768-mK" in captions
+    assert ("ISO 2768-mK" in captions) is not ("ISO 2768-m, ISO 22081" in captions)
     assert "Ra 3.2" in captions
     assert outlines_under_dimensions(drawing) == []
 
@@ -196,7 +199,7 @@ def test_datum_geometric_tolerances_and_texture(fitted: bytes, font: ImageFont.F
     texts = words(drawing)
     assert texts.count("0.0125") == 1  # cylindricity: half of 25 µm
     assert texts.count("0.07") == 1  # perpendicularity: the width of +50/-20 µm
-    assert texts.count("A") == 2 + 2  # of the cutting line, the datum, and the frame that refers to it
+    assert texts.count("A") == 2 + 3  # of the cutting line, the datum, two frames that refer to it
     assert "Ra 0.8" in texts  # a twentieth of 25 µm is 1.25 µm
     assert (
         len(drawing.modelspace().query('SOLID[layer=="SYMBOLS"]')) >= 2 + 1 + 2
@@ -272,8 +275,12 @@ def test_a_hole_that_no_section_shows_is_broken_out(example_of, id: str, hole: s
     assert len(sides) == 2  # towards the bore and above the blind end; the others lie beyond the part
     assert drawing.layers.get("BREAK").dxf.lineweight < drawing.layers.get("OUTLINE").dxf.lineweight
     assert all(len(side) > 2 for side in sides)
-    left = extent(sides)[0]
-    hatches = [hatch for hatch in space.query("HATCH") if extent([hatch])[0] > left - 1e-6]
+    left, _, right, _ = extent(sides)
+    hatches = [
+        hatch
+        for hatch in space.query("HATCH")
+        if extent([hatch])[0] > left - 1e-6 and extent([hatch])[2] < right + 1e-6
+    ]
     assert len({hatch.pattern.lines[0].angle for hatch in hatches}) == 2  # both parts, each in its direction
     diameter, spacing = build.dimensions[f"{hole}_diameter"], build.dimensions["bolt_spacing"]
     upright = [line for line in space.query('LINE[layer=="CENTRE"]') if line.dxf.start.x == line.dxf.end.x]
@@ -288,6 +295,68 @@ def test_a_hole_that_no_section_shows_is_broken_out(example_of, id: str, hole: s
     }
     assert {round(-diameter / 2, 4), round(diameter / 2, 4)} <= edges
     assert labels(drawing)["bolt_hole_diameter"] == f"2×Ø{diameter:g}"
+
+
+@pytest.fixture(scope="module")
+def rod() -> Build:
+    """The example of a rod, with a fit."""
+    model = models().get("connecting_rod", 1)
+    texts = as_text(model.from_quantities(model.example))
+    return regenerate_from_text(model.id, 1, {**texts, "big_end_bore": "51.8 mm H6"})
+
+
+def test_a_rod_is_cut_across_its_shank(rod: Build, font: ImageFont.FreeTypeFont) -> None:
+    """ISO 128-3: B–B shows the I with its four sizes; no extension line crosses the big end any more."""
+    drawing = read(derive(rod.step, "dxf"))
+    space = drawing.modelspace()
+    captions = words(drawing)
+    assert captions.count("B–B") == 1
+    assert captions.count("B") == 2
+    # a removed section has one hatch, of the area of the I, by the shoelace formula
+    sizes = rod.dimensions
+    width, thick = sizes["shank_width"], sizes["shank_thickness"]
+    area = width * thick - sizes["pocket_width"] * (thick - sizes["web_thickness"])
+    corners = [
+        [corner.vec2 for corner in line.flattening(0.01)]
+        for hatch in space.query("HATCH")
+        for line in path.from_hatch(hatch)
+    ]
+    areas = [
+        abs(sum(a.x * b.y - b.x * a.y for a, b in zip(line, line[1:] + line[:1], strict=True))) / 2
+        for line in corners
+    ]
+    (place,) = [number for number, one in enumerate(areas) if one == pytest.approx(area, rel=1e-9)]
+    left, right = min(c.x for c in corners[place]), max(c.x for c in corners[place])
+    assert right - left == pytest.approx(width)
+    shown = {"shank_width", "shank_thickness", "pocket_width", "web_thickness"}
+    dimensions = {
+        d.get_xdata("CRANKWRIGHT")[0].value: d for d in space.query("DIMENSION") if d.has_xdata("CRANKWRIGHT")
+    }
+    for name in shown:
+        assert left - 1e-6 <= dimensions[name].dxf.defpoint2.x <= right + 1e-6
+        assert dimensions[name].get_measurement() == pytest.approx(sizes[name])
+    assert not any("(" in text for text in labels(drawing).values())
+    assert overlapping(derive(rod.step, "drawing.svg"), font) == []
+
+
+def test_general_tolerances_with_a_datum(rod: Build, example_of) -> None:
+    """ISO 22081: the profile of all surfaces about datum A, as wide as ISO 2768-m allows the longest side."""
+    space = read(derive(rod.step, "dxf")).modelspace()
+    assert "ISO 2768-m, ISO 22081" in [t.dxf.text for t in space.query("TEXT")]
+    (general,) = [t for t in space.query("TEXT") if t.dxf.text.startswith("ISO 2768-m, ")]
+    unit, corner = general.dxf.height / 2.5, general.dxf.insert  # 1 mm on paper
+    away = {t.dxf.text: (t.dxf.insert - corner) / unit for t in space.query("TEXT") if t is not general}
+    beside = [text for text, (x, y, _) in away.items() if abs(y) < 1 and 0 < x < 65]
+    assert sorted(beside) == ["1", "A"]  # the rod is 197 mm long: ±0.5 mm
+    bearing = read(derive(example_of(models().get("ball_bearing", 1)).step, "dxf"))
+    assert "ISO 2768-mK" in words(bearing)  # an assembly has no datum of its own
+
+
+@pytest.mark.parametrize(
+    ("longest", "width"), [(6, 0.2), (6.1, 0.4), (120, 0.6), (400, 1.0), (4000, 4.0), (4001, None)]
+)
+def test_general_profile(longest: float, width: float | None) -> None:
+    assert general_profile(longest) == width
 
 
 def test_nothing_is_broken_out_that_the_section_shows(example_of) -> None:
@@ -324,7 +393,7 @@ def test_pdf_is_the_drawing() -> None:
     width, height = (float(side) / 72 * 25.4 for side in page.mediabox[2:])
     assert (width, height) == pytest.approx((420, 297), abs=0.1)
     text = page.extract_text()
-    for expected in ("identification number", "ISO 2768-mK", "plain bearing, version 1", "24"):
+    for expected in ("identification number", "ISO 2768-m, ISO 22081", "plain bearing, version 1", "24"):
         assert expected in text
 
 

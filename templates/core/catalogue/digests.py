@@ -34,7 +34,7 @@ from templates.core.language.template import Template
 
 DIGEST_VERSION = 2
 
-MARKS = frozenset({"withdrawn", "criteria", "toleranced"})
+MARKS = frozenset({"withdrawn", "criteria", "toleranced", "sections"})
 """Class attributes that a released version may change."""
 
 _FIRST_MARKS = MARKS | {"film_bore"}

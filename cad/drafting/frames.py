@@ -1,0 +1,54 @@
+"""Frames of geometric tolerances (ISO 1101): sign, width and datum in cells."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from cad.drafting.lettering import width_of
+from cad.drafting.page import Page
+from cad.drafting.symbols import Symbol, geometric
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A frame with letters of a height [mm on paper]; it is twice as high as they are."""
+
+    form: str
+    amount: float  # [mm]
+    datum: str
+    letters: float
+
+    @property
+    def text(self) -> str:
+        """The width of the tolerance in words."""
+        return f"{self.amount:.6f}".rstrip("0").rstrip(".")
+
+    @property
+    def height(self) -> float:
+        """Its height [mm on paper]."""
+        return 2 * self.letters
+
+    @property
+    def cells(self) -> Sequence[float]:
+        """The widths of its cells [mm on paper]."""
+        written = width_of(self.text, self.letters) + 2.0
+        return [self.height, written, *([self.height] if self.datum else [])]
+
+    @property
+    def width(self) -> float:
+        """Its width [mm on paper]."""
+        return sum(self.cells)
+
+    def draw(self, page: Page, left: float, low: float) -> None:
+        """Draw it with its lower left corner at a place of the paper."""
+        high, right = low + self.height, left + self.width
+        places = [left + sum(self.cells[:i]) for i in range(len(self.cells) + 1)]
+        lines = [[(left, low), (right, low)], [(left, high), (right, high)]]
+        lines += [[(x, low), (x, high)] for x in places]
+        sign = geometric(self.form, self.height).moved(left + self.height / 2, low + self.height / 2)
+        page.symbol(Symbol(lines=lines).joined(sign))
+        page.write(self.text, places[1] + 1.0, low + self.letters / 2, self.letters)
+        if self.datum:
+            aside = (self.height - width_of(self.datum, self.letters)) / 2
+            page.write(self.datum, places[2] + aside, low + self.letters / 2, self.letters)
