@@ -97,7 +97,7 @@ class _Entity:
 
 
 def is_validated(step: bytes) -> bool:
-    """Whether a STEP file states validation properties, such as the volume of a part."""
+    """True if a STEP file states validation properties, such as the volume of a part."""
     return f"'{VALIDATION}'".encode() in step
 
 

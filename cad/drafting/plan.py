@@ -46,8 +46,8 @@ class Plan:
         return f"{self.scale:g}:1" if self.scale >= 1 else f"1:{1 / self.scale:g}"
 
 
-def plans(section: View, end: View, wanted: Sequence[Dimension], others: int = 0) -> Iterator[Plan]:
-    """Plans in the order in which they are to be tried; `others` are the dimensions of removed sections.
+def plans(section: View, end: View, wanted: Sequence[Dimension], elsewhere: int = 0) -> Iterator[Plan]:
+    """Plans in the order in which they are to be tried; `elsewhere` counts the dimensions of removed sections.
 
     First come the sheets and scales whose views fill the sheet, the smallest sheet and its largest scale
     before others; then all others on which everything should have room, the fullest first.
@@ -68,7 +68,7 @@ def plans(section: View, end: View, wanted: Sequence[Dimension], others: int = 0
         for s in SCALES
         if s * across + taken[0] <= format.room[0] and s * (top - bottom) + taken[1] <= format.room[1]
     ]
-    wanted_share = min(FILLED + MORE * (len(wanted) + others), 0.55)
+    wanted_share = min(FILLED + MORE * (len(wanted) + elsewhere), 0.55)
     full = [one for one in fitting if share(*one) >= wanted_share]
     others = sorted((one for one in fitting if one not in full), key=lambda one: -share(*one))
     for format, scale in [*full, *others] or [(FORMATS[-1], SCALES[-1])]:

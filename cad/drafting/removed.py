@@ -183,7 +183,7 @@ def _by_size(dimensions: Sequence[Dimension]) -> list[Dimension]:
 
 
 def _is_within(one: Dimension, view: View) -> bool:
-    """Whether what a dimension measures ends within the section, as a web does between two pockets."""
+    """True if what a dimension measures ends within the section, as a web does between two pockets."""
     return min(x for x, _ in one.measure.points) > view.box[0][0] + CLEAR
 
 

@@ -76,8 +76,8 @@ class _Content:
 
     def plans(self) -> list[Plan]:
         """The sheets and scales that are tried."""
-        others = sum(len(one.dimensions) for one in self.removed)
-        return list(islice(plans(self.section, self.end, self.dimensions, others), _MOST_PLANS))
+        elsewhere = sum(len(one.dimensions) for one in self.removed)
+        return list(islice(plans(self.section, self.end, self.dimensions, elsewhere), _MOST_PLANS))
 
 
 @dataclass(frozen=True)

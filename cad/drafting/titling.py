@@ -53,7 +53,7 @@ class General:
 
     @property
     def has_profile(self) -> bool:
-        """Whether ISO 22081 holds."""
+        """True if ISO 22081 holds."""
         return self.profile is not None and self.datum != ""
 
     @property

@@ -85,7 +85,7 @@ def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View
 
 
 def is_assembly(bodies: Sequence[Body]) -> bool:
-    """Whether balls or bars stand among other parts: then the drawing is that of an assembly."""
+    """True if balls or bars stand among other parts: then the drawing is that of an assembly."""
     whole = [_is_ball(body.shape) or _is_bar(body.shape) for body in bodies]
     return any(whole) and not all(whole)
 
