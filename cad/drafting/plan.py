@@ -47,7 +47,7 @@ class Plan:
 
 
 def plans(section: View, end: View, wanted: Sequence[Dimension], elsewhere: int = 0) -> Iterator[Plan]:
-    """Plans in the order in which they are to be tried; `elsewhere` counts the dimensions of removed sections.
+    """Plans in the order in which they are to be tried; removed sections have `elsewhere` dimensions more.
 
     First come the sheets and scales whose views fill the sheet, the smallest sheet and its largest scale
     before others; then all others on which everything should have room, the fullest first.
