@@ -22,7 +22,7 @@ from benchmarks.mutation import ROOT
 from benchmarks.mutation.named import named
 from benchmarks.mutation.places import Mutant, sample
 from benchmarks.mutation.related import NEAREST, related
-from benchmarks.mutation.trial import Copies, Copy, row
+from benchmarks.mutation.trial import Copies, Copy, fingerprint, row
 from benchmarks.mutation.verdict import REASONS, UNDECIDED, reasons, report, summary, verdict
 
 
@@ -110,6 +110,7 @@ def results(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[
     rows = {str(old["key"]): old for old in valid(chosen, options)} if is_resumed else {}
     ahead = [mutant for mutant in chosen if mutant.key not in rows]
     ahead.sort(key=lambda mutant: mutant.key in earlier)  # a run that is cut short has tried the new ones
+    left_over = {mutant.key for mutant in ahead if is_left_over(earlier.get(mutant.key), mutant)}
     lock = Lock()
     with TemporaryDirectory(prefix="mutants-") as folder, ThreadPoolExecutor(options.jobs) as threads:
         kept = options.record and options.record.resolve().with_name("observations")
@@ -117,7 +118,8 @@ def results(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[
         passes = (True,) if options.tests or options.quick else (True, False)
         for at_once in passes:  # the nearest tests kill most: they come first
             attempt = partial(tried, copies, options.record, lock, at_once)
-            results = filter(None, threads.map(attempt, [one for one in ahead if one.key not in rows]))
+            skipped = rows.keys() | left_over if at_once and len(passes) > 1 else rows.keys()
+            results = filter(None, threads.map(attempt, [one for one in ahead if one.key not in skipped]))
             rows |= {str(result["key"]): result for result in results}
     return [rows[mutant.key] for mutant in chosen if mutant.key in rows]
 
@@ -143,6 +145,11 @@ def tried(
         )
         keep(record, result)
     return result
+
+
+def is_left_over(old: dict[str, Any] | None, mutant: Mutant) -> bool:
+    """Return whether a first pass has left a mutant for the second, and its file is as it was then."""
+    return old is not None and old["outcome"] == "undecided" and old["code"] == fingerprint((mutant.file,))
 
 
 def keep(record: Path | None, result: dict[str, Any]) -> None:

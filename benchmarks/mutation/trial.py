@@ -25,12 +25,13 @@ from benchmarks.mutation import ROOT, forks, observer
 from benchmarks.mutation.observations import Observations
 from benchmarks.mutation.places import Mutant, targets
 from benchmarks.mutation.related import related
+from tests.patience import patient
 
 PYTEST = ("-x", "-q", "-n", "0", "-p", "no:cacheprovider", "--no-header", "--tb=line")
 MARK = "CRANKWRIGHT_MUTANT"
 WIDE = {"COLUMNS": "500"}  # lines of pytest's summary, so that it says why a test failed
 NEAR = 4  # test files whose single tests are tried first
-STARTING = 60.0  # of the time for single tests, what pytest itself may take [s]
+STARTING = patient(60.0)  # of the time for single tests, what pytest itself may take [s]
 SLOWER = 10.0  # times as slow as when they were observed
 NOTHING_FAILED = (0, 5)  # exit codes of pytest: all passed; all are slow tests, which are left out
 _FAILED = re.compile(r"^(?:FAILED|ERROR) ((tests/[\w/]+\.py).*)", re.MULTILINE)

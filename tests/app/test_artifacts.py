@@ -264,3 +264,12 @@ def test_only_a_hash_is_a_name(store, name):
 def test_an_unknown_hash_is_missing(store):
     with pytest.raises(ArtifactMissing, match="0000"):
         store.read("0" * 64)
+
+
+@pytest.mark.parametrize("size", [2**20 - 1, 2**20, 2**20 + 1, 3 * 2**20, 64 * 2**20, 64 * 2**20 + 1])
+def test_an_upload_has_4_to_8_s_for_each_mib_less_one_second(size):
+    """As docs/operating/team.md says; a file of up to 256 KiB has no more time than any other request."""
+    s3 = pytest.importorskip("app.storage.s3")
+    assert s3.seconds_of_upload(2**18, 5.0) == s3.seconds_of_upload(0, 5.0) == 5.0
+    more = s3.seconds_of_upload(size, 5.0) - 5.0
+    assert 4 * size / 2**20 <= more + 1 <= 8 * size / 2**20

@@ -1,5 +1,7 @@
 """Limits of a step that follow from relations: values, errors upstream, waiting, faults; and over HTTP."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from test_design_criteria import CATALOGUES, calculated, document, faults_of, film, graph_of, verdicts
@@ -7,8 +9,11 @@ from test_design_criteria import CATALOGUES, calculated, document, faults_of, fi
 from app.designs.calculate import calculate
 from app.designs.document import Document, merge
 from app.designs.drives import network_of
+from app.designs.judging import _operations
 from app.designs.net import Net
+from app.designs.shifting import Upstream
 from app.reference import Reference
+from templates.core.judging.bands import Estimate
 from templates.core.judging.comparison import WORST_FIRST
 
 RELATED = {"permissible_film": "= share * least"}
@@ -26,6 +31,14 @@ def test_analytic_limit_by_a_relation():
     assert (judged.verdict, judged.limit, judged.unit) == ("met", pytest.approx(2, abs=1e-12), "um")
     assert judged.source.endswith("permissible_film = share * least")
     assert verdicts(related(parameters={**PARAMETERS, "share": "1"}))["film.own_film"].verdict == "not_met"
+
+
+def test_analytic_a_criterion_is_compared_once_and_shifted_twice_by_each_error():
+    """100 points, three operations on each: as they are, and up and down for one estimate and two outputs."""
+    criterion = SimpleNamespace(value=SimpleNamespace(parts=2), limit=SimpleNamespace(parts=1))
+    upstream = Upstream(uncertain=frozenset(map(Reference.parse, ("warm.clearance", "loads.force"))))
+    estimates = {"film": Estimate(np.ones(100), np.zeros(100))}
+    assert _operations(criterion, estimates, upstream) == 100 * 3 * (1 + 2 * (1 + 2))
 
 
 def test_the_error_of_a_limit_counts():

@@ -5,12 +5,7 @@ import pytest
 
 from templates.physics.films.film_dynamics import plain_coefficients
 from templates.physics.films.film_measures import force
-from templates.physics.films.long_bearing import (
-    force_Swift_Stieber,
-    load_Swift_Stieber,
-    pressure_Swift_Stieber,
-    rupture_Swift_Stieber,
-)
+from templates.physics.films.long_bearing import rupture_Swift_Stieber
 from templates.physics.films.reynolds import extrapolated_film, static_field, static_film
 from templates.physics.films.short_bearing import (
     attitude_Ocvirk_1952,
@@ -21,6 +16,7 @@ from templates.physics.films.short_bearing import (
 )
 from templates.physics.journals.whirl import threshold_mass, whirl_ratio_squared
 from templates.physics.numerics.eccentricity import eccentricity
+from tests.references.long_bearing import force_Swift_Stieber, load_Swift_Stieber, pressure_Swift_Stieber
 from tests.references.moving_film import mobility, moving_force
 
 

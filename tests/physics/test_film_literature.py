@@ -12,15 +12,15 @@ import pytest
 from grooved_lands import grooved_coefficients
 
 from templates.physics.films.film_fit import attitude_ISO_7902, load_ISO_7902
-from templates.physics.films.long_bearing import (
+from templates.physics.films.reynolds import extrapolated_film, static_film
+from templates.physics.films.short_bearing import attitude_Ocvirk_1952, load_Ocvirk_1952
+from templates.physics.journals.petrov import friction_Petrov_1883
+from tests.references.long_bearing import (
     attitude_Gumbel_1914,
     load_Gumbel_1914,
     load_Sommerfeld_1904,
     load_Swift_Stieber,
 )
-from templates.physics.films.reynolds import extrapolated_film, static_film
-from templates.physics.films.short_bearing import attitude_Ocvirk_1952, load_Ocvirk_1952
-from templates.physics.journals.petrov import friction_Petrov_1883
 from tests.references.moving_film import extrapolated_force, moving_force
 
 REFERENCES = Path(__file__).parents[1] / "references"

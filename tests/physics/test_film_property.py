@@ -9,10 +9,10 @@ from seeds import examples
 from templates.physics.films.film_dynamics import plain_coefficients
 from templates.physics.films.film_fit import attitude_ISO_7902, load_ISO_7902
 from templates.physics.films.film_measures import Film
-from templates.physics.films.long_bearing import load_Gumbel_1914, load_Sommerfeld_1904, load_Swift_Stieber
 from templates.physics.films.reynolds import static_film
 from templates.physics.films.short_bearing import load_Ocvirk_1952
 from templates.physics.numerics.eccentricity import eccentricity
+from tests.references.long_bearing import load_Gumbel_1914, load_Sommerfeld_1904, load_Swift_Stieber
 from tests.references.moving_film import moving_force
 
 RATIOS = st.floats(np.log(0.01), np.log(100)).map(lambda y: float(np.exp(y)))

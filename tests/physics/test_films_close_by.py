@@ -8,9 +8,10 @@ from templates.physics.cavities.transient_balance import balance, transient_mesh
 from templates.physics.journals.heat_balance import Running
 from templates.physics.orbits.cyclic_film import cycle_of
 from templates.physics.orbits.film_mobility import film_mobility
-from templates.physics.orbits.short_mobility import mobility_Booker_1971, short_film_under_load
+from templates.physics.orbits.short_mobility import short_film_under_load
 from templates.physics.pads.pad_mesh import grading
 from templates.physics.pads.slider_film import finite_pad
+from tests.references.short_mobility import mobility_Booker_1971
 
 
 @pytest.mark.parametrize("eps", [(0.2, 0.1), (0.6, -0.5)])

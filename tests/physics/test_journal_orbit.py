@@ -12,7 +12,8 @@ from templates.physics.orbits import journal_orbit
 from templates.physics.orbits.journal_orbit import CyclicLoad, Orbit, periodic_orbit
 from templates.physics.orbits.mobility_law import MapLaw, MobilityLaw, ShortLaw
 from templates.physics.orbits.mobility_map import mapped_mobility_along_load
-from templates.physics.orbits.short_mobility import mobility_Booker_1965, short_film_under_load
+from templates.physics.orbits.short_mobility import short_film_under_load
+from tests.references.short_mobility import mobility_Booker_1965
 
 FOUR_STROKE = 4 * np.pi
 RATIO = np.float64(0.5)

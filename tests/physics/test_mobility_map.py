@@ -20,12 +20,12 @@ from templates.physics.orbits.mobility_map import (
     mapped_mobility_along_load,
     mobility_error,
 )
-from templates.physics.orbits.short_mobility import (
+from tests.references.moving_film import extrapolated_force, mobility, moving_force
+from tests.references.short_mobility import (
     mobility_Booker_1965,
     mobility_Booker_1971,
     squeeze_force_Booker_1965,
 )
-from tests.references.moving_film import extrapolated_force, mobility, moving_force
 
 
 def size(vector: Array) -> Array:

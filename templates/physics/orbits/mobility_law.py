@@ -39,7 +39,7 @@ class ShortLaw:
         return ShortLaw(self.ratio[cases])
 
     def __call__(self, xi: Array, eta: Array) -> tuple[Array, Array]:
-        """M and its slopes; see `short_mobility.mobility_Booker_1971`."""
+        """M and its slopes; see `short_mobility`."""
         area, h = self.ratio[:, None] ** 2, 1 - xi
         root = np.sqrt(h)
         along, across = h * h * root / (np.pi * area), 4 * h * root / (np.pi**2 * area)

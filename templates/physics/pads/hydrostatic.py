@@ -18,8 +18,6 @@ from templates.core.language.declare import units
 CAPILLARY, ORIFICE, CONSTANT_FLOW = "capillary", "orifice", "constant_flow"
 RESTRICTORS = (CAPILLARY, ORIFICE, CONSTANT_FLOW)
 """What feeds the recess."""
-THROTTLING = (CAPILLARY, ORIFICE)
-"""Restrictors whose flow depends on the pressure behind them."""
 
 
 @units("m", "m", returns="1", latex=r"\ln\frac{{{1}}}{{{0}}}")
