@@ -200,6 +200,9 @@ class TestRefusals:
         ("raw", "declared", "words"),
         [
             ("40 MPa", "mm", ["MPa", "a pressure", "a length", "mm"]),
+            ("10 deg", "mm", ["an angle", "a length", "mm"]),
+            ("3 rad/s", "deg", ["an angular speed", "an angle", "deg"]),
+            ("3 mm", "1", ["a length", "a pure number"]),
             ("50 Hz", "rpm", ["Hz", "rpm or rad/s"]),
             ("1e6 cycle", "1", ["cycle", "counts angle", "without a unit"]),
             ("4 turn", "1", ["turn", "counts angle", "without a unit"]),
