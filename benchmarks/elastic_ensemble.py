@@ -24,6 +24,7 @@ import json
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from time import process_time
 from typing import Any
@@ -54,6 +55,8 @@ NAMES = {
     "least": "minimum_film_thickness", "P_max": "maximum_pressure", "deformation": "largest_deformation",
     "eps": "relative_eccentricity", "attitude": "attitude_angle",
 }  # fmt: skip
+SOFTNESS = (0.3, 1.0, 3.0)
+"""Where groups of bearings end: largest deformation over the smallest film [-]."""
 FIGURES = {
     "least": ("smallest film", 100.0, "%"), "P_max": ("largest pressure", 100.0, "%"),
     "deformation": ("largest deformation", 100.0, "%"), "eps": ("eccentricity", 100.0, "%"),
@@ -244,6 +247,19 @@ def run() -> None:
             file.write(json.dumps(line, separators=(",", ":")) + "\n")
 
 
+def by_softness(lines: list[Line]) -> None:
+    """Print the largest errors of bores against 93 modes, by deformation over film, and what they bound."""
+    for low, high in pairwise((0.0, *SOFTNESS, np.inf)):
+        own = [line["more"] for line in lines if low <= line["deformation"] / line["least"] < high]
+        film, pressure = (max((abs(one[name]) for one in own), default=0.0) for name in ("least", "P_max"))
+        print(f"deformation {low:g} to {high:g} of the film: {len(own)} bearings, "
+              f"largest error of film {100 * film:.2g} %, of pressure {100 * pressure:.2g} %")  # fmt: skip
+    solids = len({(line["kind"], line["solid"]) for line in lines})
+    quantile = 0.05 ** (1 / len(lines))
+    print(f"the largest of {len(lines)}, in {solids} solids, bounds the {100 * quantile:.1f} % quantile "
+          "with a confidence of 95 %, were they independent")  # fmt: skip
+
+
 def page() -> None:
     """The tables of the docs."""
     lines = [json.loads(text) for text in KEPT.read_text(encoding="utf-8").splitlines()]
@@ -273,6 +289,7 @@ def page() -> None:
     checked = [line for line in lines if "same" in line]
     held = sum(abs(line["same"]["least"]) <= line["mesh_error"] + line["unsure"] for line in checked)
     print(f"mesh_error bounds the smallest film's error with the same modes in {held} of {len(checked)}")
+    by_softness([line for line in lines if line["kind"] != "ring" and "more" in line])
     for line in sorted(lines, key=lambda line: -abs(line.get("more", {}).get("least", 0.0)))[:6]:
         print(json.dumps(line))
 

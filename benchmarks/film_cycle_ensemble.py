@@ -222,6 +222,7 @@ def ratios() -> None:
         }
         plain: list[float] = []
         less: list[float] = []
+        apart: list[str] = []
         for number, duty in drawn(seed, kind):
             if number > max(films, default=-1):
                 break
@@ -230,9 +231,14 @@ def ratios() -> None:
                 for listed, variant in ((plain, replace(asked, lift=None)), (less, asked)):
                     film = 1 - fed_orbit("mobility_grooved", variant).eps_max
                     listed.append(float(film) / films[number])
+                if not 0.75 <= less[-1] <= 1.25:
+                    apart.append(f"{number}: {less[-1]:.2f} (load {np.hypot(*duty.load.S).max():.2g}, B/D "
+                                 f"{duty.ratio:.2f}, P {duty.supply.pressure:.2g})")  # fmt: skip
         for name, listed in ((", whole load", plain), (", load less what the supply bears", less)):
             if listed:
                 print(f"{kind}, seed {seed}{name}: {spread(np.array(listed))}")
+        if apart:
+            print("outside: " + "; ".join(apart))
 
 
 def spread(listed: Array) -> str:

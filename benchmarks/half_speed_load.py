@@ -24,7 +24,7 @@ from benchmarks.film_cycle_duties import drawn
 from benchmarks.supplied_duties import RandomDuty
 from templates.core.arrays import Array
 from templates.physics.supplied.supplied_march import Duty, gap_at, marched, start
-from templates.physics.supplied.supplied_mesh import supplied_mesh
+from templates.physics.supplied.supplied_mesh import Mesh, supplied_mesh
 from templates.physics.supplied.supplied_orbit import COARSE, FINE, MASS, Meshing
 from templates.physics.supplied.supplied_run import in_frame
 
@@ -48,7 +48,7 @@ def never_ruptures(duty: Duty, drawn_duty: RandomDuty) -> list[float]:
             (radial * along * left**2.5 / (1 + 2 * eps**2) + (S - radial * along) * left**1.5) / size
         )
 
-    e = np.zeros(2)
+    e = start(meshed(drawn_duty, COARSE), duty).e
     for cycle in range(CYCLES):
         begin = duty.begin + cycle * period
         solved = solve_ivp(velocity, (begin, begin + period), e, rtol=1e-7, atol=1e-9, max_step=period / 90)
@@ -57,10 +57,15 @@ def never_ruptures(duty: Duty, drawn_duty: RandomDuty) -> list[float]:
     return gaps
 
 
+def meshed(drawn_duty: RandomDuty, meshing: Meshing) -> Mesh:
+    """A mesh of the duty, of a gap that is not thin."""
+    edges = drawn_duty.supply.edges
+    return supplied_mesh(drawn_duty.ratio, meshing.around, meshing.across, edges, True, 1.0, 1.0)
+
+
 def on_mesh(duty: Duty, drawn_duty: RandomDuty, meshing: Meshing) -> tuple[list[float], float]:
     """Smallest gap of each cycle on a mesh, and the largest share of void in the last [-]."""
-    edges = drawn_duty.supply.edges
-    mesh = supplied_mesh(drawn_duty.ratio, meshing.around, meshing.across, edges, True, 1.0, 1.0)
+    mesh = meshed(drawn_duty, meshing)
     states, gaps = [start(mesh, duty)], []
     for _ in range(CYCLES):
         states, _, ended = marched(mesh, duty, states[-1], meshing.step, lambda part: None)

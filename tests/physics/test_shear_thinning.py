@@ -5,6 +5,7 @@ No published flow curve with Cross's constants of an engine oil was at hand.
 
 import numpy as np
 import pytest
+from seeds import seeded
 
 from templates.physics.journals.shear_thinning import (
     HTHS_RATE,
@@ -55,7 +56,7 @@ def test_analytic_product_with_the_viscosity_stays():
 
 
 def test_property_random_inputs_are_finite_or_none():
-    rng, count = np.random.default_rng(31), 100_000
+    rng, count = np.random.default_rng(seeded(31)), 100_000
     eta_0, hths, eta_inf = (10 ** rng.uniform(-4, 2, count) for _ in range(3))
     rate, n = 10 ** rng.uniform(-6, 12, count), rng.uniform(0.1, 2, count)
     critical = critical_rate_of_HTHS(hths, eta_0, eta_inf, n)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from seeds import seeded
 
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
@@ -154,7 +155,7 @@ class TestAnswers:
 
     @pytest.mark.parametrize("count", [3, pytest.param(300, marks=pytest.mark.slow)])
     def test_property_whole_range_is_finite_or_refused(self, count):
-        rng = np.random.default_rng(17)
+        rng = np.random.default_rng(seeded(17))
 
         def drawn(low, high, unit):
             return {"value": (10 ** rng.uniform(low, high, count)).tolist(), "unit": unit}

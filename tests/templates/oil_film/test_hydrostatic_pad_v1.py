@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
+from seeds import seeded
 
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
@@ -232,7 +233,7 @@ class TestInputs:
     @pytest.mark.parametrize("kind", RESTRICTORS)
     @pytest.mark.parametrize("count", [2_000, pytest.param(100_000, marks=pytest.mark.slow)])
     def test_property_whole_range_is_finite_or_refused(self, kind, count):
-        rng = np.random.default_rng(11)
+        rng = np.random.default_rng(seeded(11))
 
         def drawn(low, high, unit):
             return many(10 ** rng.uniform(low, high, count), unit)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from seeds import seeded
 
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
@@ -193,7 +194,7 @@ class TestInputs:
          pytest.param("averaged", 100, marks=pytest.mark.slow)],
     )  # fmt: skip
     def test_property_whole_range_is_finite_or_refused(self, level, count):
-        rng = np.random.default_rng(23)
+        rng = np.random.default_rng(seeded(23))
 
         def drawn(low, high, unit):
             return {"value": (10 ** rng.uniform(low, high, count)).tolist(), "unit": unit}

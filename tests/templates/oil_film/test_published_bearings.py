@@ -1,24 +1,16 @@
 """Published engine bearings, a load diagram and friction over speed; tests/references has the sources."""
 
-import csv
-from itertools import groupby
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from benchmarks.published_friction import curves, rows
 from templates.core.language.evaluate import evaluate
-from templates.oil_film.mixed_friction_v1 import MixedFriction
 from templates.oil_film.oil_film_cycle_v3 import OilFilmCycle
 
 REFERENCES = Path(__file__).parents[2] / "references"
-
-
-def table(name):
-    """Rows of a reference table, (rows, columns)."""
-    lines = [line for line in (REFERENCES / name).read_text().splitlines() if not line.startswith("#")]
-    return np.array([[float(value) for value in row] for row in list(csv.reader(lines))[1:]])
 
 
 class TestLoadDiagram:
@@ -30,7 +22,7 @@ class TestLoadDiagram:
     @classmethod
     def load(cls, degrees):
         """Linear between the points of the diagram [N]."""
-        angle, force = table("flores_2006_load.csv").T
+        angle, force = np.array(rows(REFERENCES / "flores_2006_load.csv")).T
         return 1e3 * np.interp(degrees, angle, force, period=720)
 
     @classmethod
@@ -71,41 +63,15 @@ class TestLoadDiagram:
 class TestFrictionOverSpeed:
     """The rig of Sander et al. 2016: a big end between two supports that bear half its load each."""
 
-    @staticmethod
-    def torque(diameter, width, load, rpm):
-        contact = 0.001 / (16 * np.sqrt(2) * np.pi / 15 * 0.05**2)  # K of the paper's contact law is 0.001
-        raw = {
-            "radial_load": f"{load} N", "bearing_diameter": f"{diameter} mm", "bearing_width": f"{width} mm",
-            "diametral_clearance": f"{1e-3 * diameter} mm", "dynamic_viscosity": "6.8 mPa*s",
-            "speed": {"value": rpm.tolist(), "unit": "rpm"}, "journal_roughness": "0.13 um",
-            "bearing_roughness": "0.28 um", "roughness_product": 0.05, "summit_slenderness": contact**2,
-            "composite_modulus": "53.3 GPa", "contact_friction": 0.02,
-        }  # fmt: skip
-        return evaluate(MixedFriction, raw, outputs=["friction_torque"]).outputs["friction_torque"].value
-
-    @classmethod
-    def curves(cls):
-        """Speeds, torques as published and calculated, by specific load."""
-        rows = groupby(table("sander_2016_friction_torque.csv").tolist(), lambda row: row[0])
-        for pressure, group in rows:
-            rpm, published = np.array([row[1:] for row in group]).T
-            load = pressure / 10 * 8000
-            yield (
-                pressure,
-                rpm,
-                published,
-                (cls.torque(47.8, 17.2, load, rpm) + 2 * cls.torque(54, 25, load / 2, rpm)),
-            )
-
     def test_literature_branch_of_the_oil(self):
         """Within 3 % at 5 MPa from 400 rpm on; at 10 MPa, where the walls give way, within 14 %."""
-        for pressure, rpm, published, found in self.curves():
+        for pressure, rpm, published, found in curves(REFERENCES / "sander_2016_friction_torque.csv"):
             fluid = rpm >= {5: 400, 10: 500}[pressure]
             assert found[fluid] == pytest.approx(published[fluid], rel={5: 0.03, 10: 0.14}[pressure])
 
     def test_literature_branch_of_the_contact_rises_but_by_less(self):
         """Gaps count from the mean lines here; in the paper from the summits, 0.6 um nearer."""
-        for _, rpm, published, found in self.curves():
+        for _, rpm, published, found in curves(REFERENCES / "sander_2016_friction_torque.csv"):
             slow = rpm.argmin()
             assert found.min() < found[slow] < published[slow]
             assert rpm[found.argmin()] <= rpm[published.argmin()]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.sparse import lil_array
 from scipy.sparse.linalg import spsolve
+from seeds import seeded
 
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
@@ -153,7 +154,7 @@ class TestInputs:
     @pytest.mark.parametrize("level", LEVELS)
     @pytest.mark.parametrize("count", [300, pytest.param(10_000, marks=pytest.mark.slow)])
     def test_property_whole_range_is_finite_or_refused(self, level, count):
-        rng = np.random.default_rng(17)
+        rng = np.random.default_rng(seeded(17))
 
         def drawn(low, high, unit):
             return {"value": (10 ** rng.uniform(low, high, count)).tolist(), "unit": unit}
