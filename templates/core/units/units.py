@@ -187,9 +187,9 @@ _KINDS = {
 def _measured(scale: Unit) -> str:
     """The quantity that a unit measures, in words where there are usual ones."""
     dimensions = registry.get_dimensionality(scale.base)
-    if _radians(scale.base):
-        of_angles = {(): "an angle", (("[time]", -1),): "an angular speed"}
-        if words := of_angles.get(tuple(dict(dimensions).items())):
-            return words
+    if _radians(scale.base) and not dimensions:
+        return "an angle"
+    if _radians(scale.base) and dict(dimensions) == {"[time]": -1}:
+        return "an angular speed"
     same = (words for words, si in _KINDS.items() if registry.get_dimensionality(unit(si).base) == dimensions)
     return next(same, str(dimensions))
