@@ -83,7 +83,18 @@ class TestFile:
                 assert good >= HOLDS * FRESH, (level, output)
                 assert None not in np.ravel(stated["cases"][kind][level][output]), (level, output)
 
-    @pytest.mark.parametrize("kind", ["pin_hole", "sleeve_hole"])
+    def test_property_every_bound_of_holes_in_the_sleeve_holds_or_is_withdrawn(self):
+        stated = json.loads(FILE.read_text(encoding="utf-8"))
+        assert all(count >= 59 for count in stated["duties"]["sleeve_hole"].values())
+        counts = stated["held_with_another_seed"]["sleeve_hole"]
+        assert counts.keys() == {"mobility_short", "mobility"}
+        for level, outputs in counts.items():
+            for output, (good, of) in outputs.items():
+                bounds = np.ravel(stated["cases"]["sleeve_hole"][level][output])
+                assert (None in bounds) == (good < HOLDS * of), (level, output)
+            assert outputs["minimum_film_thickness"][0] >= HOLDS * outputs["minimum_film_thickness"][1]
+
+    @pytest.mark.parametrize("kind", ["pin_hole"])
     def test_property_too_few_duties_bound_nothing(self, kind):
         stated = json.loads(FILE.read_text(encoding="utf-8"))
         assert all(count < 59 for count in stated["duties"][kind].values())

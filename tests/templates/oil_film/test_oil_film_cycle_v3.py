@@ -30,6 +30,7 @@ P_S = PRESSURE * PSI**2 / (ETA * OMEGA)
 FULL = {"groove_width": "10 mm", "supply_pressure": "3 bar"}
 HALF = {**FULL, "groove_start": "-90 deg", "groove_extent": "180 deg"}
 PIN = {"pin_hole_length": "5 mm", "supply_pressure": "3 bar"}
+HOLE = {"sleeve_hole_length": "8 mm", "sleeve_hole_arc": "10 mm", "supply_pressure": "3 bar"}
 FILM = ("minimum_film_thickness", "film_thickness", "maximum_pressure", "power_loss", "side_flow")
 
 
@@ -186,6 +187,15 @@ class TestStatedErrors:
             assert np.isfinite(bound), name
             assert bound == tables[name][row, column], name
 
+    @pytest.mark.parametrize("level", CHEAP[:2])
+    @pytest.mark.parametrize(("times", "row"), [(1.0, 0), (5.0, 1)])
+    def test_example_hole_that_is_seldom_under_the_load_has_its_own(self, level, times, row):
+        raw = inputs(times * X, times * Y, **HOLE, sleeve_hole_angle="180 deg")
+        assert outputs(raw, level=level)["feed_under_load"] <= 0.1
+        bound = accuracy(OilFilmCycle).cases["sleeve_hole"][level]["minimum_film_thickness"][row, 1]
+        assert np.isfinite(bound)
+        assert stated(raw, level)["minimum_film_thickness"] == bound
+
     @pytest.mark.parametrize(
         "raw",
         [
@@ -197,6 +207,7 @@ class TestStatedErrors:
             inputs(X, Y, **HALF) | {"groove_extent": "100 deg"},
             inputs(X, Y, **HALF) | {"groove_extent": "300 deg"},
             inputs(X, Y, **PIN, pin_hole_angle="180 deg"),
+            inputs(X, Y, **HOLE, sleeve_hole_angle="0 deg"),
             inputs(X, Y),
         ],
     )
