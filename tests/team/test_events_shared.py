@@ -204,6 +204,14 @@ class TestPayloads:
 
 
 @pytest.mark.slow
+def test_hints_that_reach_no_database_are_logged_and_end_nothing(caplog):
+    notices = Notices("postgresql://nobody@127.0.0.1:1/nothing", NEVER, print)  # nothing listens on port 1
+    notices.send(["queue:regenerate"])
+    notices.stop()
+    notices._send()  # in this thread, until it meets the end
+    assert "hints to other servers are lost; they will look" in caplog.text
+
+
 def test_many_hints_arrive_though_one_notification_has_no_room_for_them(own_postgres):
     heard, complete = [], threading.Event()
     hints = [f"design:{number:024x}" for number in range(2000)]
