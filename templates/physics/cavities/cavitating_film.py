@@ -131,7 +131,7 @@ def _interpolated(solved: SolvedRing, finer: Ring) -> tuple[Array, Array]:
 
 
 def force(ring: Ring, P: Array) -> Array:
-    """Force along and ahead of the line of centres of a pressure at the nodes, in the units of So, (2,)."""
+    """Force along and ahead of the line of centres of a pressure at the nodes, as So, (2,) [-]."""
     weight = dual_widths(ring.phi)
     axes = np.array([np.cos(ring.phi), np.sin(ring.phi)]) * weight
     return axes @ ring.closed(P) @ dual_widths(ring.zeta) / 2

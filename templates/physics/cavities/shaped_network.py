@@ -168,7 +168,7 @@ def _conducted(nodes: Nodes, around: Array, across: Array) -> csc_array:
 
 
 def fed(nodes: Nodes, pockets: list[Pocket]) -> tuple[Array, Mask]:
-    """Fixed pressures (−1: none) and which nodes pockets feed, (n, m + 1) each; the ends are at ambient."""
+    """Fixed pressures P [-], −1 for none, and nodes that pockets feed, (n, m + 1); ambient at the ends."""
     P = np.full(nodes.shape, -1.0)
     P[:, -1] = 0.0
     if not nodes.is_half:

@@ -31,7 +31,7 @@ class Flexibility:
 
 
 def self_balancing(mains: Array) -> Array:
-    """Reactions without resultant, (n, n − 2): one at a main between, the lever's answer at the outermost."""
+    """Reactions without resultant, (n, n − 2) [-]: one at a main between, the lever's at the outermost."""
     n = mains.size
     share = (mains[1:-1] - mains[0]) / (mains[-1] - mains[0])
     basis = np.zeros((n, n - 2))

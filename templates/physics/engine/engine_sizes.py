@@ -11,7 +11,7 @@ from templates.physics.engine.offset_crank import OffsetCrank, RodMasses, radius
 
 
 def each(value: Array) -> Array:
-    """An input with an axis for the cylinders."""
+    """An input with a last axis for the cylinders, (..., cylinders), in its unit."""
     return np.atleast_1d(value)
 
 
@@ -72,7 +72,7 @@ def is_manageable(points: tuple[int, ...], steps: Array) -> Truth:
 
 
 def or_none(value: Array) -> Array:
-    """A list that may be missing, as an empty one."""
+    """A list that may be missing, as an empty one, in its unit."""
     return np.atleast_1d(value) if np.ndim(value) else np.zeros(0)
 
 

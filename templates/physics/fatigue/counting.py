@@ -30,7 +30,7 @@ class Cycles:
 
 
 def from_the_highest(history: Array) -> Array:
-    """One turn of a periodic history, from its highest point to that point again."""
+    """One turn of a periodic history, from its highest point to that point again, in its unit."""
     turned = np.roll(history, -int(np.argmax(history)))
     return np.append(turned, turned[0])
 

@@ -18,7 +18,7 @@ from templates.physics.films.film_mesh import Mesh
 
 
 def dual_widths(nodes: Array) -> Array:
-    """Lengths of the cells around the nodes, half cells at the ends."""
+    """Lengths of the cells around the nodes (n + 1,), half cells at the ends, in the unit of the places."""
     half = np.diff(nodes) / 2
     return np.concatenate([half, [0.0]]) + np.concatenate([[0.0], half])
 
@@ -105,7 +105,7 @@ def perturbed_equations(
 
 
 def rotation(H_mid: Array) -> Array:
-    """What shear flow brings to each node, −6 dH over its cell; a constant in H_mid is of no account.
+    """Oil that shear flow brings to each node, −6 dH over its cell [-]; a constant in H_mid cancels.
 
     At the ends of the mesh it is the flow onward, or that from before.
     """
@@ -114,10 +114,10 @@ def rotation(H_mid: Array) -> Array:
 
 
 def squeeze(mesh: Mesh, H_rate: Array) -> Array:
-    """What a falling gap brings to each node, −12 dH/d(omega_h t) over its cell."""
+    """Oil that a falling gap brings to each node, −12 dH/d(omega_h t) over its cell [-]."""
     return -12 * H_rate * dual_widths(mesh.phi)
 
 
 def midpoints(nodes: Array) -> Array:
-    """Places midway between the nodes."""
+    """Places midway between the nodes, in their unit."""
     return (nodes[:-1] + nodes[1:]) / 2

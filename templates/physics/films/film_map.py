@@ -123,7 +123,7 @@ def mapped_coefficients(eps: Array, ratio: Array) -> tuple[Array, Array]:
 
 
 def map_error(eps: Array, ratio: Array) -> Array:
-    """Largest error measured about a point between the map and fresh, finer solutions.
+    """Largest relative error [-] measured about a point between the map and new, finer solutions.
 
     Returns
     -------

@@ -46,7 +46,7 @@ def swell(phi: Array, eps: float) -> Array:
 
 
 def gregory(n: int) -> Array:
-    """Weights of Gregory's fourth-order rule on n + 1 equally spaced points at unit distance.
+    """Weights of Gregory's fourth-order rule on n + 1 equally spaced points at unit distance, (n + 1,) [-].
 
     Raises
     ------
@@ -133,7 +133,7 @@ def _inverse(f: Callable[[Array], Array], slope: Callable[[Array], Array], y: Ar
 
 
 def graded_across(layer: float, m: int) -> tuple[Array, Array]:
-    """Axial nodes graded to an edge layer of a given width, and dzeta per interval.
+    """Axial nodes zeta [-] graded to an edge layer of a given width, and dzeta of each interval.
 
     The layer is as wide as the film is long where it is thin, over half the bearing's width.
     """

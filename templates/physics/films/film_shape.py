@@ -112,7 +112,7 @@ class Lie:
 
 
 def directions(phi: Array) -> Array:
-    """Outward normals n at angles from the load, (2, ...)."""
+    """Outward unit normals [-] at angles from the load, (2, ...)."""
     return np.stack([np.cos(phi), np.sin(phi)])
 
 

@@ -11,7 +11,7 @@ from templates.core.arrays import Array
 
 
 def whirl_stiffness(K: Array, B: Array) -> Array:
-    r"""Stiffness that the film shows a journal which whirls at the threshold, in the units of K.
+    r"""Stiffness of the film for a journal that whirls at the threshold, in the unit of K.
 
     .. math:: k_0 = \frac{K_{xx}B_{yy} + K_{yy}B_{xx} - K_{xy}B_{yx} - K_{yx}B_{xy}}{B_{xx} + B_{yy}}
 

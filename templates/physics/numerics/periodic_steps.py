@@ -25,12 +25,12 @@ def differences(steps: Array) -> Array:
 
 
 def imbalance(a: Array, e: Array, f: Array) -> Array:
-    """What is left of the equations, (2, C, K)."""
+    """Residual of the equations, (2, C, K)."""
     return np.asarray(a[0] * e + a[1] * np.roll(e, 1, axis=-1) + a[2] * np.roll(e, 2, axis=-1) - f)
 
 
 def newton_step(a: Array, left: Array, slopes: Array) -> Array:
-    """The change of all nodes that removes an imbalance.
+    """Change of all nodes that removes an imbalance, (2, C, K).
 
     Parameters
     ----------

@@ -185,7 +185,7 @@ def level_spread(level: str, duty: Duty, eps_max: Array) -> Array:
 
 
 def weights(angle: Array, period: float) -> Array:
-    """Weights of the trapezoidal rule over a cycle, (N,)."""
+    """Weights of the trapezoidal rule over a cycle, (N,), in the unit of the angles."""
     widths = np.diff(angle, append=angle[0] + period)
     return np.asarray((widths + np.roll(widths, 1)) / 2)
 

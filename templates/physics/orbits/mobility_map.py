@@ -142,7 +142,7 @@ def mapped_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
 
 
 def mobility_error(xi: Array, eta: Array, ratio: Array) -> Array:
-    """Largest error measured about a point between the map and fresh, finer solutions.
+    """Largest error [-] measured about a point between the map and new, finer solutions.
 
     Returns
     -------
@@ -164,7 +164,7 @@ def cell_of(axes: Axes, places: Array, cells: Array) -> Array:
 
 
 def coordinates(xi: Array, eta: Array) -> tuple[Array, Array]:
-    """Coordinates of the gap and of the place on its chord."""
+    """Coordinates of the gap and of the place on its chord [-]."""
     h = ECCENTRICITY_LIMIT - xi
     chord = np.sqrt(np.maximum(h * (ECCENTRICITY_LIMIT + xi), 1e-30))
     return np.log(h) + h, np.minimum(np.abs(eta) / chord, 1.0)
@@ -183,7 +183,7 @@ def encode(xi: float, eta: float, ratio: float, motion: Motion) -> Array:
 
 
 def decode_motion(xi: Array, eta: Array, ratio: Array, values: Array) -> Array:
-    """M along the load and ahead of it, (2, ...), from the first two values of `encode`."""
+    """M along the load and ahead of it, (2, ...) [-], from the first two values of `encode`."""
     h = 1 - xi
     along = h**2 * np.sqrt(h) / (np.pi * ratio**2) * np.exp(values[0])
     return np.stack([along, -along * values[1] * eta / h])

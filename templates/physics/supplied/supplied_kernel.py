@@ -60,7 +60,7 @@ def covered(mesh: Mesh, places: Array) -> Array:
 
 @compiled
 def coefficients(mesh: Mesh, e: Array) -> tuple[Array, Array, Array]:
-    """Conductances around and across and the gap; value, and slopes by e_x and e_y: (3, n) each."""
+    """Conductances around and across and the gap [-]; value, and slopes by e_x and e_y: (3, n) each."""
     n = mesh.order.size
     step = 2 * np.pi / n
     around, across, gap = np.empty((3, n)), np.empty((3, n)), np.empty((3, n))
@@ -102,7 +102,7 @@ def lost(mesh: Mesh, around: Array, across: Array, P: Array, loss: Array) -> Non
 
 @compiled
 def diagonal(mesh: Mesh, around: Array, across: Array) -> Array:
-    """Sum of a cell's conductances, (n, m)."""
+    """Sum of a cell's conductances, (n, m) [-]."""
     n, m = around.size, mesh.width.size
     total = np.empty((n, m))
     for i in range(n):

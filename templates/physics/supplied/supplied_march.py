@@ -136,7 +136,7 @@ class State:
 
 
 def gap_at(mesh: Mesh, e: Array) -> Array:
-    """H at the nodes, (n,)."""
+    """Gap over the radial clearance H at the nodes, (n,) [-]."""
     return np.asarray(1 - e @ mesh.normal)
 
 

@@ -21,7 +21,7 @@ _SAME = 1e-9  # mean speeds that agree to this are one
 
 
 def listed(values: Array) -> Array:
-    """A list as given; empty where it is not given."""
+    """A list as given, in its unit; empty where it is not given."""
     return np.zeros(0) if np.ndim(values) == 0 else np.asarray(values)
 
 
