@@ -1,6 +1,6 @@
 """A chain of throws' matrices against finite elements of the whole shaft, free and guided at all mains.
 
-    python -m benchmarks.crank_chain
+    python -m benchmarks.crank_chain [split]
 
 The shaft reaches from its first mid-main to its last, one end held. Both sides take the same level, so what
 differs is the chain: its sections are the means that loads see, and between mains it moves as loads at mains
@@ -36,6 +36,7 @@ from cad.analysis.throw_matrix import ThrowMatrix, section_loads, throw_matrix
 from cad.cranks.chain_throw import throw_step
 from cad.cranks.whole import WholeShaft
 from cad.models.crankshaft_v2 import Crankshaft
+from cad.models.crankshaft_v3 import Crankshaft as SplitCrankshaft
 
 RESULTS = Path("benchmarks/results/crank_chain.json")
 LEVEL = LEVELS[0]
@@ -44,25 +45,29 @@ GIVEN: dict[str, Any] = {
     "throw": "43 mm", "web_thickness": "18 mm", "web_width": "80 mm", "fillet": "2.5 mm",
 }  # fmt: skip
 CASES = (0.0, 180.0), (0.0, 120.0, 240.0), (0.0, 180.0, 180.0, 0.0)
+SPLIT_CASES = (((0.0, 120.0, 240.0), 30.0),)
 
 
 @cache
-def shaft(angles: tuple[float, ...]) -> WholeShaft:
-    """The shaft with pins at these angles [deg]."""
+def shaft(angles: tuple[float, ...], split: float = 0.0) -> WholeShaft:
+    """The shaft with pins at these angles, split by an angle [deg]."""
     pins = {"value": list(angles), "unit": "deg"}
-    return Crankshaft.from_quantities({**GIVEN, "pin_angles": pins}).drawn()
+    if split == 0:
+        return Crankshaft.from_quantities({**GIVEN, "pin_angles": pins}).drawn()
+    divided = {"pin_split": {"value": split, "unit": "deg"}, "pin_length": "24 mm"}
+    return SplitCrankshaft.from_quantities({**GIVEN, "pin_angles": pins, **divided}).drawn()
 
 
 @cache
-def one(level: Level = LEVEL) -> ThrowMatrix:
+def one(level: Level = LEVEL, split: float = 0.0) -> ThrowMatrix:
     """The matrices of its throw."""
-    step, ends, pin = throw_step(shaft((0.0,)), 0)
+    step, ends, pin = throw_step(shaft((0.0,), split), 0)
     return throw_matrix(step, ends, pin, level)
 
 
-def whole(angles: Sequence[float], level: Level) -> tuple[System, list[str]]:
+def whole(angles: Sequence[float], level: Level, split: float = 0.0) -> tuple[System, list[str]]:
     """Finite elements of all throws joined at mid-mains, which stay faces of the mesh; the mains' names."""
-    drawn = shaft(tuple(angles))
+    drawn = shaft(tuple(angles), split)
     pieces = []
     for k, angle in enumerate(angles):
         step, held, _ = throw_step(drawn, k)
@@ -132,17 +137,18 @@ def rotations(answer: Response, mains: Sequence[str]) -> list[float]:
     ]
 
 
-def compared(angles: Sequence[float]) -> Iterator[dict[str, Any]]:
+def compared(angles: Sequence[float], split: float = 0.0) -> Iterator[dict[str, Any]]:
     """By how much the chain differs from the whole, free and guided: relative, of stiffness and frequency."""
-    throws = [one()] * len(angles)
+    throws = [one(LEVEL, split)] * len(angles)
     chain = Chain(throws, [radians(angle) for angle in angles])
-    system, mains = whole(angles, LEVEL)
+    system, mains = whole(angles, LEVEL, split)
     for guided in (False, True):
         answer = response(system, mains if guided else [])
         stiffness, frequency = 1e-3 / answer.compliance, torsional_mode(answer).frequency
         between = 1e-3 / np.diff(rotations(answer, mains), prepend=0.0)
         yield {
             "pins": list(angles),
+            **({"split": split} if split else {}),
             "guided": guided,
             "stiffness_of_the_whole": stiffness,
             "frequency_of_the_whole": frequency,
@@ -155,15 +161,19 @@ def compared(angles: Sequence[float]) -> Iterator[dict[str, Any]]:
 
 
 def main() -> None:
-    """Measure and keep all cases."""
-    rows = []
-    for angles in CASES:
-        for row in compared(angles):
+    """Measure and keep all cases; with `split` in the command, those of split pins beside the kept ones."""
+    only_split = "split" in sys.argv[1:]
+    kept = json.loads(RESULTS.read_text()) if only_split else {"level": LEVEL.name, "rows": []}
+    rows = kept["rows"] = [row for row in kept["rows"] if "split" not in row]
+    undivided = () if only_split else tuple((angles, 0.0) for angles in CASES)
+    for angles, split in (*undivided, *SPLIT_CASES):
+        for row in compared(angles, split):
             print(json.dumps(row), file=sys.stderr, flush=True)
             rows.append(row)
-    started = process_time()
-    one.__wrapped__()
-    kept = {"level": LEVEL.name, "seconds_of_a_throw": process_time() - started, "rows": rows}
+    if not only_split:
+        started = process_time()
+        one.__wrapped__()
+        kept["seconds_of_a_throw"] = process_time() - started
     RESULTS.write_text(json.dumps(kept, indent=1) + "\n")
 
 

@@ -33,16 +33,17 @@ class Shaft:
 
 @dataclass(frozen=True)
 class PinPlace:
-    """Place of the pin of a throw [mm]: its axis at (throw, 0), its middle at z = 0."""
+    """Place of the pin of a throw [mm], of split pins the front one: its axis at (throw, 0)."""
 
     throw: float
     radius: float
     length: float  # of the cylinder, between its fillets
+    middle: float = 0.0  # its z; z = 0 is half way between the mains
 
 
 @dataclass(frozen=True)
 class ThrowSolid:
-    """One throw of a shaft as a STEP file of its own, from mid-main to mid-main; z = 0 is mid-pin."""
+    """One throw of a shaft as a STEP file of its own, from mid-main to mid-main; z = 0 is half way."""
 
     step: bytes
     shaft: Shaft

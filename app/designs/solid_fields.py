@@ -92,11 +92,11 @@ def fields_of(
     shape = shape_of(session, catalogue, build)
     whole = shaft_of_throws(shape)
     sizes = sizes_of_throw(whole) if whole else shape.throw_sizes()
-    if sizes is None:
+    if sizes is None and whole is None:
         return {}
     places = places_of(whole) if whole else [(0.0, 0.0)]
     revision = views.revision(session, repository.revision(session, id, number))
-    fields: list[SolidField] = [*_uses(session, revision, name, sizes, places)]
+    fields: list[SolidField] = [*_uses(session, revision, name, sizes, places)] if sizes else []
     if whole:
         fields += _modes(revision, name, whole)
     return {one.id: one for one in fields}

@@ -1,9 +1,9 @@
 """Stiffness and mass of one crank throw as a member of a chain, by finite elements.
 
-The throw reaches from mid-main to mid-main: z = ±half, its pin at (throw, 0, 0). Its freedoms are the means
-of displacement [mm] and rotation [rad] of either end's section, six each, and the displacement of the pin
-across the shaft, two. A mean is the one that a load works on: of a force spread evenly, of a moment spread
-linearly.
+The throw reaches from mid-main to mid-main: z = ±half, its pin at (throw, 0) and z = `middle`, which is 0 but
+for split pins, of which it is the front one. Its freedoms are the means of displacement [mm] and rotation
+[rad] of either end's section, six each, and the displacement of the pin across the shaft, two. A mean is the
+one that a load works on: of a force spread evenly, of a moment spread linearly.
 
 One end is held and eight unit loads act, six on the other end and two on the pin. They displace themselves
 by the flexibility F [8, 8]. With T [8, 14], what any freedoms displace relative to the first end as a rigid
@@ -59,7 +59,7 @@ def matrix_on(grid: Grid, order: int, shaft: Shaft, pin: PinPlace) -> ThrowMatri
     loads = [*(system.traction(field) for field in section_loads(system, LOADED)), *_on_the_pin(system, pin)]
     moved = [system.solve(load) for load in loads]
     flexibility = np.array([[ng.InnerProduct(load, u) for u in moved] for load in loads])
-    relative = relative_motion(pitch, pin.throw)
+    relative = relative_motion(pitch, pin.throw, pin.middle)
     forces = np.linalg.solve((flexibility + flexibility.T) / 2, relative)
     basis = np.vstack([np.eye(END, FREEDOMS), forces])
     return ThrowMatrix(
@@ -85,14 +85,15 @@ def section_loads(system: System, name: str) -> list[Any]:
     return [*(axis / area for axis in _AXES), *moments]
 
 
-def relative_motion(pitch: float, throw: float) -> Array:
+def relative_motion(pitch: float, throw: float, middle: float = 0.0) -> Array:
     """What freedoms displace relative to the first end as a rigid body, (8, 14)."""
+    lever = pitch / 2 + middle
     relative = np.zeros((END + PIN, FREEDOMS))
     relative[:, END:] = np.eye(END + PIN)
     relative[:END, :END] = -np.eye(END)
     relative[0, 4], relative[1, 3] = -pitch, pitch
-    relative[6, 0], relative[6, 4] = -1, -pitch / 2
-    relative[7, 1], relative[7, 3], relative[7, 5] = -1, pitch / 2, -throw
+    relative[6, 0], relative[6, 4] = -1, -lever
+    relative[7, 1], relative[7, 3], relative[7, 5] = -1, lever, -throw
     return relative
 
 
@@ -101,7 +102,7 @@ def _on_the_pin(system: System, pin: PinPlace) -> list[Any]:
     off = (ng.x - pin.throw) ** 2 + ng.y**2
     on_it = ng.IfPos((1 + _INSIDE) ** 2 * pin.radius**2 - off, 1.0, 0.0)
     outside = ng.IfPos(off - (1 - _INSIDE) ** 2 * pin.radius**2, 1.0, 0.0)
-    along = ng.IfPos((pin.length / 2) ** 2 - ng.z**2, 1.0, 0.0)
+    along = ng.IfPos((pin.length / 2) ** 2 - (ng.z - pin.middle) ** 2, 1.0, 0.0)
     here = on_it * outside * along
     area = ng.Integrate(here * ng.ds(FREE), system.grid.mesh)
     vectors = []

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from cadquery import Shape
 from cadquery.func import fuse
 
 from cad.cranks.throw import Throw, bore
-from cad.cranks.whole import WholeShaft
+from cad.cranks.whole import Half, WholeShaft, placed
 from cad.fillets import Crank
 from cad.header import Header
 from cad.model import CadModel, Part
@@ -32,8 +33,10 @@ def shaft_of_throws(shape: CadModel) -> WholeShaft | None:
     return drawn if isinstance(drawn, WholeShaft) else None
 
 
-def sizes_of_throw(whole: WholeShaft) -> Crank:
-    """The plain sizes of a shaft's throws, which differ in their counterweights alone."""
+def sizes_of_throw(whole: WholeShaft) -> Crank | None:
+    """The plain sizes of a shaft's throws, which differ in their counterweights alone; None of split pins."""
+    if whole.split:
+        return None
     like = whole.like
     return Crank(like.outline.throw, like.pin, like.pin_length, like.journal, like.web_thickness, like.fillet)
 
@@ -60,23 +63,42 @@ def throws_apart(whole: WholeShaft) -> ThrowsApart:
 def throw_step(whole: WholeShaft, number: int) -> tuple[bytes, Shaft, PinPlace]:
     """A throw of a shaft, counted from 0: its STEP file, its ends, and where its pin is.
 
-    z = 0 is mid-pin, x points to the pin.
+    z = 0 is half way between the mains; x points to the pin, of split pins to the front one.
     """
     throw = whole.throws[number]
     half = whole.like.journal_length / 2
     front, rear = (replace(one, journal_length=half, drilling=0.0) for one in (throw.front, throw.rear))
-    parts = (
-        front.journal_solid(None).mirror("XY"),
-        front.web().mirror("XY"),
-        front.pin_solid(),
-        rear.web(),
-        rear.journal_solid(None),
-    )
+    before, behind = _halves_about_the_middle(whole)
+    parts = [
+        _standing(front.journal_solid(None).mirror("XY"), before),
+        _standing(front.web().mirror("XY"), before),
+        _standing(front.pin_solid(), before),
+        _standing(rear.web(), behind),
+        _standing(rear.journal_solid(None), behind),
+    ]
+    if whole.split:
+        parts.append(whole.split.web(0.0, before.middle + front.inner, front.outline.throw))
+        parts.append(_standing(rear.pin_solid(), behind))
     solid = fuse(*parts, glue="partial")
     tools = [bore(front.journal_bore, whole.pitch, 0.0)] if front.journal_bore > 0 else []
-    if front.pin_bore > 0:
+    if front.pin_bore > 0 and whole.split:
+        tools += [placed(front.blind_bore().mirror("XY"), before), placed(rear.blind_bore(), behind)]
+    elif front.pin_bore > 0:
         tools.append(bore(front.pin_bore, front.outer + half / 2, front.outline.throw))
     solid = solid.cut(*tools) if tools else solid
     step = write_step([Part("throw", solid, 0.0)], Header("crank_throw_of_chain", 1, {}, "0" * 64))
-    pin = PinPlace(front.outline.throw, front.pin, front.pin_length - 2 * front.fillet)
+    length = front.pin_length - 2 * front.fillet
+    pin = PinPlace(front.outline.throw, front.pin, length, before.middle)
     return step, Shaft(-whole.pitch / 2, whole.pitch / 2), pin
+
+
+def _standing(part: Shape, half: Half) -> Shape:
+    """A part where its half of the throw stands; as it is drawn if that is there."""
+    return part if half == Half(0.0, 0.0) else placed(part, half)
+
+
+def _halves_about_the_middle(whole: WholeShaft) -> tuple[Half, Half]:
+    """Where the halves of a throw stand if its front pin points to x and z = 0 is half way between mains."""
+    front, rear = whole.halves(0)
+    middle = whole.pitch / 2
+    return Half(0.0, front.middle - middle), Half(rear.angle - front.angle, rear.middle - middle)

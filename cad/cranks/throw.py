@@ -133,6 +133,13 @@ class Throw:
         corners = [root[-1], (radius, top), *beyond]
         return turned([((0, z), root[0]), root, *pairwise(corners)], 0.0, 1)
 
+    def blind_bore(self) -> Solid:
+        """The bore of a split pin: from its end at -z through the web on +z, and beyond."""
+        length = self.inner + self.outer + self.journal_length / 2
+        return Solid.makeCylinder(
+            self.pin_bore, length, Vector(self.outline.throw, 0, -self.inner), Vector(0, 0, 1)
+        )
+
     def drill(self) -> Solid:
         """The solid that the oil drilling takes away, from beyond the pin to beyond the journal."""
         top, bottom = self.drilled

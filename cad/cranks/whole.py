@@ -8,6 +8,9 @@ Each throw is drawn as `crank_throw` is, then turned and shifted. What turns is 
 only touch in flat faces, so their volumes add; bores, drillings and bolt holes are cut from the whole at
 once. None of these meets another, except a drilling the bores of its own throw: the rules of the model see
 to that.
+
+Where pins are split, a throw is two halves, each turned with its own pin, and a middle web between them. Pin
+bores then end at the middle web, and each pin has its drilling: the front one from the main before it.
 """
 
 from __future__ import annotations
@@ -15,11 +18,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from math import cos, degrees, pi, sin
+from math import cos, degrees, pi, remainder, sin
 
 from cadquery import Shape, Solid, Vector
 from cadquery.func import fuse
 
+from cad.cranks.split_pins import SplitPins
 from cad.cranks.support import reach
 from cad.cranks.throw import End, Throw, bore, fillet_run, turned
 from cad.cranks.volume import drilling, end_volume, fillet, journal, pin, web
@@ -45,7 +49,15 @@ class Throws:
 
     front: Throw
     rear: Throw
-    angle: float  # of its pin from the line of reference [rad]
+    angle: float  # of its pin, or of its front one, from the line of reference [rad]
+
+
+@dataclass(frozen=True)
+class Half:
+    """Where one half of a throw stands: the angle of its pin [rad], and the z of the middle of its pin."""
+
+    angle: float
+    middle: float
 
 
 @dataclass(frozen=True)
@@ -56,6 +68,7 @@ class WholeShaft:
     nose: End
     flange: End
     bolts: Bolts | None
+    split: SplitPins | None = None
 
     @property
     def like(self) -> Throw:
@@ -66,7 +79,17 @@ class WholeShaft:
     def pitch(self) -> float:
         """From the middle of a main journal to that of the next one."""
         t = self.like
+        if self.split:
+            return 2 * (t.pin_length + t.web_thickness) + self.split.thickness + t.journal_length
         return t.pin_length + 2 * t.web_thickness + t.journal_length
+
+    def halves(self, number: int) -> tuple[Half, Half]:
+        """Where the front and the rear half of a throw stand, counted from 0; alike with an undivided pin."""
+        angle, middle = self.throws[number].angle, self.pitch * (number + 0.5)
+        if self.split is None:
+            return Half(angle, middle), Half(angle, middle)
+        off = (self.like.pin_length + self.split.thickness) / 2
+        return Half(angle, middle - off), Half(angle + self.split.angle, middle + off)
 
     @cached_property
     def mains(self) -> tuple[float, ...]:
@@ -94,21 +117,27 @@ class WholeShaft:
         t, count = self.like, len(self.throws)
         webs = sum(web(one) for throw in self.throws for one in (throw.front, throw.rear))
         inner = (count - 1) * (journal(t) + fillet(t.journal, t.fillet))
+        pins = count * (2 if self.split else 1)
+        middle = count * self.split.volume(t.outline.throw) if self.split else 0.0
         ends = end_volume(self.nose, t.journal_bore) + end_volume(self.flange, t.journal_bore)
         holes = self.bolts.count * pi * self.bolts.radius**2 * self.bolts.depth if self.bolts else 0.0
-        return webs + count * (pin(t) - drilling(t)) + inner + 2 * journal(t) + ends - holes
+        return webs + pins * (pin(t) - drilling(t)) + inner + 2 * journal(t) + ends - holes + middle
 
     def box(self) -> Box:
         """Webs, counterweights, nose and flange together."""
         ends = max(self.nose.radius, self.flange.radius)
+        webs = [
+            (one.outline, half.angle)
+            for number, throw in enumerate(self.throws)
+            for one, half in zip((throw.front, throw.rear), self.halves(number), strict=True)
+        ]
 
         def far(direction: float) -> float:
-            webs = (
-                reach(one.outline, direction - throw.angle)
-                for throw in self.throws
-                for one in (throw.front, throw.rear)
-            )
-            return max(ends, *webs)
+            furthest = [ends, *(reach(outline, direction - angle) for outline, angle in webs)]
+            if self.split:
+                pins = (self.like.outline.throw * cos(direction - angle) for _, angle in webs)
+                furthest.append(max(pins) + self.split.half_width)
+            return max(furthest)
 
         low = -far(pi), -far(-pi / 2), self.low
         return Box(low, (far(0.0), far(pi / 2), self.high))
@@ -117,13 +146,24 @@ class WholeShaft:
         """Nose with the first journal; throw after throw, each with the journal behind it."""
         first = self.throws[0].front
         nose = first.journal_solid(self.nose).mirror("XY")
-        yield nose.translate(Vector(0, 0, self.pitch / 2))
+        front, _ = self.halves(0)
+        yield placed(nose, front) if self.split else nose.translate(Vector(0, 0, front.middle))
         for number, throw in enumerate(self.throws):
             last = number + 1 == len(self.throws)
             behind = throw.rear.journal_solid(self.flange) if last else _journal(throw.rear)
-            parts = throw.front.web().mirror("XY"), throw.front.pin_solid(), throw.rear.web(), behind
-            for part in parts:
-                yield self._placed(part, number)
+            front, rear = self.halves(number)
+            yield placed(throw.front.web().mirror("XY"), front)
+            yield placed(throw.front.pin_solid(), front)
+            if self.split:
+                yield self.split.web(front.angle, front.middle + throw.front.inner, throw.front.outline.throw)
+                yield placed(throw.rear.pin_solid(), rear)
+            yield placed(throw.rear.web(), rear)
+            yield placed(behind, rear if last or not self.split else self._seam_behind(number))
+
+    def _seam_behind(self, number: int) -> Half:
+        """How a journal between split throws stands: its seam away from the mouths of both drillings."""
+        (_, rear), (front, _) = self.halves(number), self.halves(number + 1)
+        return Half(rear.angle + remainder(front.angle - rear.angle, 2 * pi) / 2, rear.middle)
 
     def _tools(self) -> Iterator[Shape]:
         """Yield the solids that bores, drillings and bolt holes take away; all but the last end in air."""
@@ -132,11 +172,17 @@ class WholeShaft:
             middle, half = (self.low + self.high) / 2, (self.high - self.low) / 2
             yield bore(t.journal_bore, half + t.journal, 0.0).translate(Vector(0, 0, middle))
         for number in range(len(self.throws)):
+            front, rear = self.halves(number)
+            if self.split:
+                for tool in _tools_of_half(t):
+                    yield placed(tool.mirror("XY"), front)
+                    yield placed(tool, rear)
+                continue
             if t.pin_bore > 0:
                 through = bore(t.pin_bore, t.outer + t.journal_length / 2, t.outline.throw)
-                yield self._placed(through, number)
+                yield placed(through, front)
             if t.drilling > 0:
-                yield self._placed(t.drill(), number)
+                yield placed(t.drill(), front)
         if self.bolts:
             yield from self._holes(self.bolts)
 
@@ -147,11 +193,18 @@ class WholeShaft:
             foot = Vector(bolts.circle * cos(angle), bolts.circle * sin(angle), bottom)
             yield Solid.makeCylinder(bolts.radius, length, foot, Vector(0, 0, 1))
 
-    def _placed(self, part: Shape, number: int) -> Shape:
-        """A part of a throw, drawn about the middle of its pin, where that throw stands."""
-        middle = self.pitch * (number + 0.5)
-        part = part.rotate(*_AXIS, degrees(self.throws[number].angle))
-        return part.translate(Vector(0, 0, middle))
+
+def placed(part: Shape, half: Half) -> Shape:
+    """A part of a throw, drawn about the middle of its pin, where that half of it stands."""
+    return part.rotate(*_AXIS, degrees(half.angle)).translate(Vector(0, 0, half.middle))
+
+
+def _tools_of_half(t: Throw) -> Iterator[Shape]:
+    """Yield what is cut from the rear half of a throw with split pins: the bore ends at the middle web."""
+    if t.pin_bore > 0:
+        yield t.blind_bore()
+    if t.drilling > 0:
+        yield t.drill()
 
 
 def _journal(t: Throw) -> Shape:

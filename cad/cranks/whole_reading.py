@@ -6,10 +6,12 @@ order, the faces of the ends and of the webs. Where all throws share a dimension
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import atan2, degrees, hypot, pi, radians, remainder
+
+from cadquery import Vector
 
 from cad.cranks.reading import Webs, stubs
 from cad.surfaces import Seen, Surface, Z
@@ -34,27 +36,37 @@ def alike(values: Iterable[float], what: str) -> float:
 
 @dataclass(frozen=True)
 class ThrowSeen:
-    """A throw: its pin, and where the faces of its webs lie [mm], from front to rear."""
+    """A throw: its pins, and where the faces of its webs lie [mm], from front to rear.
 
-    pin: Surface
-    faces: tuple[float, float, float, float]
+    An undivided pin counts once; split pins count as two, with a middle web between them.
+    """
 
-    @property
-    def angle(self) -> float:
-        """Of the pin, from x towards y [rad]."""
-        return atan2(self.pin.point.y, self.pin.point.x)
+    pins: tuple[Surface, ...]
+    faces: tuple[float, ...]
 
     @property
-    def webs(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """From where to where its webs reach."""
-        return self.faces[:2], self.faces[2:]
+    def angles(self) -> tuple[float, float]:
+        """Of the pins beside its front and its rear web, from x towards y [rad]."""
+        first, last = (atan2(pin.point.y, pin.point.x) for pin in (self.pins[0], self.pins[-1]))
+        return first, last
+
+    @property
+    def pin_spans(self) -> list[tuple[float, float]]:
+        """From where to where its pins reach, with their fillets."""
+        return [(self.faces[at], self.faces[at + 1]) for at in range(1, len(self.faces) - 1, 2)]
+
+    @property
+    def webs(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """From where to where its webs reach, the middle one left out."""
+        return self.faces[:2], self.faces[-2:]
 
 
 @dataclass(frozen=True)
 class ShaftSeen:
-    """The features of a shaft of many throws, as read from its surfaces."""
+    """The features of a shaft of many throws, as read from its surfaces; whether its pins are split."""
 
     seen: Seen
+    split: bool = False
 
     @cached_property
     def beside(self) -> list[Surface]:
@@ -65,8 +77,9 @@ class ShaftSeen:
     def throws(self) -> list[ThrowSeen]:
         """The throws, from front to rear.
 
-        Each has four planes across the shaft. Before them lie the end of the nose and its shoulder, if it has
-        one; behind them at most three: shoulder of the flange, bottom of its holes, its end.
+        Each has four planes across the shaft, six with split pins. Before them lie the end of the nose and
+        its shoulder, if it has one; behind them at most three: shoulder of the flange, bottom of its holes,
+        its end.
 
         Raises
         ------
@@ -76,30 +89,39 @@ class ShaftSeen:
         levels = self.seen.levels(Z)
         first = 1 + any(_spans(c, levels[0], levels[1]) for c in self.seen.about(Z))
         found = []
-        for place in range(first, len(levels) - 4, 4):
-            outer, low, high, other = levels[place : place + 4]
-            pins = [c for c in self.beside if low - _CLEAR < c.reach[0] and c.reach[1] < high + _CLEAR]
-            if not pins:
-                raise LookupError(f"a pin between the webs at {low:.9g} and {high:.9g} mm")
-            found.append(ThrowSeen(max(pins, key=lambda c: c.diameter), (outer, low, high, other)))
+        count = 6 if self.split else 4
+        for place in range(first, len(levels) - count, count):
+            faces = tuple(levels[place : place + count])
+            pins = (self._pin_between(*faces[at : at + 2]) for at in range(1, count - 1, 2))
+            found.append(ThrowSeen(tuple(pins), faces))
         if not found:
             raise LookupError("a pin between two webs")
         return found
+
+    def _pin_between(self, low: float, high: float) -> Surface:
+        pins = self._beside_within(low, high)
+        if not pins:
+            raise LookupError(f"a pin between the webs at {low:.9g} and {high:.9g} mm")
+        return max(pins, key=lambda c: c.diameter)
+
+    def _beside_within(self, low: float, high: float) -> list[Surface]:
+        """Cylinders along the shaft, not about it, within a stretch of it."""
+        return [c for c in self.beside if low - _CLEAR < c.reach[0] and c.reach[1] < high + _CLEAR]
 
     @property
     def ends(self) -> tuple[list[Surface], list[Surface]]:
         """The cylinders about the shaft before the first web and behind the last, from the web on."""
         first, last = self.throws[0].faces, self.throws[-1].faces
-        return stubs(self.seen, Webs((first[0], first[1], last[2], last[3])))
+        return stubs(self.seen, Webs((first[0], first[1], last[-2], last[-1])))
 
     def common(self) -> dict[str, float]:
         """The dimensions that all throws share."""
         throws = self.throws
         return {
             **self._journals(),
-            "pin_diameter": alike((t.pin.diameter for t in throws), "pins"),
-            "pin_length": alike((t.faces[2] - t.faces[1] for t in throws), "pins"),
-            "throw": alike((hypot(t.pin.point.x, t.pin.point.y) for t in throws), "throws"),
+            "pin_diameter": alike((pin.diameter for t in throws for pin in t.pins), "pins"),
+            "pin_length": alike((high - low for t in throws for low, high in t.pin_spans), "pins"),
+            "throw": alike((hypot(p.point.x, p.point.y) for t in throws for p in t.pins), "throws"),
             "pin_bore": self._each(self._pin_bore, "pin bores"),
             "web_thickness": alike((high - low for t in throws for low, high in t.webs), "webs"),
             "web_width": self.web_width,
@@ -110,10 +132,10 @@ class ShaftSeen:
 
     def _journals(self) -> dict[str, float]:
         front, rear = (end[0] for end in self.ends)
-        first, last = self.throws[0].faces[0], self.throws[-1].faces[3]
+        first, last = self.throws[0].faces[0], self.throws[-1].faces[-1]
         lengths, diameters = [front.reach[1] + first, rear.reach[1] - last], [front.diameter, rear.diameter]
         for before, behind in zip(self.throws[:-1], self.throws[1:], strict=True):
-            low, high = before.faces[3], behind.faces[0]
+            low, high = before.faces[-1], behind.faces[0]
             lengths.append(high - low)
             diameters.append(max((c.diameter for c in self._about(low, high)), default=0.0))
         return {
@@ -131,6 +153,13 @@ class ShaftSeen:
         return alike(map(read, self.throws), what)
 
     def _pin_bore(self, throw: ThrowSeen) -> float:
+        """Diameter of the cylinder beside the shaft that goes on from each pin through its web or webs."""
+        if self.split:
+            inner = throw.faces[1], throw.faces[-2]
+            crossing = (
+                [c for c in self.beside if c.reach[0] < z - _CLEAR < z + _CLEAR < c.reach[1]] for z in inner
+            )
+            return alike((max((c.diameter for c in each), default=0.0) for each in crossing), "pin bores")
         _, front, rear, _ = throw.faces
         through = (c for c in self.beside if c.reach[0] < front - _CLEAR and rear + _CLEAR < c.reach[1])
         return max((c.diameter for c in through), default=0.0)
@@ -138,7 +167,7 @@ class ShaftSeen:
     def _journal_bore(self, throw: ThrowSeen) -> float:
         """Diameter of the cylinder about the shaft that goes on through both of the outer faces."""
         sizes = []
-        for face in (throw.faces[0], throw.faces[3]):
+        for face in (throw.faces[0], throw.faces[-1]):
             through = (
                 c for c in self.seen.about(Z) if c.reach[0] < face - _CLEAR < face + _CLEAR < c.reach[1]
             )
@@ -148,22 +177,51 @@ class ShaftSeen:
     @property
     def web_width(self) -> float:
         """Twice the distance of the sides of webs from the axis: of all planes along it none is nearer."""
-        along = (p for p in self.seen.planes if abs(p.direction.dot(Z)) < _CLEAR)
+        along = [p for p in self.seen.planes if abs(p.direction.dot(Z)) < _CLEAR]
+        for normal, distance in self._sides_of_middle_webs() if self.split else ():
+            sides = [plane for plane in along if _lies(plane, normal, distance)]
+            if not sides:
+                raise LookupError("sides of the middle webs")
+            along.remove(sides[0])
         distances = [d for d in (abs(p.point.dot(p.direction)) for p in along) if d > _CLEAR]
         if not distances:
             raise LookupError("sides of webs")
         return 2 * min(distances)
 
+    def _sides_of_middle_webs(self) -> Iterator[tuple[Vector, float]]:
+        """Yield the normal of each side of each middle web, and its distance from the axis along it."""
+        half = self.middle_web()["middle_web_width"] / 2
+        for throw in self.throws:
+            first, last = (Vector(pin.point.x, pin.point.y, 0) for pin in throw.pins)
+            normal = (last - first).cross(Z).normalized()
+            for side in (-half, half):
+                yield normal, first.dot(normal) + side
+
+    def middle_web(self) -> dict[str, float]:
+        """Thickness of the middle webs, and their width, which is that of their round ends."""
+        spans = [throw.faces[2:4] for throw in self.throws]
+        ends = (c.diameter for low, high in spans for c in self._beside_within(low, high))
+        return {
+            "middle_web_thickness": alike((high - low for low, high in spans), "middle webs"),
+            "middle_web_width": alike(ends, "middle webs"),
+        }
+
+    def pin_split(self, near: float) -> float:
+        """From each front pin to its rear one [deg], in that turn which is nearest to that wanted [deg]."""
+        turns = [degrees(rear - front) for front, rear in (throw.angles for throw in self.throws)]
+        return near + alike((remainder(turn - near, 360) for turn in turns), "split pins")
+
     def _fillet(self) -> float:
         tori = self.seen.tori
-        if tori and len(tori) != 4 * len(self.throws):
-            raise LookupError(f"four fillets for each throw; there are {len(tori)}")
+        each = 6 if self.split else 4
+        if tori and len(tori) != each * len(self.throws):
+            raise LookupError(f"{each} fillets for each throw; there are {len(tori)}")
         return alike(tori, "fillets") if tori else 0.0
 
     def _drilling(self) -> float:
         askew = [c.diameter for c in self.seen.cylinders if not c.along(Z)]
-        if askew and len(askew) < len(self.throws):
-            raise LookupError(f"a drilling in each throw; there are {len(askew)}")
+        if askew and len(askew) < sum(len(throw.pins) for throw in self.throws):
+            raise LookupError(f"a drilling in each pin; there are {len(askew)}")
         return alike(askew, "oil drillings") if askew else 0.0
 
     def _inclination(self) -> float:
@@ -176,7 +234,7 @@ class ShaftSeen:
 
     def pin_angles(self, near: Sequence[float]) -> list[float]:
         """Where the pins stand [deg], in that turn which is nearest to the angles wanted [deg]."""
-        seen = [degrees(throw.angle) for throw in self.throws]
+        seen = [degrees(throw.angles[0]) for throw in self.throws]
         if len(seen) != len(near):
             raise LookupError(f"{len(near)} throws; there are {len(seen)}")
         return [wanted + remainder(angle - wanted, 360) for angle, wanted in zip(seen, near, strict=True)]
@@ -200,12 +258,13 @@ class ShaftSeen:
         """
         normals = [p.direction for p in self.seen.planes if p.holds(Z) and abs(p.direction.z) < _CLEAR]
         lines = [atan2(n.y, n.x) + pi / 2 for n in normals]
-        heavy = [t for k, t in enumerate(self.throws) if max(radii[2 * k : 2 * k + 2]) > 0]
-        candidates = {self._fold(line - heavy[0].angle) for line in lines}
+        angles = [angle for throw in self.throws for angle in throw.angles]
+        heavy = [angle for angle, radius in zip(angles, radii, strict=True) if radius > 0]
+        candidates = {self._fold(line - heavy[0]) for line in lines}
         shared = [
             half
             for half in candidates
-            if all(_shown(throw.angle + side * half, lines) for throw in heavy for side in (-1, 1))
+            if all(_shown(angle + side * half, lines) for angle in heavy for side in (-1, 1))
         ]
         if not shared:
             raise LookupError("flanks of counterweights")
@@ -219,7 +278,7 @@ class ShaftSeen:
     def bolts(self) -> dict[str, float]:
         """The holes in the flange: how many, their diameter, circle and depth; none if there are none."""
         end = self.seen.levels(Z)[-1]
-        behind = self.throws[-1].faces[3] - _CLEAR
+        behind = self.throws[-1].faces[-1] - _CLEAR
         holes = [c for c in self.beside if c.reach[0] > behind and abs(c.reach[1] - end) < _CLEAR]
         if not holes:
             return {"bolt_hole_diameter": 0.0}
@@ -242,6 +301,11 @@ class ShaftSeen:
 def _spans(cylinder: Surface, low: float, high: float) -> bool:
     """Return whether a cylinder reaches from one plane to another."""
     return abs(cylinder.reach[0] - low) < _CLEAR and abs(cylinder.reach[1] - high) < _CLEAR
+
+
+def _lies(plane: Surface, normal: Vector, distance: float) -> bool:
+    """Whether a plane has this normal, either way round, at this distance from the origin along it."""
+    return plane.along(normal) and abs(plane.point.dot(normal) - distance) < _CLEAR
 
 
 def _shown(line: float, lines: Iterable[float]) -> bool:

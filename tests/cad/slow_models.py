@@ -10,7 +10,7 @@ from typing import TypeVar
 Test = TypeVar("Test", bound=Callable[..., object])
 Model = tuple[str, int]  # id, version
 
-SHAFTS = (("crankshaft", 1), ("crankshaft", 2))
+SHAFTS = (("crankshaft", 1), ("crankshaft", 2), ("crankshaft", 3))
 EARLIER = (("plain_bearing", 2),)
 """Versions whose solids the next version draws too, by the same code."""
 LARGE = (*SHAFTS, ("bearing_assembly", 1), *EARLIER)

@@ -1,0 +1,40 @@
+"""Counterweight radii of the webs: one number, or one for each web; what the rules of shafts ask of them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from templates.core.language.template import Array, Truth, units
+
+
+@units("rad", returns="1")
+def count(angles: Array) -> Array:
+    """How many there are."""
+    return np.asarray(float(np.shape(angles)[-1]))
+
+
+@units("m", "1", returns="1")
+def webs_of(radii: Array, throws: Array) -> Array:
+    """How many webs there are radii for: all, if there is one number."""
+    return 2 * throws if np.ndim(radii) == 0 else np.asarray(float(np.shape(radii)[-1]))
+
+
+@units("m", returns="1")
+def there_is_none(radii: Array) -> Truth:
+    """Whether no web has a counterweight."""
+    return np.all(np.atleast_1d(radii) <= 0, axis=-1)
+
+
+@units("m", "m", returns="1")
+def stand_out(radii: Array, least: Array) -> Truth:
+    """Whether each counterweight that is one reaches so far."""
+    if np.ndim(radii) == 0:
+        return (radii <= 0) | (radii >= least)
+    return np.all((radii <= 0) | (radii >= np.expand_dims(least, -1)), axis=-1)
+
+
+@units("m", "rad", "1", returns="m**2", latex=r"R_w^2\,\varphi_w / 2")
+def sectors(radii: Array, angle: Array, throws: Array) -> Array:
+    """Area of the sector of each web's counterweight, from the journal's axis on [m²]."""
+    each = np.atleast_1d(radii) ** 2 * np.expand_dims(angle, -1) / 2
+    return np.broadcast_to(each, (*each.shape[:-1], round(float(2 * throws))))

@@ -1,0 +1,48 @@
+"""Split pins of a throw: two pins at an angle, and the middle web between them [mm]."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, cos, degrees, pi, sin
+
+from cadquery import Shape, Solid, Vector
+from cadquery.func import wire
+
+from cad.cranks.outline import Run, edge
+
+
+@dataclass(frozen=True)
+class SplitPins:
+    """The rear pin stands at an angle from the front one [rad]; the middle web joins them.
+
+    The middle web is what a round end sweeps on its way from one pin to the other: two half circles about
+    the pins, joined by two lines.
+    """
+
+    angle: float
+    thickness: float  # of the middle web
+    half_width: float  # of the middle web
+
+    def apart(self, throw: float) -> float:
+        """The distance between the axes of the two pins."""
+        return 2 * throw * abs(sin(self.angle / 2))
+
+    def volume(self, throw: float) -> float:
+        """Of the middle web."""
+        return (pi * self.half_width**2 + 2 * self.half_width * self.apart(throw)) * self.thickness
+
+    def web(self, front: float, low: float, throw: float) -> Shape:
+        """The middle web between a pin at an angle [rad] and the one behind it, from a level of z on."""
+        rear = front + self.angle
+        x, y = (throw / 2 * (f(front) + f(rear)) for f in (cos, sin))
+        along = atan2(sin(rear) - sin(front), cos(rear) - cos(front))
+        reach, h = self.apart(throw) / 2, self.half_width
+        ends: list[Run] = [
+            ((reach, -h), (reach + h, 0.0), (reach, h)),
+            ((reach, h), (-reach, h)),
+            ((-reach, h), (-reach - h, 0.0), (-reach, -h)),
+            ((-reach, -h), (reach, -h)),
+        ]
+        plate = Solid.extrudeLinear(wire(*(edge(run, 0.0) for run in ends)), [], Vector(0, 0, self.thickness))
+        turned = plate.rotate(Vector(0, 0, 0), Vector(0, 0, 1), degrees(along))
+        return turned.translate(Vector(x, y, low))

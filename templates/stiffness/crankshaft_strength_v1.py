@@ -1,0 +1,83 @@
+"""Fatigue strength of a crankshaft at its fillets and oil bores, by IACS UR M53.
+
+For the endurance limit of a life under the cycle, where a factor for a plain specimen does not do: the rule
+holds the size of the shaft, how it is made, and the support that a small fillet gives itself.
+"""
+
+from __future__ import annotations
+
+from templates.core.language.template import Array, Template, choice, derived, formula, given
+from templates.physics.fatigue.crankshaft_strength import (
+    MANUFACTURES,
+    factor_at_bore,
+    fatigue_strength_IACS_M53,
+    manufacture_factor,
+)
+
+M53 = "IACS UR M53"
+SMALLEST = "the rule grows without limit towards a radius of 0: take 2 mm, or a limit that was measured"
+
+
+class CrankshaftStrength(Template):
+    """Fatigue strength of a crankshaft at its fillets and oil bores, by IACS UR M53.
+
+    For the endurance limit of a life under the cycle, where a factor for a plain specimen does not do: the
+    rule holds the size of the shaft, how it is made, and the support that a small fillet gives itself.
+
+    Limits
+    ------
+    Alternating von Mises stress that the highest stressed point bears permanently. Forged shafts, or cast
+    steel with fillets rolled by an approved process, without further surface treatment.
+    The ultimate strength is the least one of the material. The answer is that of the rule for local
+    stresses, notch and size included: where it is an endurance_limit, leave stress_concentration_factor and
+    Marin's factors out. The rule asks that it be 1.15 times the equivalent alternating stress.
+    Radii below 2 mm are refused, a bound of this template.
+    Stress concentration factors of the rule are not here; finite elements of the throw give local stresses.
+
+    References
+    ----------
+    IACS UR M53, Calculation of crankshafts for I.C. engines, section 6. Read in: Indian Register of Shipping,
+    Classification Notes, Calculation of Crankshafts for Internal Combustion Engines, section 6.
+    """
+
+    example = {
+        "ultimate_strength": "800 MPa",
+        "crankpin_diameter": "200 mm",
+        "crankpin_fillet": "8 mm",
+        "journal_diameter": "220 mm",
+        "journal_fillet": "9 mm",
+        "oil_bore": "24 mm",
+    }
+
+    B: Array = given("MPa", "ultimate strength", symbol=r"\sigma_B", ge=300, le=1500)
+    D: Array = given("mm", "crankpin diameter", ge=10, le=2000)
+    R_H: Array = given("mm", "crankpin fillet", symbol="R_H", ge=2, le=500, remedy=SMALLEST)
+
+    @derived("mm", "journal diameter", symbol="D_G", ge=10, le=2000)
+    def D_G(self) -> Array:
+        """That of the crankpin."""
+        return self.D
+
+    @derived("mm", "journal fillet", symbol="R_G", ge=2, le=500, remedy=SMALLEST)
+    def R_G(self) -> Array:
+        """That of the crankpin."""
+        return self.R_H
+
+    D_o: Array = given("mm", "oil bore", symbol="D_o", optional=True, ge=4, le=500, remedy=SMALLEST)
+    manufacture: str = choice(*MANUFACTURES, words="manufacture", default="free_form_forged")
+
+    @formula("1", "manufacture factor", symbol="K", source=M53)
+    def K(self) -> Array:
+        return manufacture_factor(self.manufacture)
+
+    @formula("MPa", "strength of crankpin fillet", symbol=r"\sigma_{DW}", source=M53)
+    def sigma_H(self) -> Array:
+        return fatigue_strength_IACS_M53(self.K, self.B, self.D, self.R_H)
+
+    @formula("MPa", "strength of journal fillet", symbol=r"\sigma_{DW,G}", source=M53)
+    def sigma_G(self) -> Array:
+        return fatigue_strength_IACS_M53(self.K, self.B, self.D_G, self.R_G)
+
+    @formula("MPa", "strength of oil bore", symbol=r"\sigma_{DW,o}", source=M53)
+    def sigma_o(self) -> Array:
+        return fatigue_strength_IACS_M53(factor_at_bore(self.K), self.B, self.D, self.D_o / 2)
