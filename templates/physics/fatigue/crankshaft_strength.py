@@ -20,7 +20,10 @@ MANUFACTURES = {"continuous_grain_flow": 1.05, "free_form_forged": 1.0, "cast_ro
 """K for shafts without surface treatment; cast steel with cold rolled fillets, by an approved process."""
 
 
-@units(None, returns="1", latex=r"K\left({0}\right)")
+@units(
+    None, returns="1",
+    latex=r"1.05\ \text{{(grain flow)}},\ 1\ \text{{(free form)}},\ 0.93\ \text{{(cast, rolled)}}",
+)  # fmt: skip
 def manufacture_factor(manufacture: str) -> Array:
     """K of a fillet [1]."""
     return np.float64(MANUFACTURES[manufacture])  # type: ignore[return-value]
