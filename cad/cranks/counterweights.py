@@ -9,25 +9,25 @@ from templates.core.language.template import Array, Truth, units
 
 @units("rad", returns="1")
 def count(angles: Array) -> Array:
-    """How many there are."""
+    """Return the number of them."""
     return np.asarray(float(np.shape(angles)[-1]))
 
 
 @units("m", "1", returns="1")
 def webs_of(radii: Array, throws: Array) -> Array:
-    """How many webs there are radii for: all, if there is one number."""
+    """Return the number of webs that have radii: all, if there is one number."""
     return 2 * throws if np.ndim(radii) == 0 else np.asarray(float(np.shape(radii)[-1]))
 
 
 @units("m", returns="1")
 def there_is_none(radii: Array) -> Truth:
-    """Whether no web has a counterweight."""
+    """Return whether no web has a counterweight."""
     return np.all(np.atleast_1d(radii) <= 0, axis=-1)
 
 
 @units("m", "m", returns="1")
 def stand_out(radii: Array, least: Array) -> Truth:
-    """Whether each counterweight that is one reaches so far."""
+    """Return whether each counterweight that is one reaches so far."""
     if np.ndim(radii) == 0:
         return (radii <= 0) | (radii >= least)
     return np.all((radii <= 0) | (radii >= np.expand_dims(least, -1)), axis=-1)

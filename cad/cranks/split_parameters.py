@@ -21,7 +21,7 @@ def shortest(angle: Array) -> Array:
 
 @units("rad", returns="1")
 def are_split(split: Array) -> Truth:
-    """Whether pins are split by an angle [rad]; what a sine's rounding leaves is none."""
+    """Return whether pins are split by an angle [rad]; what a sine's rounding leaves is none."""
     return np.abs(shortest(split)) > _ROUNDING
 
 

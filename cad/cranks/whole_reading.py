@@ -63,7 +63,7 @@ class ThrowSeen:
 
 @dataclass(frozen=True)
 class ShaftSeen:
-    """The features of a shaft of many throws, as read from its surfaces; whether its pins are split."""
+    """The features of a shaft of many throws, as read from its surfaces; `split` if its pins are."""
 
     seen: Seen
     split: bool = False
@@ -304,7 +304,7 @@ def _spans(cylinder: Surface, low: float, high: float) -> bool:
 
 
 def _lies(plane: Surface, normal: Vector, distance: float) -> bool:
-    """Whether a plane has this normal, either way round, at this distance from the origin along it."""
+    """Return whether a plane has this normal, either way round, at this distance from the origin."""
     return plane.along(normal) and abs(plane.point.dot(normal) - distance) < _CLEAR
 
 

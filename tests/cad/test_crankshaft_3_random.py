@@ -50,7 +50,7 @@ def refused(given: dict[str, Any]) -> set[str]:
 
 
 def drawn(given: dict[str, Any]) -> bool:
-    """Whether a solid was made of it, after a look at its dimensions; what is refused is refused by name."""
+    """Return whether a solid was made of it, its dimensions compared; what is refused is refused by name."""
     if named := refused(given):
         assert named & set(given)
         return False
