@@ -80,7 +80,7 @@ def throw_step(whole: WholeShaft, number: int) -> tuple[bytes, Shaft, PinPlace]:
         parts.append(whole.split.web(0.0, before.middle + front.inner, front.outline.throw))
         parts.append(_standing(rear.pin_solid(), behind))
     solid = fuse(*parts, glue="partial")
-    tools = [bore(front.journal_bore, whole.pitch, 0.0)] if front.journal_bore > 0 else []
+    tools: list[Shape] = [bore(front.journal_bore, whole.pitch, 0.0)] if front.journal_bore > 0 else []
     if front.pin_bore > 0 and whole.split:
         tools += [placed(front.blind_bore().mirror("XY"), before), placed(rear.blind_bore(), behind)]
     elif front.pin_bore > 0:

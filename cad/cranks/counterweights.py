@@ -22,7 +22,7 @@ def webs_of(radii: Array, throws: Array) -> Array:
 @units("m", returns="1")
 def there_is_none(radii: Array) -> Truth:
     """Return whether no web has a counterweight."""
-    return np.all(np.atleast_1d(radii) <= 0, axis=-1)
+    return np.asarray(np.all(np.atleast_1d(radii) <= 0, axis=-1), dtype=bool)
 
 
 @units("m", "m", returns="1")
@@ -30,7 +30,7 @@ def stand_out(radii: Array, least: Array) -> Truth:
     """Return whether each counterweight that is one reaches so far."""
     if np.ndim(radii) == 0:
         return (radii <= 0) | (radii >= least)
-    return np.all((radii <= 0) | (radii >= np.expand_dims(least, -1)), axis=-1)
+    return np.asarray(np.all((radii <= 0) | (radii >= np.expand_dims(least, -1)), axis=-1), dtype=bool)
 
 
 @units("m", "rad", "1", returns="m**2", latex=r"R_w^2\,\varphi_w / 2")

@@ -22,7 +22,13 @@ def shortest(angle: Array) -> Array:
 @units("rad", returns="1")
 def are_split(split: Array) -> Truth:
     """Return whether pins are split by an angle [rad]; what a sine's rounding leaves is none."""
-    return np.abs(shortest(split)) > _ROUNDING
+    return np.asarray(np.abs(shortest(split)) > _ROUNDING, dtype=bool)
+
+
+@units("rad", returns="1")
+def undivided(split: Array) -> Truth:
+    """Return whether pins are not split by an angle [rad]."""
+    return np.logical_not(are_split(split))
 
 
 @units("rad", "m", returns="m", latex=r"{1}\ \text{{if split}}")
@@ -46,7 +52,7 @@ def least_gap(pins: Array, split: Array, far: Array, journal: Array, rise: Array
     sine = np.abs(np.sin(between / 2))
     r, h = np.expand_dims(journal, -1), np.expand_dims(rise, -1)
     across = np.expand_dims(far, -1) + r
-    return np.min(2 * sine * r * h / np.sqrt(sine**2 * across**2 + h**2), axis=-1)[()]
+    return np.asarray(np.min(2 * sine * r * h / np.sqrt(sine**2 * across**2 + h**2), axis=-1))
 
 
 class SplitParameters(CrankRules):
@@ -72,24 +78,24 @@ class SplitParameters(CrankRules):
     @require("pin_split", remedy="use 0 for pins that are not split")
     def split_is_drawable(self) -> Truth:
         """Split pins stand at least 1° apart."""
-        return ~are_split(self.delta) | (np.abs(shortest(self.delta)) >= _LEAST)
+        return undivided(self.delta) | (np.abs(shortest(self.delta)) >= _LEAST)
 
     @require("middle_web_width", "pin_diameter", "fillet",
              remedy="make the middle web wider or the fillet smaller")  # fmt: skip
     def middle_web_holds_pins(self) -> Truth:
         """The middle web is at least 2 % wider than a pin with its fillet."""
-        return ~are_split(self.delta) | (self.W_m >= 1.02 * (self.D_c + 2 * self.r_f))
+        return undivided(self.delta) | (self.W_m >= 1.02 * (self.D_c + 2 * self.r_f))
 
     @require("middle_web_width", "journal_bore", "pin_split", "throw",
              remedy="make the journal's bore smaller, or 0 for none, or the middle web narrower")  # fmt: skip
     def middle_web_clears_bore(self) -> Truth:
         """The journal's bore passes the middle web, 2 % of its radius off."""
         clear = self.R * np.abs(np.cos(self.delta / 2)) - self.W_m / 2
-        return ~are_split(self.delta) | (self.d_j <= 0) | (clear >= 0.51 * self.d_j)
+        return undivided(self.delta) | (self.d_j <= 0) | (clear >= 0.51 * self.d_j)
 
     @require("oil_drilling_diameter", "pin_angles", "pin_split",
              remedy="make the oil drillings narrower, or 0 for none, or the pins further apart")  # fmt: skip
     def drillings_keep_apart(self) -> Truth:
         """Two oil drillings that end in one journal keep apart by a tenth of their diameter."""
         gap = least_gap(self.psi, self.delta, self.R + self.D_c / 2, self.D_j / 2, self.h_o)
-        return ~are_split(self.delta) | (self.d_o <= 0) | (gap >= 1.1 * self.d_o)
+        return undivided(self.delta) | (self.d_o <= 0) | (gap >= 1.1 * self.d_o)
