@@ -81,6 +81,12 @@ def pytest_collection_finish(session):
     gc.enable()
 
 
+@pytest.fixture
+def real_fork_servers(monkeypatch):
+    """Fork servers are processes that import by themselves, as those of the program are."""
+    monkeypatch.setattr(isolated, "launch", forked.LAUNCH)
+
+
 @pytest.fixture(scope="session", autouse=True)
 def forked_forkservers():
     """Fork servers of servers in this process need no seconds to begin: they are forked themselves."""

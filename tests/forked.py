@@ -3,8 +3,8 @@
 `python -m app serve` takes seconds to import the geometry kernel, and so does each fork server of a server;
 a fork takes none of them. All come from one process in each worker of pytest, which has imported what the
 command line and all fork servers need. All else is the same. `test_embedded_start.py`, the slow run of
-`test_demo.py` and `test_version_0_1.py` start the real command. Fork servers whose modules are imported in no
-time, as in `test_workers.py`, are real ones too.
+`test_demo.py` and `test_version_0_1.py` start the real command, tests with the fixture `real_fork_servers`
+real fork servers.
 """
 
 import importlib
@@ -19,8 +19,8 @@ import origins
 
 from app.workers import isolated
 
+LAUNCH = isolated.launch  # the real one
 LONG = ("app.calculations.warm", "cad.models")  # what takes seconds to import
-KERNEL = {*LONG, "cad.model"}  # one of these is among the modules of each fork server that takes so long
 PRELOAD = ("app.cli", "app.serve_command", *LONG)
 
 
@@ -61,10 +61,8 @@ def run_command(request, errors: int, *descriptors: int) -> None:
         main()
 
 
-def launch_forkserver(preload, channel: int, lifeline: int, environment, launch=isolated.launch):
-    """Take the place of `isolated.launch`: fork what would import for seconds."""
-    if KERNEL.isdisjoint(preload):
-        return launch(preload, channel, lifeline, environment)
+def launch_forkserver(preload, channel: int, lifeline: int, environment):
+    """Take the place of `isolated.launch`: fork what would import for a second or more."""
     request = {"path": sys.path, "modules": list(preload), "environment": {**environment, **os.environ}}
     return ForkedForkServer("forked:run", PRELOAD, request, [channel, lifeline])
 
@@ -92,6 +90,7 @@ def run_forkserver(request, channel: int, lifeline: int) -> None:
     from app.workers.forkserver import main
 
     os.setpgid(0, 0)
-    Path("/proc/self/comm").write_text(request["modules"][0])  # its command line is not its own
+    name = request["modules"][0] if request["modules"] else "forkserver"
+    Path("/proc/self/comm").write_text(name)  # its command line is not its own
     sys.path[:] = request["path"]
     main(channel, lifeline, request["modules"])

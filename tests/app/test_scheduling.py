@@ -57,6 +57,7 @@ def test_processes_do_not_inherit_it():
     assert in_a_thread(standing_beside_a_prompt_server)[2] == victims.slice_of_thread()
 
 
+@pytest.mark.usefixtures("real_fork_servers")
 def test_processes_are_of_the_session_but_not_of_the_group():
     session, group, _ = in_a_thread(standing_beside_a_prompt_server)
     assert session == os.getsid(0)

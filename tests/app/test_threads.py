@@ -40,6 +40,7 @@ def test_the_operator_has_the_last_word():
     assert printed(SHOWN, OPENBLAS_NUM_THREADS="3") == ["3", "False"]
 
 
+@pytest.mark.usefixtures("real_fork_servers")
 @pytest.mark.parametrize(("own", "expected"), [(None, "1"), ("3", "3")])
 def test_job_processes_use_one_thread_unless_the_operator_sets_more(monkeypatch, own, expected):
     for name in ONE_THREAD:

@@ -7,6 +7,7 @@ import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -70,8 +71,10 @@ def test_every_job_has_a_fresh_process(worker):
     assert eventually(lambda: not any(alive(pid) for pid in ids))
 
 
-def test_the_main_module_of_the_server_is_not_imported(worker):
-    assert worker.run(victims.main_module_file) is None
+@pytest.mark.usefixtures("real_fork_servers")
+def test_the_main_module_of_the_server_is_not_imported():
+    with closing(LocalProcesses(preload=())) as worker:
+        assert worker.run(victims.main_module_file) is None
 
 
 def test_a_large_result_arrives_whole(worker):
@@ -163,6 +166,7 @@ def test_a_killed_spare_is_replaced(worker):
     assert worker.run(victims.double, 2) == 4
 
 
+@pytest.mark.usefixtures("real_fork_servers")
 def test_a_killed_forkserver_is_replaced(worker):
     spare = worker._spare._pid
     worker._forkserver._process.kill()
