@@ -19,10 +19,13 @@ import pytest  # noqa: E402
 from components import cluster, object_store, own_postgres, postgres, s3  # noqa: E402, F401 - for all folders
 from hypothesis import settings  # noqa: E402
 from lanes import group_of, left_out, name_group, rank, require_distinct  # noqa: E402
+from one_analysis import share_one_analysis  # noqa: E402
 from patience import BUDGET, FACTOR, SLOW_TEST, TEST  # noqa: E402
 from seeds import CHOSEN, SEED, examples  # noqa: E402
 
 from app.workers import isolated  # noqa: E402
+
+share_one_analysis()  # before the routes of the program are imported
 
 # No timed assertions, and the same examples in every run, unless a seed is chosen.
 settings.register_profile(

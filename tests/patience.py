@@ -11,7 +11,7 @@ FACTOR = float(os.environ.get("CRANKWRIGHT_TEST_PATIENCE", "1"))
 TEST = 300.0 * FACTOR  # for one test with its fixtures [s]
 SLOW_TEST = 3600.0 * FACTOR  # for one of the slow lane [s]
 BUDGET = float(os.environ.get("CRANKWRIGHT_TEST_BUDGET", "0"))  # to begin slow tests in, 0: no end [s]
-GLANCE = 0.02  # between two looks at a condition [s]
+GLANCE, LONGEST_GLANCE = 0.02, 0.2  # between two looks at a condition, at first and at last [s]
 
 
 def patient(seconds):
@@ -20,9 +20,13 @@ def patient(seconds):
 
 
 def until(ask, wanted=bool, seconds=60.0, glance=GLANCE):
-    """Ask until the answer is as wanted, and return it; fail with the last answer once the time is over."""
-    end = time.monotonic() + patient(seconds)
+    """Ask until the answer is as wanted, and return it; fail with the last answer once the time is over.
+
+    Looks become rarer, by a tenth of what was waited for: a look may cost as much as what it waits for.
+    """
+    begin = time.monotonic()
     while not wanted(answer := ask()):
-        assert time.monotonic() < end, f"waited {patient(seconds):g} s; last answer: {answer!r}"
-        time.sleep(glance)
+        waited = time.monotonic() - begin
+        assert waited < patient(seconds), f"waited {patient(seconds):g} s; last answer: {answer!r}"
+        time.sleep(max(glance, min(0.1 * waited, LONGEST_GLANCE)))
     return answer

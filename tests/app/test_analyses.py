@@ -264,6 +264,7 @@ class TestFoundAgain:
         assert cancelled.json()["state"] == "cancelled"
         problem(http.get(f"{API}/analyses/{answer.json()['id']}"), 404, "not-found")
 
+    @pytest.mark.slow
     def test_the_client_waits(self, client: Client):
         analysis = client.analyse("bar", 1, bar(23), level="coarse", outputs=["stiffness"])
         assert analysis.outputs["stiffness"].value > 0

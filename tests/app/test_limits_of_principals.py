@@ -119,6 +119,7 @@ def test_rows_of_a_study_and_the_table_that_is_given_count(person, http):
     assert person.stored > 2 * of_rows  # the table, and its rows
 
 
+@pytest.mark.slow
 def test_a_surface_counts_once(person, http):
     place = f"{API}/models/bar/versions/1/analyses/torsion"
     answer = http.post(place, json=BAR, headers=WAIT).json()

@@ -107,6 +107,7 @@ class TestAnotherMaker:
         problem(http.get(f"{API}/artifacts/{old}", headers=WAIT), 410, "artifact-gone")
         assert http.get(f"{API}/designs/{design['id']}/model.png", headers=WAIT).content == first.content
 
+    @pytest.mark.slow
     def test_a_surface_of_another_recipe(self, shared):
         served, http, _ = shared
         body = {

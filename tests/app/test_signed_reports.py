@@ -110,6 +110,7 @@ def test_where_nobody_is_asked_for_a_key_a_report_names_no_author(http):
     assert "<dt>Author</dt>" not in page
 
 
+@pytest.mark.slow
 def test_an_unreleased_report_says_so(unsigned):
     said = text_of(unsigned)
     assert "Not released." in said
@@ -195,6 +196,7 @@ def test_what_is_no_report_is_refused(room):
         read_block(written(writer))
 
 
+@pytest.mark.slow
 def test_the_command_verifies_against_a_service(team, design, printed, tmp_path):
     file = tmp_path / "report.pdf"
     file.write_bytes(printed)

@@ -51,6 +51,7 @@ def test_a_cancelled_study_keeps_no_further_chunk(served, http, document, body, 
     problem(http.get(place), 404, "not-found")
 
 
+@pytest.mark.slow
 def test_a_study_that_waits_is_cancelled_before_it_has_rows(served, http):
     """More studies than there are threads for them: the last one waits."""
     design = new_design(http, TWICE)
