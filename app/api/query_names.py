@@ -23,16 +23,16 @@ def refuse_unknown(request: Request) -> None:
     if not request.scope["query_string"]:
         return
     fields = get_flat_params(request.scope["route"].dependant)
-    known = sorted(field.alias for field in fields if isinstance(field.field_info, Query))
-    unknown = [name for name in dict.fromkeys(request.query_params.keys()) if name not in known]
+    declared = sorted(field.alias for field in fields if isinstance(field.field_info, Query))
+    unknown = [name for name in dict.fromkeys(request.query_params.keys()) if name not in declared]
     if unknown:
-        raise InvalidInputs(_fault(name, known) for name in islice(unknown, MOST_SUGGESTED))
+        raise InvalidInputs(_fault(name, declared) for name in islice(unknown, MOST_SUGGESTED))
 
 
-def _fault(name: str, known: list[str]) -> Fault:
-    near = nearest(name, known)
+def _fault(name: str, declared: list[str]) -> Fault:
+    near = nearest(name, declared)
     meant = f"did you mean {near[0]}? " if near else ""
-    there_are = f"there are {listed(known)}" if known else "this address takes none"
+    there_are = f"there are {listed(declared)}" if declared else "this address takes none"
     return Fault(plain(name), "unknown_name", f"{meant}{there_are}")
 
 
