@@ -34,7 +34,7 @@ from netgen.occ import HalfSpace, OCCGeometry, Pnt, Vec
 
 from cad.analysis.elastic import stress
 from cad.analysis.kinds import HARMONICS, mode_names
-from cad.analysis.mesh import MOST_ELEMENTS, curve
+from cad.analysis.mesh import MOST_ELEMENTS, ONE_THREAD, curve
 from cad.analysis.solid import FREE, HELD, MIRROR
 from cad.errors import AnalysisError
 from cad.shaft import BorePlace
@@ -144,7 +144,9 @@ def bore_mesh(solid: BoredSolid, fineness: BoreFineness) -> Any:
     for face in solid.shape.faces:
         if face.name == BORE:
             face.maxh = fineness.bore * radius
-    parameters = MeshingParameters(maxh=fineness.body * radius, grading=_GRADING, curvaturesafety=1.0)
+    parameters = MeshingParameters(
+        maxh=fineness.body * radius, grading=_GRADING, curvaturesafety=1.0, **ONE_THREAD
+    )
     try:
         mesh = ng.Mesh(OCCGeometry(solid.shape).GenerateMesh(parameters))
     except Exception as error:  # Netgen has one kind of exception

@@ -18,6 +18,7 @@ between them and the load, so no other system is solved.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import ngsolve as ng
@@ -31,7 +32,7 @@ from cad.errors import AnalysisError
 from cad.shaft import Material
 from templates.core.arrays import Array
 
-_RESIDUAL = 1e-6  # relative, in the norm of the preconditioner: a stress changes by less than 1e-6
+_RESIDUAL = 1e-5  # relative, in the preconditioner's norm: stresses change by some 1e-5, stiffnesses by 1e-9
 _MOST_STEPS = 1000
 
 
@@ -46,8 +47,9 @@ class System:
     """Stiffness of a held solid in elements of one order, prepared for solving; for one kind of load.
 
     Elements are as much curved as their order allows. The mesh stays so until the next system is built on it.
-    It is factorised, or solved for each force by itself where there are few: by conjugate gradients with
-    balanced domain decomposition (Dohrmann 2003), which at 200 000 unknowns takes half the time and memory.
+    It is factorised, or solved for each force by itself where there are few and the order is above 2: by
+    conjugate gradients, whose preconditioner solves in second order and adds what the other unknowns of each
+    edge and face alone answer (`_by_order`). At 160 000 unknowns that takes half the memory of BDDC.
     """
 
     def __init__(
@@ -63,12 +65,12 @@ class System:
         u, v = self.space.TnT()
         self.form = ng.BilinearForm(self.space, symmetric=True, condense=True)
         self.form += ng.InnerProduct(stress(u, material), ng.Sym(ng.Grad(v))) * ng.dx
-        domains = ng.Preconditioner(self.form, "bddc") if few_forces else None
         self.form.Assemble()
-        if domains is None:
-            self.inverse = self.form.mat.Inverse(self.space.FreeDofs(True), inverse="sparsecholesky")
+        if few_forces and order > 2:
+            by_order = _by_order(self.form, self.space)
+            self.inverse = CGSolver(self.form.mat, by_order, tol=_RESIDUAL, maxiter=_MOST_STEPS)
         else:
-            self.inverse = CGSolver(self.form.mat, domains.mat, tol=_RESIDUAL, maxiter=_MOST_STEPS)
+            self.inverse = self.form.mat.Inverse(self.space.FreeDofs(True), inverse="sparsecholesky")
 
     def solve(self, force: Any) -> Any:
         """The displacement under a force, both as vectors; the dofs inside elements are eliminated.
@@ -108,6 +110,28 @@ class System:
         sideways = {"x": ng.CF((1, 0, 0)), "y": ng.CF((0, 1, 0))}
         guides = [self.traction(way / area) for axis, way in sideways.items() if axis not in locked]
         return self.traction(unit), guides
+
+
+def _by_order(form: Any, space: Any) -> Any:
+    """An approximate inverse of an assembled form: exact in second order; of the rest by edges and faces.
+
+    The basis is hierarchical: the unknowns of second order are those of vertices and the first of each edge.
+    """
+    scalar, free = space.components[0], space.FreeDofs(True)
+    mesh, count = space.mesh, scalar.ndof
+    edges = [scalar.GetDofNrs(edge) for edge in mesh.edges]
+    faces = [scalar.GetDofNrs(face) for face in mesh.faces]
+    low = ng.BitArray(space.ndof)
+    low.Clear()
+    for number in chain(range(mesh.nv), (first for first, *_ in edges)):
+        for component in range(3):
+            low[number + component * count] = True
+    blocks = []
+    for numbers in chain((rest for _, *rest in edges), faces):
+        unknowns = [number + component * count for component in range(3) for number in numbers]
+        blocks.append([unknown for unknown in unknowns if free[unknown]])
+    rest = form.mat.CreateBlockSmoother([block for block in blocks if block])
+    return form.mat.Inverse(low & free, inverse="sparsecholesky") + rest
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,9 @@ from cad.errors import AnalysisError
 
 MOST_ELEMENTS = 60_000
 
+ONE_THREAD = {"parallel_meshing": False}
+"""On several threads Netgen makes the same mesh, but they wait in loops: 3 to 7 times the processor time."""
+
 _GRADING = 0.5  # how fast elements grow from one to the next
 _SAMPLES = 16  # of an edge, to see how far it turns
 
@@ -70,7 +73,7 @@ def make_grid(solid: Solid, fineness: Fineness, near: Iterable[Near] = ()) -> Gr
     """
     bound_sizes(solid, fineness)
     parameters = MeshingParameters(
-        maxh=fineness.size * solid.scale, grading=_GRADING, curvaturesafety=fineness.curvature
+        maxh=fineness.size * solid.scale, grading=_GRADING, curvaturesafety=fineness.curvature, **ONE_THREAD
     )
     for place in near:
         for point in _ball(place):
@@ -94,9 +97,10 @@ def make_grid(solid: Solid, fineness: Fineness, near: Iterable[Near] = ()) -> Gr
 def curve(mesh: Any, order: int) -> Any:
     """Curve a mesh as its geometry is, smoothly into the inside; returns the deformation that does it."""
     mesh.UnsetDeformation()
-    straight, curved = _coordinates(mesh, 1, order), _coordinates(mesh, order, order)
+    curved = _coordinates(mesh, order)
     mesh.Curve(1)
     scalar = ng.H1(mesh, order=order, dirichlet=".*")
+    straight = _straight_coordinates(mesh, scalar)
     u, v = scalar.TnT()
     laplace = ng.BilinearForm(scalar, symmetric=True)
     laplace += ng.InnerProduct(ng.grad(u), ng.grad(v)) * ng.dx
@@ -112,9 +116,21 @@ def curve(mesh: Any, order: int) -> Any:
     return deformation
 
 
-def _coordinates(mesh: Any, curving: int, order: int) -> list[Any]:
-    """The coordinates of the points of a mesh as functions on it."""
-    mesh.Curve(curving)
+def _straight_coordinates(mesh: Any, space: Any) -> list[Any]:
+    """The coordinates of the points of straight elements: those of their corners, nothing of higher order."""
+    corners = np.array([vertex.point for vertex in mesh.vertices])
+    vectors = []
+    for values in corners.T:
+        vector = ng.GridFunction(space).vec
+        vector[:] = 0.0
+        vector.FV().NumPy()[: len(values)] = values
+        vectors.append(vector)
+    return vectors
+
+
+def _coordinates(mesh: Any, order: int) -> list[Any]:
+    """The coordinates of the points of curved elements as functions on them."""
+    mesh.Curve(order)
     vectors = []
     for axis in (ng.x, ng.y, ng.z):
         function = ng.GridFunction(ng.H1(mesh, order=order))

@@ -12,12 +12,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csc_array, diags_array
-from scipy.sparse.linalg import splu
 
 from templates.core.arrays import Array
 from templates.physics.cavities.cavitating_film import SolvedRing, force
 from templates.physics.cavities.cavitating_network import perturbed_flows
+from templates.physics.cavities.column_scaled import ColumnScaledSum
 from templates.physics.films.film_equations import midpoints
 from templates.physics.films.film_mesh import gap
 
@@ -60,15 +59,16 @@ def linear_film(film: SolvedRing) -> LinearFilm:
 
 def _response(film: SolvedRing) -> Callable[[Array], tuple[Array, Array]]:
     """A function from what nodes lose to the changes of pressure and void that make up for it."""
-    network, free = film.network, ~film.network.fixed
+    network, free = film.network, film.network.free
     full = film.solution.void == 0
-    matrix = csc_array(network.A * full - network.T * ~full)[free][:, free]
-    diagonal = np.abs(matrix.diagonal())
-    factors = splu(csc_array(matrix + diags_array(_DAMPING * np.where(full[free], diagonal, -diagonal))))
+    slopes, is_full = ColumnScaledSum.of(network.A, network.T).among(free), full[free]
+    by_pressure, by_shear = np.abs(slopes.diagonals())
+    damping = _DAMPING * np.where(is_full, by_pressure, -by_shear)
+    solve = slopes.factorised(is_full * 1.0, is_full - 1.0, damping)
 
     def respond(loss: Array) -> tuple[Array, Array]:
-        change = np.zeros(free.size)
-        change[free] = factors.solve(-loss[free])
+        change = np.zeros(full.size)
+        change[free] = solve(-loss[free])
         return np.where(full, change, 0.0), np.where(full, 0.0, change)
 
     return respond

@@ -10,6 +10,7 @@ the width converges more slowly, 10 % and more. The film turns in the positive s
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from templates.core.arrays import Array, Mask
 from templates.physics.cavities.cavitating_network import Groove, Ring, fed_network, grooved_ring
@@ -121,13 +122,21 @@ def solved_ring(
 def _interpolated(solved: SolvedRing, finer: Ring) -> tuple[Array, Array]:
     """Carry pressure and void to the nodes of a finer mesh, linearly along each direction."""
     ring = solved.ring
+    around, across = _between(ring.phi, finer.phi[:-1]), _between(ring.zeta, finer.zeta)
 
     def carried(values: Array) -> Array:
-        columns = ring.closed(values).T
-        rows = np.stack([np.interp(finer.phi[:-1], ring.phi, column) for column in columns], axis=1)
-        return np.stack([np.interp(finer.zeta, ring.zeta, row) for row in rows]).ravel()
+        (row, share), (column, part) = around, across
+        rows = ring.closed(values)
+        rows = rows[row] + share[:, None] * (rows[row + 1] - rows[row])
+        return (rows[:, column] + part * (rows[:, column + 1] - rows[:, column])).ravel()
 
     return carried(solved.solution.P), carried(solved.solution.void)
+
+
+def _between(nodes: Array, places: Array) -> tuple[NDArray[np.intp], Array]:
+    """The node before each place, and how much of the way to the next one it lies."""
+    before = np.clip(np.searchsorted(nodes, places, side="right") - 1, 0, nodes.size - 2)
+    return before, np.clip((places - nodes[before]) / np.diff(nodes)[before], 0.0, 1.0)
 
 
 def force(ring: Ring, P: Array) -> Array:

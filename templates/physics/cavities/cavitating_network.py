@@ -5,6 +5,7 @@ gap changes the factors around alone.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,32 +106,59 @@ def perturbed_flows(ring: Ring, change: Array, change_mid: Array) -> tuple[csc_a
 
 
 def _flows(ring: Ring, cube_mid: Array, cube: Array, H_mid: Array) -> tuple[csc_array, csc_array]:
-    """What nodes lose by pressure and by shear, for H³ between and at the nodes and H between them."""
+    """What nodes lose by pressure and by shear, for H³ between and at the nodes and H between them.
+
+    Both have one pattern, so that sums of them need no other.
+    """
     n, m, dual = ring.phi.size - 1, ring.zeta.size, dual_widths(ring.zeta)
-    node = np.arange(n * m).reshape(n, m)
-    ahead = np.roll(node, -1, axis=0)
     cell = cube * dual_widths(ring.phi) / ring.ratio**2
     cell[0] += cell[-1]
-    around = (cube_mid / np.diff(ring.phi))[:, None] * dual
-    across = cell[:-1, None] / np.diff(ring.zeta)
-    shear = 6 * H_mid[:, None] * dual
-    by_pressure = [*_exchanged(node, ahead, around), *_exchanged(node[:, :-1], node[:, 1:], across)]
-    return _assembled(by_pressure, n * m), _assembled([(node, node, shear), (ahead, node, -shear)], n * m)
+    around = ((cube_mid / np.diff(ring.phi))[:, None] * dual).ravel()
+    across = (cell[:-1, None] / np.diff(ring.zeta)).ravel()
+    shear = (6 * H_mid[:, None] * dual).ravel()
+    pattern = _pattern(n, m)
+    by_pressure = [around, around, -around, -around, across, across, -across, -across]
+    return pattern.filled(pattern.pressure, by_pressure), pattern.filled(pattern.shear, [shear, -shear])
 
 
-def _exchanged(one: Numbers, other: Numbers, conductance: Array) -> list[tuple[Numbers, Numbers, Array]]:
-    """What two neighbours lose to each other: entries (row, column, value)."""
-    return [
-        (one, one, conductance),
-        (other, other, conductance),
-        (one, other, -conductance),
-        (other, one, -conductance),
-    ]
+@dataclass(frozen=True)
+class _Pattern:
+    """Where the matrices of a ring of nodes have values, column by column, and where each entry belongs."""
+
+    row: NDArray[np.int32]
+    """(places,) the row of each."""
+    starts: NDArray[np.int32]
+    """(N + 1,) where columns start."""
+    pressure: Numbers
+    """(entries,) the place of each entry by pressure: see `_flows`."""
+    shear: Numbers
+    """(entries,) likewise by shear."""
+
+    def filled(self, places: Numbers, values: list[Array]) -> csc_array:
+        """The matrix of entries; those at one place add."""
+        data = np.bincount(places, np.concatenate(values), self.row.size)
+        count = self.starts.size - 1
+        return csc_array((data, self.row, self.starts), shape=(count, count))
 
 
-def _assembled(entries: list[tuple[Numbers, Numbers, Array]], count: int) -> csc_array:
-    """The matrix of all entries; those at one place add."""
-    row, column, value = (
-        np.concatenate([part.ravel() for part in parts]) for parts in zip(*entries, strict=True)
-    )
-    return csc_array((value, (row, column)), shape=(count, count))
+@lru_cache(maxsize=16)
+def _pattern(n: int, m: int) -> _Pattern:
+    """That of n nodes around, m across."""
+    node = np.arange(n * m).reshape(n, m)
+    ahead = np.roll(node, -1, axis=0)
+    pressure = [*_exchanged(node, ahead), *_exchanged(node[:, :-1], node[:, 1:])]
+    at = [_places(entries, n * m) for entries in (pressure, [(node, node), (ahead, node)])]
+    places = np.unique(at[0])  # shear has none that pressure has not
+    column, row = np.divmod(places, n * m)
+    starts = np.searchsorted(column, np.arange(n * m + 1)).astype(np.int32)
+    return _Pattern(row.astype(np.int32), starts, *(np.searchsorted(places, one) for one in at))
+
+
+def _exchanged(one: Numbers, other: Numbers) -> list[tuple[Numbers, Numbers]]:
+    """Rows and columns of what two neighbours lose to each other."""
+    return [(one, one), (other, other), (one, other), (other, one)]
+
+
+def _places(entries: list[tuple[Numbers, Numbers]], count: int) -> Numbers:
+    """Places of entries in a square matrix that is written column by column."""
+    return np.concatenate([(column * count + row).ravel() for row, column in entries])

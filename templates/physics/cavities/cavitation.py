@@ -16,10 +16,11 @@ H. G. Elrod, Trans. ASME J. Lubr. Technol. 103, 1981, p. 350.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
 
 from templates.core.arrays import Array, Mask
 from templates.physics.cavities.column_scaled import ColumnScaledSum
@@ -28,9 +29,6 @@ _MOST_STEPS = 200
 _ACCURACY = 1e-11
 _DAMPING = 1e-10
 """Share of the diagonal added: a ring of cavities alone would leave its void undetermined."""
-
-_SYMMETRIC = {"SymmetricMode": True}
-"""The pattern nearly is: its own ordering is cheaper and fills less than that of its square."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +43,19 @@ class Network:
     """(N,) nodes at a given pressure, which are full."""
     P_fixed: Array
     """(N,) that pressure; of no account elsewhere."""
+
+    @cached_property
+    def free(self) -> NDArray[np.intp]:
+        """Nodes whose pressure is unknown, from the end of the longest run of fixed ones around the ring.
+
+        Where a groove is as long as the bearing is wide, neighbours are then near each other.
+        """
+        count = self.fixed.size
+        around = np.arange(2 * count)
+        last_free = np.maximum.accumulate(np.where(np.tile(self.fixed, 2), -1, around))
+        end = int((around - last_free).argmax())
+        order = (end + 1 + around[:count]) % count
+        return np.asarray(order[~self.fixed[order]], np.intp)
 
     def loss(self, P: Array, void: Array) -> Array:
         """What each node loses: 0 where the balance holds, −inflow from outside at fixed nodes."""
@@ -80,13 +91,11 @@ def cavitation(network: Network, start: tuple[Array, Array] | None = None) -> Ca
     ArithmeticError
         If Newton's method has not converged after 200 steps.
     """
-    free = ~network.fixed
-    A, T = network.A[free][:, free], network.T[free][:, free]
-    scale = np.stack([A.diagonal(), T.diagonal()])
-    by_P, by_void = csc_array(A / scale[0]), csc_array(T / scale[1])
-    slopes = ColumnScaledSum.of(by_P, by_void)
-    P, void = start if start is not None else (np.zeros(free.size), np.zeros(free.size))
-    P, void = np.where(free, P, network.P_fixed), np.where(free, void, 0.0)
+    free = network.free
+    slopes = ColumnScaledSum.of(network.A, network.T).among(free)
+    scale = slopes.diagonals()
+    P, void = start if start is not None else np.zeros((2, network.fixed.size))
+    P, void = np.where(network.fixed, network.P_fixed, P), np.where(network.fixed, 0.0, void)
     flow = max(float(np.abs(network.T.data).max()), float(np.abs(network.A @ P).max()))
     for step in range(1, _MOST_STEPS):
         loss = network.loss(P, void)[free]
@@ -96,24 +105,22 @@ def cavitation(network: Network, start: tuple[Array, Array] | None = None) -> Ca
         if max(worst, np.abs(fischer).max()) < _ACCURACY * flow:
             P[free], void[free] = np.where(pair[0] >= pair[1], pair * [[1], [0]], pair * [[0], [1]]) / scale
             return Cavitation(P, void, step, float(np.abs(network.loss(P, void)[free]).max()) / flow)
-        P[free], void[free] = (pair + _newton_step(slopes, by_P, by_void, loss, pair, fischer)) / scale
+        P[free], void[free] = (pair + _newton_step(slopes, scale, loss, pair, fischer)) / scale
     raise ArithmeticError("the cavities' extent did not settle")
 
 
-def _newton_step(
-    slopes: ColumnScaledSum, by_P: csc_array, by_void: csc_array, loss: Array, pair: Array, fischer: Array
-) -> Array:
-    """Changes of pressure and void, (2, N), from loss + A dP − T dvoid = 0 and the changed complementarity.
+def _newton_step(slopes: ColumnScaledSum, scale: Array, loss: Array, pair: Array, fischer: Array) -> Array:
+    """Changes of pressure and void times their scale, (2, N).
 
+    From loss + A dP − T dvoid = 0 and the changed complementarity.
     Where the film is full dvoid is eliminated, in the cavity dP: the larger slope divides.
     """
     full = pair[0] >= pair[1]
     dependence = 1 - pair / np.maximum(np.hypot(*pair), np.finfo(float).tiny)
     ratio, rest = dependence.min(axis=0) / dependence.max(axis=0), -fischer / dependence.max(axis=0)
-    matrix = slopes.scaled(
-        np.where(full, 1, -ratio), np.where(full, ratio, -1), np.where(full, _DAMPING, -_DAMPING)
-    )
-    right = -loss - by_P @ np.where(full, 0, rest) + by_void @ np.where(full, rest, 0)
-    kept = splu(matrix, "MMD_AT_PLUS_A", relax=4, panel_size=1, options=_SYMMETRIC).solve(right)
+    brought = np.stack([np.where(full, 0, -rest), np.where(full, rest, 0)]) / scale
+    right = slopes.times(*brought) - loss
+    slope = np.stack([np.where(full, 1, -ratio), np.where(full, ratio, -1)]) / scale
+    kept = slopes.factorised(*slope, np.where(full, _DAMPING, -_DAMPING))(right)
     eliminated = rest - ratio * kept
     return np.where(full, [kept, eliminated], [eliminated, kept])
