@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from templates.core.arrays import Array
 from templates.physics.orbits.journal_orbit import CyclicLoad
@@ -58,6 +59,12 @@ class TurnedAngle:
         return place, speed, np.append(0.0, turned)
 
     @cached_property
+    def _inner(self) -> tuple[Array, Array]:
+        """(N − 1,) angles between pieces, and (N,) slopes of the speed on each piece."""
+        place, speed, _ = self._nodes
+        return place[1:-1], np.diff(speed) / np.diff(place)
+
+    @cached_property
     def _at_zero(self) -> float:
         return float(self._since_first(np.array([-self.angle[0] % self.period]))[0])
 
@@ -65,10 +72,10 @@ class TurnedAngle:
         place, speed, turned = self._nodes
         cycle = np.floor(since / self.period)
         part = since - cycle * self.period
-        k = np.searchsorted(place[1:-1], part, side="right")
+        between, slope = self._inner
+        k = between.searchsorted(part, side="right")
         into = part - place[k]
-        slope = (speed[k + 1] - speed[k]) / (place[k + 1] - place[k])
-        return np.asarray(cycle * turned[-1] + turned[k] + speed[k] * into + slope * into**2 / 2)
+        return np.asarray(cycle * turned[-1] + turned[k] + speed[k] * into + slope[k] * into**2 / 2)
 
 
 @dataclass(frozen=True)
@@ -98,10 +105,24 @@ class Duty:
         """Of the journal in the mesh; the sleeve turns back by as much."""
         return TurnedAngle(self.load.angle, self.load.period, self.sliding / 2)
 
+    @cached_property
+    def _force(self) -> tuple[Array, NDArray[np.complex128]]:
+        """Rising angles from before 0 to beyond the period, and the load there, x + i y.
+
+        `np.interp` makes both at every call if it is given a period.
+        """
+        angle = self.load.angle % self.load.period
+        order = np.argsort(angle)
+        ends = np.concatenate([order[-1:], order, order[:1]])
+        around = angle[ends]
+        around[0] -= self.load.period
+        around[-1] += self.load.period
+        x, y = self.load.S[:, 0, ends]
+        return around, x + 1j * y
+
     def seen(self, theta: Array) -> tuple[Array, Array]:
         """Load (K, 2), and places of the pockets (K, k, 3) as the kernel takes them, in axes of the mesh."""
-        x, y = (np.interp(theta, self.load.angle, s, period=self.load.period) for s in self.load.S[:, 0])
-        S = (x + 1j * y) * np.exp(-1j * self.mesh_turning(theta))
+        S = np.interp(theta % self.load.period, *self._force) * np.exp(-1j * self.mesh_turning(theta))
         turned = self.journal_turning(theta)
         places = np.empty((theta.size, len(self.supply.pockets), 3))
         for k, pocket in enumerate(self.supply.pockets):
