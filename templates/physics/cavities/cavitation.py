@@ -120,7 +120,7 @@ def _newton_step(slopes: ColumnScaledSum, scale: Array, loss: Array, pair: Array
     ratio, rest = dependence.min(axis=0) / dependence.max(axis=0), -fischer / dependence.max(axis=0)
     brought = np.stack([np.where(full, 0, -rest), np.where(full, rest, 0)]) / scale
     right = slopes.times(*brought) - loss
-    slope = np.stack([np.where(full, 1, -ratio), np.where(full, ratio, -1)]) / scale
-    kept = slopes.factorised(*slope, np.where(full, _DAMPING, -_DAMPING))(right)
+    by_P, by_void = np.stack([np.where(full, 1, -ratio), np.where(full, ratio, -1)]) / scale
+    kept = slopes.factorised(by_P, by_void, np.where(full, _DAMPING, -_DAMPING))(right)
     eliminated = rest - ratio * kept
     return np.where(full, [kept, eliminated], [eliminated, kept])
