@@ -63,6 +63,7 @@ CASES = [
 ]
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(("eps", "ratio", "pocket", "pressure"), CASES)
 def test_constant_load_settles_in_the_static_film(
     eps: float, ratio: float, pocket: Pocket, pressure: float

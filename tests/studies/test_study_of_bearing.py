@@ -31,6 +31,7 @@ def test_a_level_off_by_a_few_per_cent_is_corrected_to_the_optimum_of_the_confir
     assert again.low[0, 0] >= 0
 
 
+@pytest.mark.slow
 def test_corrections_far_from_the_optimum_do_not_make_it_infeasible(bearing):
     """`short_bearing` is wrong by a factor of two, and its first optimum lies at the other end of the box."""
     fine = by_level(bearing, FINE)

@@ -64,6 +64,7 @@ def keys(raw):
 
 
 class TestDamage:
+    @pytest.mark.slow
     def test_one_server_reads_what_another_has_put(self, server):
         sha = server().store.put(BYTES)
         two = server("two")

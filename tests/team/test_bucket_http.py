@@ -125,6 +125,7 @@ class TestHealing:
         assert servers[1].get(path, headers=WAIT).status_code == 200
         assert is_right(servers[1].get(f"{API}/artifacts/{sha}", headers=WAIT), sha)
 
+    @pytest.mark.slow
     def test_a_lost_file_of_a_build_that_a_design_returns_to_is_made_when_it_is_asked_for(self, servers, raw):
         design = created(servers[1], moody("22 mm"))
         sha = step_of(servers[1], design)

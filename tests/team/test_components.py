@@ -34,6 +34,7 @@ def test_each_test_may_have_its_own(postgres, own_postgres):
     assert rows(own_postgres) == 0
 
 
+@pytest.mark.slow
 def test_a_killed_database_server_starts_again_with_what_was_committed(cluster):
     cluster = Cluster()
     try:

@@ -108,6 +108,7 @@ class TestUnits:
         yield database
         database.close()
 
+    @pytest.mark.slow
     def test_a_connection_lost_before_the_commit_is_made_up_for(self, database):
         runs = []
 

@@ -153,6 +153,7 @@ def test_a_service_that_starts_again_has_the_model(served, model):
     assert catalogues.models.get("bush", 1) is services.catalogues.models.get("bush", 1)
 
 
+@pytest.mark.slow
 def test_freecad_dies_with_its_server(tmp_path):
     place = tmp_path / "endless.FCStd"
     place.write_bytes(bush("endless"))

@@ -60,6 +60,7 @@ def coulomb() -> Surface:
     return seen(ROUND, LENGTH, "torsion", ("y",))
 
 
+@pytest.mark.slow
 def test_the_twist_is_linear_along_a_circular_shaft(coulomb: Surface) -> None:
     """φ = T z / (G J) at every point, on the rim, on the end faces, on the axis."""
     assert coulomb.twist is not None

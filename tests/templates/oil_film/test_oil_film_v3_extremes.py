@@ -85,6 +85,7 @@ def answered(raw, level):
     return True
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("level", [None, "reynolds"])
 def test_property_a_few_shaped_bearings(level):
     rng = np.random.default_rng(46)
