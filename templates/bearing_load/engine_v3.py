@@ -91,7 +91,8 @@ class Engine(ArticulatedEngine):
     on one pin share what is given. Webs and their counterweights add to it at web_positions; their angles
     count from the pin of the throw, the nearest one unless web_throws says otherwise.
     A pressure table counts from suction as in bearing_load: combustion is at 360 deg in four strokes, at 0 in
-    two. pressure_factor multiplies the pressure of a cylinder. Valve angles count from top dead centre.
+    two. pressure_factor multiplies the pressure of a cylinder; gas_pressure is the one before that factor.
+    Valve angles count from top dead centre.
     Orders 1 and 2 by harmonics leading are r and r²/l, as in textbooks; exact, from order 3 on and with an
     offset they are Fourier coefficients of the exact motion. Forward parts turn with the crank. Force and
     couple of an order are largest, forward plus backward, at its crank angle, where they point in its

@@ -190,22 +190,26 @@ def check_shapes(self: Template) -> None:
         Naming the arrays and their shapes.
     """
     arrays = {n: v for n, v in vars(self).items() if isinstance(v, np.ndarray)}
-    if not arrays:
-        return
-    try:
-        points_of(self, arrays)
-        curves = {n: d for n, d in self.declarations.items() if isinstance(d, Curve) and n in arrays}
-        for along in {curve.along for curve in curves.values()}:
-            np.broadcast_shapes(
-                *(arrays[n].shape[-1:] for n, curve in curves.items() if curve.along == along)
-            )
-    except ValueError:
-        names = {self.declarations[n].name: v.shape for n, v in arrays.items()}
-        shapes = ", ".join(f"{name} {'×'.join(map(str, shape))}" for name, shape in names.items())
-        detail = (
-            f"arrays of different shapes do not fit together ({shapes}); give equal lengths or a single value"
-        )
-        raise InvalidInputs([Fault(name, "shape", detail) for name in names]) from None
+    curves = {n: d for n, d in self.declarations.items() if isinstance(d, Curve) and n in arrays}
+    points = {n: v.shape[:-1] if n in curves else v.shape for n, v in arrays.items()}
+    together = [{n: shape for n, shape in points.items() if shape}]
+    for along in dict.fromkeys(curve.along for curve in curves.values()):
+        together.append({n: arrays[n].shape[-1:] for n, curve in curves.items() if curve.along == along})
+    for shapes in together:
+        try:
+            np.broadcast_shapes(*shapes.values())
+        except ValueError:
+            raise InvalidInputs(_of_different_shapes(self, shapes)) from None
+
+
+def _of_different_shapes(self: Template, shapes: Mapping[str, tuple[int, ...]]) -> list[Fault]:
+    """A fault for each of the arrays that have to go together, with the shapes of all."""
+    names = {self.declarations[n].name: shape for n, shape in shapes.items()}
+    listed = ", ".join(f"{name} {'×'.join(map(str, shape))}" for name, shape in names.items())
+    detail = (
+        f"arrays of different shapes do not fit together ({listed}); give equal lengths or a single value"
+    )
+    return [Fault(name, "shape", detail) for name in names]
 
 
 def is_single(declared: Declaration) -> bool:
@@ -269,7 +273,8 @@ def _shown(self: Template, declared: Declaration) -> str:
     if isinstance(value, str):
         return value
     if isinstance(value, tuple):
-        return str([[float(f"{declared.meaning.scale.from_si(v):.6g}") for v in row] for row in value])
+        shown = [[float(f"{declared.meaning.scale.from_si(v):.6g}") for v in row] for row in value[:2]]
+        return str(shown) if len(value) <= 2 else f"{len(value)} rows from {shown[0]}"
     if np.ndim(value):
         return f"{np.shape(value)[-1]} values from {declared.meaning.with_unit(value.flat[0])}"
     return "not given" if np.isnan(value) else declared.meaning.with_unit(value)

@@ -397,6 +397,11 @@ class TestRefusals:
         assert names <= faults.keys(), faults
         assert any(words in faults[name] for name in names), faults
 
+    def test_property_a_list_of_another_length_is_named_with_those_it_goes_with(self):
+        faults = refused({**FOUR, "firing_order": [1, 3, 4]})
+        assert set(faults) == {"firing_order", "cylinder_positions"}
+        assert "firing_order 3, cylinder_positions 4)" in faults["firing_order"]
+
     def test_property_pins_alone_leave_two_turns(self):
         raw = {n: v for n, v in {**FOUR, "pin_angles": deg(0, 180, 180, 0)}.items() if n != "firing_order"}
         assert "firing_order" in refused(raw)["pin_angles"]

@@ -356,6 +356,13 @@ class TestRefusals:
     def test_property_bad_input_is_named(self, changes, name):
         assert name in refused({**loaded(cycle(300)), **changes})
 
+    def test_property_a_refusal_shows_the_first_row_of_a_long_table(self):
+        raw = {**loaded(cycle(300)), "force_2": "1 kN"}
+        raw["stress_of_force_2"] = {"value": [TENSION] * 150, "unit": "MPa/kN"}
+        with pytest.raises(InvalidInputs, match=r"stress_of_force_2 = 150 rows from \[") as refusal:
+            evaluate(FatigueLife, raw)
+        assert all(len(fault.detail) < 500 for fault in refusal.value.faults)
+
     def test_property_too_much_at_once_is_refused(self):
         rows = [TENSION] * 200
         assert "force_1" in refused(loaded(np.zeros((30, 72)), rows))
