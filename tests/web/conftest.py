@@ -75,14 +75,24 @@ def plotted():
     """Plotly draws the plots of the page `watched`, as it does in every slow test."""
 
 
-@pytest.fixture
-def watched(browser, served, request):
-    """A page of a fresh visitor, on a wide screen."""
+@pytest.fixture(scope="session")
+def wide(browser):
+    """A wide screen, whose scripts the browser fetches and compiles once."""
     context = browser.new_context(viewport={"width": 1440, "height": 900}, accept_downloads=True)
-    is_slow = request.node.get_closest_marker("slow") is not None
     context.set_default_timeout(patient(30_000))
-    yield Watched(context.new_page(), served.url, is_slow or "plotted" in request.fixturenames)
-    context.close()
+    return context
+
+
+@pytest.fixture
+def watched(wide, served, request):
+    """A page of a fresh visitor, on a wide screen."""
+    is_slow = request.node.get_closest_marker("slow") is not None
+    page = wide.new_page()
+    forget = wide.new_cdp_session(page).send
+    forget("Storage.clearDataForOrigin", {"origin": served.url, "storageTypes": "all"})
+    yield Watched(page, served.url, is_slow or "plotted" in request.fixturenames)
+    for one in wide.pages:
+        one.close()
 
 
 @pytest.fixture
