@@ -12,6 +12,7 @@ from benchmarks.film_cycle_duties import (
     LOADS,
     MARCH,
     OTHER_SEED,
+    OUTPUTS,
     SEED,
     WIDTHS,
     band,
@@ -83,23 +84,23 @@ class TestFile:
                 assert good >= HOLDS * FRESH, (level, output)
                 assert None not in np.ravel(stated["cases"][kind][level][output]), (level, output)
 
-    def test_property_every_bound_of_holes_in_the_sleeve_holds_or_is_withdrawn(self):
+    @pytest.mark.parametrize("kind", ["sleeve_hole", "pin_hole"])
+    def test_property_holes_are_bounded_where_59_duties_and_the_fresh_ones_support_it(self, kind):
+        """None of these starved, so nothing else makes a bound null."""
         stated = json.loads(FILE.read_text(encoding="utf-8"))
-        assert all(count >= 59 for count in stated["duties"]["sleeve_hole"].values())
-        counts = stated["held_with_another_seed"]["sleeve_hole"]
-        assert counts.keys() == {"mobility_short", "mobility"}
-        for level, outputs in counts.items():
-            for output, (good, of) in outputs.items():
-                bounds = np.ravel(stated["cases"]["sleeve_hole"][level][output])
-                assert (None in bounds) == (good < HOLDS * of), (level, output)
-            assert outputs["minimum_film_thickness"][0] >= HOLDS * outputs["minimum_film_thickness"][1]
+        assert stated["cases"][kind].keys() == {"mobility_short", "mobility"}
+        for level, outputs in stated["cases"][kind].items():
+            counts = stated["held_with_another_seed"].get(kind, {}).get(level, {})
+            for output in OUTPUTS:
+                good, of = counts.get(output, (0, 0))
+                for (i, j), value in np.ndenumerate(np.array(outputs[output], dtype=object)):
+                    few = stated["duties"][kind].get(f"{i},{j}", 0) < 59
+                    assert (value is None) == (few or good < HOLDS * of), (level, output, i, j)
 
-    @pytest.mark.parametrize("kind", ["pin_hole"])
-    def test_property_too_few_duties_bound_nothing(self, kind):
+    def test_property_holes_in_the_sleeve_have_a_bound_of_their_film(self):
         stated = json.loads(FILE.read_text(encoding="utf-8"))
-        assert all(count < 59 for count in stated["duties"][kind].values())
-        values = [np.ravel(table) for level in stated["cases"][kind].values() for table in level.values()]
-        assert set(np.concatenate(values)) == {None}
+        for level, outputs in stated["cases"]["sleeve_hole"].items():
+            assert None not in np.ravel(outputs["minimum_film_thickness"]), level
 
     def test_property_the_record_is_small(self):
         assert KEPT.stat().st_size < 1e6
