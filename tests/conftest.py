@@ -18,7 +18,14 @@ import forked  # noqa: E402
 import pytest  # noqa: E402
 from components import cluster, object_store, own_postgres, postgres, s3  # noqa: E402, F401 - for all folders
 from hypothesis import settings  # noqa: E402
-from lanes import group_of, left_out, name_group, rank, require_distinct  # noqa: E402
+from lanes import (  # noqa: E402
+    group_of,
+    left_out,
+    name_group,
+    rank,
+    require_distinct,
+    require_equal_everywhere,
+)
 from one_analysis import share_one_analysis  # noqa: E402
 from patience import BUDGET, FACTOR, SLOW_TEST, TEST  # noqa: E402
 from seeds import CHOSEN, SEED, examples  # noqa: E402
@@ -75,6 +82,7 @@ def pytest_collection_modifyitems(config, items):
             item.add_marker(pytest.mark.timeout(SLOW_TEST))
     if getattr(config.option, "loadgroup", False):
         require_distinct(items)
+        require_equal_everywhere(items)
     items.sort(key=lambda item: rank(group_of(item)))
 
 

@@ -5,6 +5,7 @@ longest come first, so that both workers end at about the same time. The order i
 a wrong order costs some balance and nothing else.
 """
 
+import re
 from collections import Counter, defaultdict
 
 import pytest
@@ -26,6 +27,8 @@ TOGETHER = {
     "tests/cad/test_step.py": MODELS,
 }
 """Files that share a worker with others."""
+
+SET = re.compile(r"\{'[^':{}]*'(?:, '[^':{}]*')+\}")
 
 LONGEST = (PAGES, SERVED, TEAM, MODELS, "tests/templates/test_catalogue_properties.py")
 """Groups that begin first, the longest in front."""
@@ -63,6 +66,12 @@ def require_distinct(items):
     shared = [id for id, count in Counter(item.nodeid for item in items).items() if count > 1]
     if shared:
         raise pytest.UsageError(f"{len(shared)} ids belong to several tests: {', '.join(shared[:3])}")
+
+
+def require_equal_everywhere(items):
+    """Refuse ids with the text of a set: each worker writes it in its own order, and then none begins."""
+    if named := [item.nodeid for item in items if SET.search(item.nodeid)]:
+        raise pytest.UsageError(f"{len(named)} ids have the text of a set: {', '.join(named[:3])}")
 
 
 def left_out(items):

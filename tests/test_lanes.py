@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import patience
 import pytest
-from lanes import MODELS, PAGES, SERVED, TOGETHER, group_of, rank, unsampled
+from lanes import MODELS, PAGES, SERVED, TOGETHER, group_of, rank, require_equal_everywhere, unsampled
 from patience import until
 
 from benchmarks.mutation.related import changed
@@ -45,6 +45,14 @@ def test_files_that_share_a_worker_exist():
 @pytest.mark.skipif("PYTEST_XDIST_WORKER" not in os.environ, reason="needs pytest-xdist: pytest -n 2")
 def test_the_scheduler_reads_the_group(request):
     assert request.node.nodeid.endswith("@tests/test_mutation.py")
+
+
+def test_an_id_that_differs_from_worker_to_worker_is_refused_by_name():
+    ids = ["a[{'x': '1', 'y': {'z'}}]", "b[{'x'}-2]", "c[{'x', 'y'}-2]"]
+    items = [SimpleNamespace(nodeid=id) for id in ids]
+    require_equal_everywhere(items[:2])
+    with pytest.raises(pytest.UsageError, match=r"^1 ids have the text of a set: c"):
+        require_equal_everywhere(items)
 
 
 def test_servers_begin_first():
