@@ -97,16 +97,21 @@ def summarise(
 
 def bounding_box(bodies: Iterable[Body]) -> Box:
     """The box of all bodies where they stand [mm], as close as the kernel finds it."""
-    faces = [face.moved(place) for body in bodies for face in body.shape.Faces() for place in body.places]
+    faces = [
+        face.wrapped.Moved(place.wrapped)  # the kernel's own, for CadQuery's asks the types of its arguments
+        for body in bodies
+        for face in body.shape.Faces()
+        for place in body.places
+    ]
     loose = [Bnd_Box() for _ in faces]
     for face, around in zip(faces, loose, strict=True):
-        BRepBndLib.Add_s(face.wrapped, around, False)
+        BRepBndLib.Add_s(face, around, False)
     extents = [around.SquareExtent() for around in loose]
     whole, room = Bnd_Box(), Bnd_Box()
     # The close box of a torus takes 10 ms, its loose one 10 µs: find it only where it can matter.
     for n in sorted(range(len(faces)), key=extents.__getitem__, reverse=True):
         if room.IsVoid() or room.IsOut(loose[n].CornerMin()) or room.IsOut(loose[n].CornerMax()):
-            BRepBndLib.AddOptimal_s(faces[n].wrapped, close := Bnd_Box(), False, False)
+            BRepBndLib.AddOptimal_s(faces[n], close := Bnd_Box(), False, False)
             whole.Add(close)
             room = _widened(whole)
     low, high = ((c.X(), c.Y(), c.Z()) for c in (whole.CornerMin(), whole.CornerMax()))

@@ -20,6 +20,7 @@ from OCP.TCollection import TCollection_ExtendedString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_Label, TDF_LabelSequence
 from OCP.TDocStd import TDocStd_Document
+from OCP.TopLoc import TopLoc_Location
 from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from OCP.XSControl import XSControl_WorkSession
@@ -160,15 +161,15 @@ def _bodies(document: TDocStd_Document) -> Iterator[Body]:
     names: dict[Shape, str] = {}
     places: dict[Shape, list[Location]] = {}
     for root in roots:
-        for label, place in _instances(root, Location()):
+        for label, place in _instances(root, TopLoc_Location()):
             shape = Shape.cast(XCAFDoc_ShapeTool.GetShape_s(label))
             names[shape] = _name(label)
-            places.setdefault(shape, []).append(place)
+            places.setdefault(shape, []).append(Location(place))
     for shape, name in names.items():
         yield Body(name, shape, _colour(colours, shape), tuple(places[shape]))
 
 
-def _instances(label: TDF_Label, place: Location) -> Iterator[tuple[TDF_Label, Location]]:
+def _instances(label: TDF_Label, place: TopLoc_Location) -> Iterator[tuple[TDF_Label, TopLoc_Location]]:
     """The products below a label that are not assemblies, each time that they are used."""
     components = TDF_LabelSequence()
     if not XCAFDoc_ShapeTool.GetComponents_s(label, components):
@@ -177,7 +178,7 @@ def _instances(label: TDF_Label, place: Location) -> Iterator[tuple[TDF_Label, L
     for component in components:
         product = TDF_Label()
         XCAFDoc_ShapeTool.GetReferredShape_s(component, product)
-        yield from _instances(product, place * Location(XCAFDoc_ShapeTool.GetLocation_s(component)))
+        yield from _instances(product, place * XCAFDoc_ShapeTool.GetLocation_s(component))
 
 
 def _name(label: TDF_Label) -> str:

@@ -27,7 +27,7 @@ _NAMELESS = re.compile(r"(SHAPE_DIMENSION_REPRESENTATION\(|CYLINDRICITY_TOLERANC
 _DEVIATION = re.compile(r"(= MEASURE_WITH_UNIT\()(?:-(?=0\.,))?(-?[0-9.][0-9.E+-]*),")
 _POINT = re.compile(r"^#\d+ = CARTESIAN_POINT\([^;]*;", re.MULTILINE)
 _NOISE = re.compile(r"-?\d+\.\d*E-(?:1[3-9]|[2-9]\d|\d{3})(?=[,)])")
-_NUMBER = re.compile(r"^#(\d+) = ", re.MULTILINE)
+_NUMBER = re.compile(r"#(\d+) = ")
 _PRODUCT = re.compile(r"ADVANCED_BREP_SHAPE_REPRESENTATION\('[^']*',\(([^)]*)\),(#\d+)\)")
 _SOLID = re.compile(r"^(#\d+) = (?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\(", re.MULTILINE)
 
@@ -50,7 +50,7 @@ def finished(
     body, end, rest = data.rpartition("ENDSEC;")
     body += _styles(body, colours)
     if properties:
-        first = int(_NUMBER.findall(body)[-1]) + 1
+        first = _last_number(body) + 1
         attributes = {"model": header.title, "build": header.build, **header.parameters}
         lines = entities(body, first, header.model, attributes, properties)
         body = _annotated(body, names) + "".join(f"{line}\n" for line in lines)
@@ -86,7 +86,7 @@ def _annotated(data: str, names: Sequence[str]) -> str:
 
 def _styles(data: str, colours: Iterable[Colour]) -> str:
     """Entities that colour the solids of the data section, product by product."""
-    first = int(_NUMBER.findall(data)[-1]) + 1
+    first = _last_number(data) + 1
     solids = set(_SOLID.findall(data))
     lines: list[str] = []
     for product, colour in zip(_PRODUCT.finditer(data), colours, strict=True):
@@ -94,6 +94,14 @@ def _styles(data: str, colours: Iterable[Colour]) -> str:
             if item in solids:
                 lines += _style(first + len(lines), item, product[2], colour)
     return "".join(f"{line}\n" for line in lines)
+
+
+def _last_number(data: str) -> int:
+    """The number of the last entity of a data section; found from its end, for the section is long."""
+    place = data.rfind("\n#")
+    while (last := _NUMBER.match(data, place + 1)) is None:
+        place = data.rindex("\n#", 0, place)
+    return int(last[1])
 
 
 def _style(n: int, solid: str, context: str, colour: Colour) -> Iterator[str]:

@@ -30,11 +30,27 @@ from templates.core.language.template import Template
 from templates.core.paper.verdicts import Check, checks
 
 
-def worksheet(revision: Revision, catalogue: Catalogue[Template], system: System) -> RevisionWorksheet:
-    """A revision with `formulas`, from the inputs and at the level that its job used."""
+def worksheet(
+    revision: Revision,
+    catalogue: Catalogue[Template],
+    system: System,
+    *,
+    only: str | None = None,
+    has_formulas: bool = True,
+) -> RevisionWorksheet:
+    """A revision with `formulas`, from the inputs and at the level that its job used.
+
+    With `only` it has no other step than this one; without formulas none is written out.
+
+    Raises
+    ------
+    KeyError
+        If the revision has no such step.
+    """
+    chosen = revision.steps if only is None else {only: revision.steps[only]}
     steps = {
-        name: _with_formulas(step, _written_out(step, catalogue, system), system)
-        for name, step in revision.steps.items()
+        name: _with_formulas(step, _written_out(step, catalogue, system) if has_formulas else [], system)
+        for name, step in chosen.items()
     }
     models = {name: model.in_units(system) for name, model in revision.models.items()}
     fields = {name: getattr(revision, name) for name in revision.model_fields_set}

@@ -65,11 +65,26 @@ class Reports:
             row = repository.head(session, id) if number is None else repository.revision(session, id, number)
             return row.number
 
-    def worksheet(self, id: str, number: int, system: System) -> schemas.RevisionWorksheet:
-        """A revision with its formulas written out."""
+    def worksheet(
+        self,
+        id: str,
+        number: int,
+        system: System,
+        only: str | None = None,
+        has_formulas: bool = True,
+    ) -> schemas.RevisionWorksheet:
+        """A revision with its formulas written out, or without them; with `only`, that step alone.
+
+        Raises
+        ------
+        NotFound
+            If there is no such revision, or no such step in it.
+        """
         with self.database.read() as session:
             revision = views.revision(session, repository.revision(session, id, number))
-        return worksheet(revision, self.catalogues.templates, system)
+        if only is not None and only not in revision.steps:
+            raise NotFound(f"revision {number} has no step {only[:80]!r}")
+        return worksheet(revision, self.catalogues.templates, system, only=only, has_formulas=has_formulas)
 
     def request_pictures(self, id: str, number: int, client: str = "") -> list[str]:
         """The jobs that make what a report shows of every built model; none if all is there."""

@@ -18,6 +18,7 @@ import typst
 
 from app.plain import Json, JsonObject
 from app.presentation.bidi import bare_everywhere
+from app.reports.widths import CELL, LINE, fits
 
 PICTURE, DRAWING = "png", "drawing.svg"  # kinds of files that a report shows of a model
 PAINTED = "painted "  # before the name of a field, whose picture is a PNG too
@@ -30,7 +31,9 @@ DOCUMENT = Path(__file__).with_name("report.typ")
 
 def typeset(report: Mapping[str, Json], pictures: Pictures) -> bytes:
     """A report as PDF; equal reports give equal bytes."""
-    shown = {**report, "models": _illustrated(report["models"], pictures)}
+    steps = [_bounded(step) for step in report["steps"]]
+    models = [{**part, "rules": _rules(part["rules"])} for part in report["models"]]
+    shown = {**report, "steps": steps, "models": _illustrated(models, pictures)}
     if variants := report.get("variants"):
         shown["variants"] = {**variants, "solids": _illustrated(variants["solids"], pictures)}
     data = json.dumps(bare_everywhere(shown), ensure_ascii=True).encode()
@@ -39,6 +42,31 @@ def typeset(report: Mapping[str, Json], pictures: Pictures) -> bytes:
     pdf = typst.compile(files, format="pdf", timestamp=date)
     assert isinstance(pdf, bytes), "one document makes one file"
     return pdf
+
+
+def _bounded(step: JsonObject) -> JsonObject:
+    """A step that says of each formula whether it fits its place for sure, so that it is not measured."""
+    return {
+        **step,
+        "formulas": [
+            {**row, "fits": fits((row["lead"], row["numbers"], row["result"]), LINE)}
+            for row in step["formulas"]
+        ],
+        "inputs": [{**one, "fits": fits([one["relation"]], CELL)} for one in step["inputs"]],
+        "ranges": _rules(step["ranges"]),
+        "rules": _rules(step["rules"]),
+    }
+
+
+def _rules(rules: Sequence[JsonObject]) -> list[JsonObject]:
+    return [
+        {
+            **rule,
+            "demand-fits": fits([rule["demand"]], CELL),
+            "numbers-fit": fits([rule["numbers"]], CELL),
+        }
+        for rule in rules
+    ]
 
 
 def _illustrated(parts: Sequence[JsonObject], pictures: Pictures) -> list[JsonObject]:

@@ -15,6 +15,7 @@ from app.schemas.designs import (
     Design,
     ModelMeasurements,
     Preview,
+    Proposal,
     Proposals,
     RevisionList,
     RevisionWorksheet,
@@ -47,12 +48,19 @@ from app.web.limits import library
 from app.web.model_page import finished_analyses
 from app.web.names import names_json, values_of
 from app.web.rendering import show, units_of
-from app.web.sections import sections
+from app.web.sections import (
+    MOST_IN_FULL,
+    asked_step,
+    banner_of,
+    sections,
+    steps_in_full,
+    variants_start,
+)
 from app.web.study_page import studies_of
 from app.web.tolerances_page import toleranced
 from app.web.upgrades import upgrades_of
 from app.web.variants import RefusedTable, variants_table
-from app.web.verdict import banner, opened, with_keys
+from app.web.verdict import Banner, banner, opened, with_keys
 from cad.export import MEDIA_TYPES
 
 UNFINISHED = ("queued", "running")
@@ -76,10 +84,10 @@ async def design_page(
 ) -> Response:
     """The newest revision in a form; or a form that was refused, with what was typed and what is wrong."""
     design = await api.get(f"/designs/{id}", Design)
-    revision, preview, parameters, steps, parts, models = await _form(request, api, design, refusal)
+    revision, preview, parameters, steps, parts, models, verdict, in_full = await _form(
+        request, api, design, refusal
+    )
     faults, wrong = refusal.faults, errors_of(refusal.part, refusal.faults)
-    has_criteria = bool(design.criteria) or any(step.template.criteria for step in steps)
-    verdict = banner(revision, has_criteria=has_criteria)
     measured = await api.get(
         f"/designs/{id}/measurements", dict[str, ModelMeasurements], units=units_of(request)
     )
@@ -94,14 +102,19 @@ async def design_page(
         parameters=parameters,
         steps=steps,
         sections=sections(
-            steps, verdict, None if variants.count else opened([s.name for s in steps], verdict)
+            steps,
+            verdict,
+            asked_step(request, design.steps)
+            or (None if variants.count else opened(list(design.steps), verdict)),
+            base=f"/designs/{id}",
+            in_full=in_full,
         ),
         models=parts,
         measured=measured,
         analyses=await _analyses(request, api, measured, models),
         painted_fields=await _fields_of_solids(api, id, measured),
         revisions=await api.get(f"/designs/{id}/revisions", RevisionList, limit=20),
-        proposals=(await api.post(f"/designs/{id}/auto-map", Proposals)).proposals,
+        proposals=await _proposals(api, design),
         job=await _job(api, design),
         studies=await studies_of(api, id),
         kinds=list(MEDIA_TYPES),
@@ -109,6 +122,7 @@ async def design_page(
         refused=bool(faults) or table is not None,
         notice=notice,
         verdict=verdict,
+        verdict_banner=banner_of(verdict, id),
         can_decide=_has_route(request, DECIDE),
         toleranced=toleranced(design),
         base=f"/api/v1/designs/{id}",
@@ -124,42 +138,79 @@ async def design_page(
         picture=drawing(network),
         upgrades=await upgrades_of(api, {step.name: step.template for step in steps}),
         variants=variants,
+        variants_start="" if variants.count or variants.is_refused else variants_start(design, variants),
         approval=await approval_of(api, id, design.revision),
         comments=await comments_of(api, id, None, ON_DESIGN),
         chosen=await chosen_variant(request, api, design, steps),
-        names=names_json(network, values_of(revision, preview, measured)),
+        names="" if in_full is not None else names_json(network, values_of(revision, preview, measured)),
     )
 
 
 class Form(NamedTuple):
-    """A design as it is calculated, with the fields of its form; `models` are described by name."""
+    """A design as it is calculated, with the fields of its form; `models` are described by name.
+
+    `in_full` are the steps of a long design that have fields and formulas here; None where all have.
+    """
 
     revision: RevisionWorksheet
-    preview: Preview
+    preview: Preview | None
     parameters: list[sheet.Field]
     steps: list[StepBlock]
     parts: list[ModelBlock]
     models: dict[str, Model]
+    verdict: Banner
+    in_full: set[str] | None
 
 
 async def _form(request: Request, api: Api, design: Design, refusal: Refusal) -> Form:
     id, within = design.id, 0 if design.state == "regenerating" else QUICK
-    revision = await _revision(request, api, id, design.revision, within=within)
+    is_long = len(design.steps) > MOST_IN_FULL
+    revision = await _revision(request, api, id, design.revision, within=within, formulas=not is_long)
     templates, models = await _templates(api, _steps_of_design(design)), await _models(api, design)
     has_parameters = bool(design.parameters)  # only with the worksheet a preview has their values
     query: dict[str, Scalar] = {"worksheet": has_parameters, "units": units_of(request), "within": within}
-    preview = await api.post(f"/designs/{id}/preview", Preview, {}, **query)
+    has_values = has_parameters or bool(design.models)  # the page shows nothing else of a preview
+    preview = await api.post(f"/designs/{id}/preview", Preview, {}, **query) if has_values else None
     before = await _revision(request, api, id, design.revision - 1, within=0) if design.revision > 1 else None
     computed = {name: step.outputs for name, step in design.steps.items()}
     tables = await library(api) if templates else []
-    steps = [with_fields(block, design, refusal, tables) for block in steps_of(revision, templates, computed)]
+    has_criteria = bool(design.criteria) or any(template.criteria for template in templates.values())
+    verdict = banner(revision, has_criteria=has_criteria)
+    in_full = steps_in_full(request, design.steps, refusal, verdict) if is_long else None
+    for name in in_full or ():
+        written = await _revision(request, api, id, design.revision, within=within, step=name)
+        revision.steps[name] = written.steps[name]
+    steps = [
+        with_fields(block, design, refusal, tables) if in_full is None or block.name in in_full else block
+        for block in steps_of(revision, templates, computed)
+    ]
     parts = [
-        with_changes(block, design, refusal, before, preview.model_parameters)
+        with_changes(block, design, refusal, before, preview.model_parameters if preview else {})
         for block in models_of(revision, models)
     ]
     typed, faults = refusal.typed, refusal.faults
-    parameters = sheet.of_parameters(design.parameters, preview.parameters or {}, typed, faults)
-    return Form(revision, preview, parameters, with_keys(steps, revision, design), parts, models)
+    values = (preview.parameters if preview else None) or {}
+    parameters = sheet.of_parameters(design.parameters, values, typed, faults)
+    steps = with_keys(steps, revision, design)
+    return Form(revision, preview, parameters, steps, parts, models, verdict, in_full)
+
+
+async def step_section(request: Request, api: Api, id: str, name: str) -> Response:
+    """The section of one step, unfolded, for the page of a long design; its script fetches it.
+
+    Raises
+    ------
+    Refused
+        If there is no such design, or no such step in it.
+    """
+    design = await api.get(f"/designs/{id}", Design)
+    revision = await _revision(request, api, id, design.revision, within=QUICK, step=name)
+    templates = await _templates(api, {name: _steps_of_design(design)[name]})
+    blocks = steps_of(revision, templates, {name: design.steps[name].outputs})
+    tables = await library(api)
+    steps = with_keys([with_fields(block, design, NO_REFUSAL, tables) for block in blocks], revision, design)
+    (section,) = sections(steps, banner(revision), name, in_full={name})
+    return show(request, "section.html", section=section)
 
 
 async def revision_page(
@@ -257,6 +308,13 @@ async def _fields_of_solids(
             path = f"/designs/{id}/revisions/{part.revision}/models/{name}/fields"
             fields[name] = (await api.get(path, SolidFieldList)).items
     return fields
+
+
+async def _proposals(api: Api, design: Design) -> list[Proposal]:
+    """Relations for parameters of models that are not set; none without a model."""
+    if not design.models:
+        return []
+    return (await api.post(f"/designs/{design.id}/auto-map", Proposals)).proposals
 
 
 def _loose(

@@ -16,10 +16,10 @@ def names_json(network: DesignNetwork, values: Mapping[str, str]) -> str:
 
 
 def values_of(
-    revision: RevisionWorksheet, preview: Preview, measured: Mapping[str, ModelMeasurements]
+    revision: RevisionWorksheet, preview: Preview | None, measured: Mapping[str, ModelMeasurements]
 ) -> dict[str, str]:
     """The values of parameters, inputs, outputs and measures as texts; no text where none is calculated."""
-    quantities: dict[str, object] = dict(preview.parameters or {})
+    quantities: dict[str, object] = dict((preview.parameters if preview else None) or {})
     for block, step in revision.steps.items():
         quantities |= {f"{block}.{name}": value for name, value in {**step.inputs, **step.outputs}.items()}
     for block, model in revision.models.items():

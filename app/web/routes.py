@@ -17,7 +17,7 @@ from app.schemas.templates import TemplateList, TemplateVersions
 from app.web import plotly
 from app.web.api import Api, Refused, TheApi
 from app.web.compare_page import Asked, compare_page
-from app.web.design_page import design_page, revision_page
+from app.web.design_page import design_page, revision_page, step_section
 from app.web.gallery import offered
 from app.web.model_page import model_page
 from app.web.new_step import beside, new_step, step_page
@@ -158,6 +158,12 @@ async def another_step(id: Id, request: Request, api: TheApi) -> Response:
 async def design(id: Id, request: Request, api: TheApi) -> Response:
     """A design at its newest revision, to be changed; only to be read while its template is quarantined."""
     return await _or_stored(request, api, id, None, design_page(request, api, id))
+
+
+@router.get("/designs/{id}/step")
+async def step(id: Id, request: Request, api: TheApi, name: Text = "") -> Response:
+    """One step of the newest revision of a design; the page of a long design fetches it when it is opened."""
+    return await step_section(request, api, id, name)
 
 
 @router.get("/designs/{id}/revisions/{number}")

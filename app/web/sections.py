@@ -5,43 +5,106 @@ A step takes a page some milliseconds, and a design may have sixty. After a chan
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from hashlib import sha256
 
 from cachetools import LRUCache
+from fastapi import Request
 from markupsafe import Markup
 
 from app.presentation.criteria import Line
-from app.web.blocks import StepBlock
+from app.schemas.designs import Design
+from app.web.blocks import Refusal, StepBlock
 from app.web.rendering import jinja
-from app.web.verdict import Banner
+from app.web.variants import VariantsTable
+from app.web.verdict import Banner, opened
 
 KEPT = 16 * 2**20  # characters of sections
 _kept: LRUCache[bytes, Markup] = LRUCache(KEPT, getsizeof=len)
 """Sections by all that they show. Pages are written in the event loop alone, so nothing locks."""
+_kept_beside: LRUCache[bytes, Markup] = LRUCache(KEPT // 4, getsizeof=len)
+"""Other large parts of the page of a design."""
 
 
-def sections(steps: Sequence[StepBlock], verdict: Banner, opened: str | None) -> Iterator[Markup]:
-    """The section of every step; that of `opened` is unfolded."""
+MOST_IN_FULL = 12
+"""Steps of a design whose page has the inputs and results of each; of a longer one, those of a few."""
+
+
+def asked_step(request: Request, steps: Collection[str]) -> str | None:
+    """The step that the address names, if the design has it."""
+    name = request.query_params.get("step", "")
+    return name if name in steps else None
+
+
+def steps_in_full(request: Request, steps: Collection[str], refusal: Refusal, verdict: Banner) -> set[str]:
+    """The steps that a long design's page has in full: the one asked for, those of a refused form."""
+    first = asked_step(request, steps) or opened(list(steps), verdict)
+    typed = {name.partition("@" if "@" in name else ".")[0] for name in (*refusal.typed, *refusal.faults)}
+    return {name for name in steps if name == first or name in typed}
+
+
+def sections(
+    steps: Sequence[StepBlock],
+    verdict: Banner,
+    opened: str | None,
+    *,
+    base: str = "",
+    in_full: Collection[str] | None = None,
+) -> Iterator[Markup]:
+    """The section of every step; that of `opened` is unfolded.
+
+    With `in_full` all others have their fold line and the address of the rest, below that of the design,
+    `base`.
+    """
+    worst = verdict.worst_by_step()
     for step in steps:
-        is_open = step.name == opened or step.has_faults
-        yield _section(step, verdict.of_step(step.name), is_open, len(steps) == 1)
+        if in_full is not None and step.name not in in_full:
+            yield _fold_line(step, worst.get(step.name), base)
+        else:
+            is_open = step.name == opened or step.has_faults
+            yield _section(step, worst.get(step.name), is_open, len(steps) == 1 and in_full is None)
+
+
+def banner_of(verdict: Banner, design: str) -> Markup:
+    """The verdict on top of the page of a design: a long one has hundreds of criteria."""
+    return _written(_kept_beside, "verdict.html", "banner", (verdict, design), verdict, design)
+
+
+def variants_start(design: Design, variants: VariantsTable) -> Markup:
+    """The table in which the first variants of a design are typed: it has a column for each input."""
+    shown = (design.id, design.revision, variants)
+    return _written(_kept_beside, "variants.html", "start", shown, design, variants)
+
+
+def _fold_line(step: StepBlock, worst: Line | None, base: str) -> Markup:
+    template, outputs = step.template, step.result.outputs
+    keys = [outputs[name].model_dump_json() for name in step.keys]
+    shown = (base, step.name, template.id, template.version, template.digest, step.keys, keys, worst)
+    return _written(_kept, "step.html", "fold_line", shown, step, worst, base)
 
 
 def _section(step: StepBlock, worst: Line | None, is_open: bool, is_only: bool) -> Markup:
-    key = _key(step, worst, is_open, is_only)
-    html = _kept.get(key)
+    shown = _shown(step, worst, is_open, is_only)
+    return _written(_kept, "step.html", "section", shown, step, worst, is_open, is_only)
+
+
+def _written(
+    kept: LRUCache[bytes, Markup], page: str, macro: str, shown: object, *arguments: object
+) -> Markup:
+    """What a macro writes, or has written before for all that it shows."""
+    key = sha256(repr((macro, shown)).encode("utf-8", "surrogatepass")).digest()
+    html = kept.get(key)
     if html is None:
-        html = Markup(jinja.get_template("step.html").module.section(step, worst, is_open, is_only))  # type: ignore[attr-defined]
-        if len(html) <= KEPT:
-            _kept[key] = html
+        html = Markup(getattr(jinja.get_template(page).module, macro)(*arguments))
+        if len(html) <= kept.maxsize:
+            kept[key] = html
     return html
 
 
-def _key(step: StepBlock, worst: Line | None, is_open: bool, is_only: bool) -> bytes:
-    """A digest of all that a section shows; the code of the template stands for what it declares."""
+def _shown(step: StepBlock, worst: Line | None, is_open: bool, is_only: bool) -> tuple[object, ...]:
+    """All that a section shows; the code of the template stands for what it declares."""
     template = step.template
-    shown = (
+    return (
         step.name,
         (template.id, template.version, template.digest, template.withdrawn),
         step.result.model_dump_json(),
@@ -50,4 +113,3 @@ def _key(step: StepBlock, worst: Line | None, is_open: bool, is_only: bool) -> b
         (step.fields, step.options, step.limits, step.keys),
         (worst, is_open, is_only),
     )
-    return sha256(repr(shown).encode("utf-8", "surrogatepass")).digest()

@@ -37,9 +37,9 @@ class Banner:
         """Whether an exacter calculation might decide."""
         return any(line.verdict == "undecided" for line in self.lines)
 
-    def of_step(self, step: str) -> Line | None:
-        """The worst criterion of a step."""
-        return next((line for line in self.lines if line.step == step), None)
+    def worst_by_step(self) -> dict[str, Line]:
+        """The worst criterion of each step that has any."""
+        return {line.step: line for line in reversed(self.lines)}
 
 
 def banner(revision: RevisionWorksheet, *, has_criteria: bool = True) -> Banner:

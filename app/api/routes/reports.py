@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from itertools import chain
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Header, Request, Response
+from fastapi import APIRouter, Depends, Header, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.attachments import named
@@ -183,6 +183,8 @@ async def show_worksheet(
     units: Units = "si",
     within: Within = None,
     accept: Accept = None,
+    step: Annotated[str | None, Query(max_length=200, description="this step alone")] = None,
+    formulas: Annotated[bool, Query(description="write out the formulas of the steps")] = True,
 ) -> Response:
     """Inputs and outputs of a revision, the newest if none is named.
 
@@ -191,10 +193,11 @@ async def show_worksheet(
     """
     wanted = _wanted("worksheet", kind, accept, TABLES)
     revision = await run_in_threadpool(reports.number, id, number)
+    asked = (id, revision, units, step, formulas)
     if within is None:
-        worksheet = await threads.run_for(request, reports.worksheet, id, revision, units)
+        worksheet = await threads.run_for(request, reports.worksheet, *asked)
     else:
-        worksheet = await threads.run_within(within, request, reports.worksheet, id, revision, units)
+        worksheet = await threads.run_within(within, request, reports.worksheet, *asked)
     headers = {"Vary": "Accept", "Design-Revision": str(revision)}
     if wanted == "json":
         return written(worksheet, headers=headers)

@@ -69,7 +69,7 @@ export function startCompletion(form, names) {
     });
   }
 
-  for (const input of [...form.elements].filter((one) => names.takes(one))) {
+  function watch(input) {
     for (const [name, value] of Object.entries(attributes(input, list.id))) input.setAttribute(name, value);
     input.addEventListener("input", () => isInserting || open(input));
     input.addEventListener("blur", close);
@@ -93,6 +93,10 @@ export function startCompletion(form, names) {
     const line = event.target.closest("[role=option]");
     if (line) take([...list.children].indexOf(line));
   });
+
+  const watchAll = (fields) => [...fields].filter((one) => names.takes(one)).forEach(watch);
+  watchAll(form.elements);
+  return watchAll; // for fields that come later
 }
 
 // A field of one line is a combobox; a text of many lines may not be called so, and does not expand.

@@ -6,6 +6,7 @@ import { startCompletion } from "./completion.js";
 import { Draft } from "./draft.js";
 import { startDrives } from "./drives.js";
 import { isolated } from "./isolated.js";
+import { startLater } from "./later.js";
 import { startLists } from "./lists.js";
 import { live } from "./live.js";
 import { Names } from "./names.js";
@@ -26,7 +27,9 @@ startLists();
 const form = document.getElementById("sheet");
 const { design: id, revision } = form.dataset;
 const api = `/api/v1/designs/${id}`;
-const names = new Names(JSON.parse(document.querySelector("[data-names]").value));
+const namesHere = document.querySelector("[data-names]").value; // a long design has them fetched
+const names = new Names(JSON.parse(namesHere || "[]"));
+const watches = []; // of fields: each takes those that come later
 const draft = new Draft(form, JSON.parse(form.querySelector("[name=was]").value));
 const models = new Set([...document.querySelectorAll("[data-model]")].map((part) => part.dataset.model));
 const state = form.querySelector("[data-state]");
@@ -205,12 +208,34 @@ function conflict() {
   trouble.append(again);
 }
 
+// A step that has come into the page: its fields as typed, its results as they are by now.
+function adopt(fold) {
+  const step = fold.dataset.fold, answer = steps[step];
+  startLists(fold);
+  for (const watch of watches) watch(fold.querySelectorAll("input, select"));
+  draft.fill();
+  if (draft.isChanged()) showDraft();
+  if (!answer || answer.state === "pending") return;
+  showResults(step, answer);
+  showValues(form, step, answer);
+  drawPictures(fold, step, answer);
+}
+
+async function fetchNames() {
+  try {
+    names.fill((await call("GET", `${api}/network`)).payload.names);
+  } catch (error) {
+    tell(`Names for relations are missing: ${error.message}`);
+  }
+}
+
 async function start() {
   startVerdict(form);
   startDecide(api, patch);
   startTolerances(api, patch);
-  startPicker(form, names);
-  startCompletion(form, names);
+  startLater(form, adopt);
+  if (!namesHere) await fetchNames();
+  watches.push(startPicker(form, names), startCompletion(form, names));
   startDrives();
   const from = draft.restore();
   if (from !== null) showDraft();

@@ -5,6 +5,7 @@ export class Draft {
   constructor(form, was, { of = form.dataset.design, revision = form.dataset.revision } = {}) {
     Object.assign(this, { form, was, prefix: `draft:${of}:` });
     this.key = this.prefix + revision;
+    this.waiting = {}; // what was typed into fields that the page fetches later
   }
 
   fields() {
@@ -13,7 +14,8 @@ export class Draft {
 
   changed() {
     const differs = (field) => field.value.trim() !== (this.was[field.name] ?? "").trim();
-    return Object.fromEntries(this.fields().filter(differs).map((field) => [field.name, field.value]));
+    const here = this.fields().filter(differs).map((field) => [field.name, field.value]);
+    return { ...this.waiting, ...Object.fromEntries(here) };
   }
 
   isChanged() {
@@ -35,17 +37,24 @@ export class Draft {
     const keys = Object.keys(sessionStorage).filter((key) => key.startsWith(this.prefix)).sort(byRevision);
     const key = keys.at(-1);
     if (!key) return null;
-    const kept = JSON.parse(sessionStorage.getItem(key));
-    for (const field of this.fields().filter(({ name }) => Object.hasOwn(kept, name))) {
-      field.value = kept[field.name];
-      reveal(field);
-    }
+    this.waiting = JSON.parse(sessionStorage.getItem(key));
+    this.fill();
     for (const old of keys) if (old !== this.key) sessionStorage.removeItem(old);
     return key.slice(this.prefix.length);
   }
 
+  // Put what waits for its field into the fields that are there by now.
+  fill() {
+    for (const field of this.fields().filter(({ name }) => Object.hasOwn(this.waiting, name))) {
+      field.value = this.waiting[field.name];
+      delete this.waiting[field.name];
+      reveal(field);
+    }
+  }
+
   forget() {
     sessionStorage.removeItem(this.key);
+    this.waiting = {};
   }
 }
 

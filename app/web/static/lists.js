@@ -2,9 +2,11 @@
 import { startItems } from "./items.js";
 import { startPasting } from "./pasting.js";
 
+let edit, paste; // of the page's two dialogs
+
 export function startLists(root = document) {
-  const edit = startItems(root.querySelector("[data-items-dialog]"));
-  const paste = startPasting(root.querySelector("[data-paste-dialog]"));
+  edit ??= startItems(document.querySelector("[data-items-dialog]"));
+  paste ??= startPasting(document.querySelector("[data-paste-dialog]"));
   const all = [...root.querySelectorAll("[data-list]")].map(listOf);
   for (const list of all) {
     list.tools.hidden = false;

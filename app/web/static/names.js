@@ -8,6 +8,10 @@ const FOLLOWS = new Set(["output", "measure"]);
 
 export class Names {
   constructor(list) {
+    this.fill(list);
+  }
+
+  fill(list) {
     this.list = list;
     this.byName = new Map(list.map((item) => [item.name, item]));
   }

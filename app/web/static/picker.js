@@ -58,7 +58,11 @@ export function startPicker(form, names) {
     const button = event.target.closest("[data-pick]");
     if (button) take(button.dataset.pick);
   });
-  for (const input of [...form.elements].filter((one) => names.takes(one))) addButton(input, () => open(input));
+  const watchAll = (fields) => {
+    for (const input of [...fields].filter((one) => names.takes(one))) addButton(input, () => open(input));
+  };
+  watchAll(form.elements);
+  return watchAll; // for fields that come later
 }
 
 function addButton(input, open) {

@@ -1,6 +1,7 @@
 // The verdict on top of the design page and in the fold lines of its steps, as pages/verdict.html writes them.
 import { WORDS, compared, error, margin, missing, remarks, share, stepOf, title } from "./criteria.js";
 import { isolated } from "./isolated.js";
+import { fetched, foldOf } from "./later.js";
 import { quantityText } from "./numbers.js";
 import { reveal } from "./reveal.js";
 
@@ -146,10 +147,13 @@ export function followLinks(criteria, form) {
   criteria.addEventListener("click", (event) => {
     const target = event.target.closest("[data-give], [data-reveal]");
     if (!target) return;
-    const leadsTo = target.dataset.give ? fieldOf(form, target.dataset.give) : document.getElementById(target.hash.slice(1));
-    if (!leadsTo) return;
+    const { give } = target.dataset;
+    const leadsTo = give ? fieldOf(form, give) : document.getElementById(target.hash.slice(1));
+    const fold = give && !leadsTo && foldOf(give.split(".")[0]);
+    if (!leadsTo && !fold) return;
     event.preventDefault();
-    goTo(leadsTo);
+    if (leadsTo) goTo(leadsTo);
+    else fetched(fold).then(() => goTo(fieldOf(form, give) ?? fold));
   });
 }
 

@@ -1,0 +1,115 @@
+"""Upper bounds of the widths of formulas on paper, so that the typesetter measures only what may be too wide.
+
+To see whether a formula fits its line, the typesetter sets it once to measure it and once to print it. A
+bound needs no setting: every sign counts with at least the widest advance of its sort in New Computer Modern
+Math, every operator with the widest space on both sides. Lengths are in em. A sign that is not known here
+may come from any font of the system; then there is no bound, and the formula is measured.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from functools import lru_cache
+from html import escape
+from itertools import zip_longest
+from math import inf
+from string import ascii_lowercase, ascii_uppercase, digits, punctuation
+from xml.etree.ElementTree import Element, ParseError, fromstring
+
+LINE = 51.0
+"""Of a formula of the calculation: 210 mm of paper less 35 mm of margins and 4 mm of inset, at 9.5 pt."""
+CELL = 10.0
+"""Of a formula in a table: the narrowest of its columns is wider as long as the others leave 80 mm."""
+
+_SPACE = 0.56  # 5/18 em on either side of a relation, the widest of all classes
+_COLUMN = 1.0  # twice the gap between two columns
+_FENCE, _RADICAL, _FRACTION, _SCRIPT, _BESIDE = 1.0, 1.3, 0.3, 0.75, 0.15
+_LEAVES = frozenset({"mi", "mn", "mtext", "mo", "mspace"})
+_SIGNS = {
+    **dict.fromkeys(punctuation, 1.0),
+    **dict.fromkeys(digits, 0.53),
+    **dict.fromkeys(ascii_lowercase, 0.8),
+    **dict.fromkeys(ascii_uppercase, 1.2),
+    **dict.fromkeys("mw", 1.1),
+    **dict.fromkeys(".,", 0.46),
+    " ": 0.4,
+    "\u00a0": 0.4,
+    "\u2009": 0.4,
+    **dict.fromkeys("αβγδεζηθικλμνξοπρςστυφχψωϑϕϵµ", 0.9),
+    **dict.fromkeys("ΓΔΘΛΞΠΣΦΨΩ", 1.1),
+    **dict.fromkeys("°′″²³¹", 0.7),
+    **dict.fromkeys("·×−±≤≥≠≈→⋅∞∂", 1.1),
+}
+_TEXT = re.compile(">[^<>]+<")
+_DIGIT = re.compile("[0-9]")
+_REFERENCE = re.compile("&#x([0-9A-Fa-f]+);")
+
+
+def fits(mathml: Iterable[str], width: float) -> bool:
+    """Whether formulas, one beside the other, are certainly no wider than so much [em]."""
+    return sum(_bound(_alike(one)) for one in mathml if one) <= width
+
+
+def _alike(mathml: str) -> str:
+    """A formula with a zero for each digit in its texts: all digits are equally wide."""
+    return _TEXT.sub(_with_zeros, mathml)
+
+
+def _with_zeros(text: re.Match[str]) -> str:
+    return _DIGIT.sub("0", _REFERENCE.sub(_plain, text[0]))
+
+
+def _plain(reference: re.Match[str]) -> str:
+    return escape(chr(int(reference[1], 16)))
+
+
+@lru_cache(4096)
+def _bound(mathml: str) -> float:
+    """No less than the width of a formula [em]."""
+    try:
+        return _of(fromstring(mathml))
+    except ParseError:
+        return inf
+
+
+def _of(node: Element) -> float:
+    tag = node.tag.rpartition("}")[2]
+    return _leaf(node, tag) if tag in _LEAVES else _built([_of(child) for child in node], node, tag)
+
+
+def _leaf(node: Element, tag: str) -> float:
+    match tag:
+        case "mo":
+            return _text(node) + (_FENCE if node.get("fence") == "true" else _SPACE)
+        case "mspace":
+            return _space(node)
+    is_word = tag == "mi" and len(node.text or "") > 1
+    return _text(node) + (_SPACE if is_word else 0.0)
+
+
+def _built(inside: list[float], node: Element, tag: str) -> float:
+    match tag:
+        case "mfrac":
+            return max(inside) + _FRACTION
+        case "msqrt":
+            return sum(inside) + _RADICAL
+        case "msub" | "msup" | "munder" | "msubsup":
+            return inside[0] + _SCRIPT * max(inside[1:]) + _BESIDE
+        case "mtable":
+            rows = [[_of(cell) for cell in row] for row in node]
+            return sum(max(column) + _COLUMN for column in zip_longest(*rows, fillvalue=0.0))
+        case "math" | "mrow" | "mover" | "mstyle" | "mtd":
+            return sum(inside) + _text(node)
+    return inf
+
+
+def _text(node: Element) -> float:
+    return sum(_SIGNS.get(sign, inf) for sign in node.text or "")
+
+
+def _space(node: Element) -> float:
+    try:
+        return max(float(node.get("width", "0em").removesuffix("em")), 0.0)
+    except ValueError:
+        return inf
