@@ -85,12 +85,6 @@ def find_waiting(session: Session, kind: str, payload: JsonObject) -> str | None
     return session.scalar(same.where(JobRow.state.in_(UNFINISHED)).limit(1))
 
 
-def has_queued(session: Session, lane: Lane = ALL_KINDS) -> bool:
-    """Whether a job of a lane waits, of whatever kind."""
-    queued = select(JobRow.id).where(JobRow.state == "queued", lane.holds()).limit(1)
-    return session.scalar(queued) is not None
-
-
 def claim(
     session: Session,
     lane: Lane = ALL_KINDS,
