@@ -26,6 +26,38 @@ def test_entries_at_one_place_add():
     assert total.scaled(np.ones(2), np.ones(2), np.zeros(2)).toarray().tolist() == [[0, 3], [0, 0]]
 
 
+@pytest.mark.parametrize("reach", [3, 60])
+def test_some_unknowns_in_another_order_are_solved_for_as_densely(reach):
+    """By bands where the values are near the diagonal (3), by a sparse LU where they are not (60)."""
+    rng, count = np.random.default_rng(reach), 80
+    bands = {"offsets": [-reach, 0, reach], "shape": (count, count)}
+    first, second = (csc_array(diags_array(values, **bands)) for values in rng.uniform(1, 2, (2, 3, count)))
+    unknowns = np.concatenate([np.arange(70, 80), np.arange(65)])
+    some = ColumnScaledSum.of(first, second).among(unknowns)
+    a, b, right = rng.uniform(0.5, 1, (3, unknowns.size))
+    d = rng.uniform(8, 9, unknowns.size)
+    dense = [matrix.toarray()[np.ix_(unknowns, unknowns)] for matrix in (first, second)]
+    assert some.times(a, b) == pytest.approx(dense[0] @ a + dense[1] @ b, rel=1e-13)
+    assert some.diagonals() == pytest.approx(np.array([matrix.diagonal() for matrix in dense]), rel=1e-14)
+    wanted = np.linalg.solve(dense[0] * a + dense[1] * b + np.diag(d), right)
+    assert some.factorised(a, b, d)(right) == pytest.approx(wanted, rel=1e-11)
+
+
+@pytest.mark.parametrize("centre", [np.pi, -2.0, 0.3, 3.1])
+def test_with_a_groove_anywhere_neighbours_are_near_each_other(centre):
+    """Numbered from the groove on, no neighbour is farther than the bearing is wide."""
+    solved = solved_ring(0.5, 0.8, [Groove(centre, 0.3)], 0.0, 32, 6)
+    free = solved.network.free
+    assert sorted(free) == np.flatnonzero(~solved.network.fixed).tolist()
+    assert ColumnScaledSum.of(solved.network.A, solved.network.T).among(free).width == 6
+
+
+def test_a_singular_sum_is_refused():
+    nothing = csc_array((3, 3))
+    with pytest.raises(RuntimeError, match="singular"):
+        ColumnScaledSum.of(nothing, nothing).factorised(*np.ones((2, 3)), np.zeros(3))
+
+
 @pytest.mark.parametrize(
     "grooves", [[Groove(np.pi, 0.0, P=0.1)], [Groove(2.0, 0.3, P=0.4), Groove(-1.9, 0.3, P=0.4)]]
 )

@@ -1,5 +1,7 @@
 """One step and one cycle of a supplied film: conservation, a closed form, and the parts they are made of."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -151,6 +153,18 @@ def test_the_load_is_seen_from_the_mesh_and_the_hole_turns_with_the_journal() ->
     S, places = duty.seen(np.array([0.0, np.pi]))
     assert S == pytest.approx(np.array([[3.0, 0.0], [0.0, -3.0]]), abs=1e-12)
     assert places[:, 0, 0] == pytest.approx([2.0, 2.0 + np.pi / 2])
+
+
+def test_the_load_between_its_angles_is_linear_and_repeats() -> None:
+    """Also before the first angle, and where the angles of a cycle do not begin at 0."""
+    angle = np.sort(np.random.default_rng(3).uniform(-2, 2 * np.pi - 2.01, 20))
+    plain = constant(3.0, 0.5, 1.0)
+    S = np.random.default_rng(4).normal(size=(2, 1, 20))
+    load = replace(plain.load, angle=angle, S=S, w=np.zeros((1, 20)))
+    duty = replace(plain, load=load, sliding=np.ones(20))
+    theta = np.linspace(-20, 20, 500)
+    wanted = [np.interp(theta, angle, line, period=2 * np.pi) for line in S[:, 0]]
+    assert duty.seen(theta)[0] == pytest.approx(np.array(wanted).T, abs=1e-13)
 
 
 def test_least_gap_lies_between_the_nodes_and_across_the_end_of_the_cycle() -> None:

@@ -8,6 +8,7 @@ import ngsolve as ng
 import numpy as np
 import pytest
 from cadquery import Shape, Workplane
+from netgen.occ import OCCGeometry
 
 from benchmarks.shoulder_fillet import END, FILLET, NARROW, SHOULDER, shoulder
 from cad.analysis.corners import sharp_inner_edges
@@ -60,6 +61,38 @@ def test_a_moment_bends_as_its_sign_says() -> None:
     area = ng.Integrate(ng.CF(1) * ng.ds(LOADED), mesh)
     moved = ng.Integrate(response.displacement[0] * ng.ds(LOADED), mesh) / area
     assert moved == pytest.approx(100**2 / (2 * STEEL_MATERIAL.young * 1e-6 * pi / 4 * 10**4), rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("order", "boundary"),
+    [
+        (3, "guided_end"),
+        pytest.param(3, "free_end", marks=pytest.mark.slow),
+        pytest.param(4, "guided_end", marks=pytest.mark.slow),
+    ],
+)
+def test_few_forces_are_answered_as_by_the_factorised_matrix(order: int, boundary: Boundary) -> None:
+    """By conjugate gradients over second order: to their residual, which counts twice in a compliance."""
+    grid = make_grid(shaft_of(Workplane().rect(40, 30).extrude(60), 60), LEVELS[0].fineness)
+    iterated, factorised = (
+        respond(System(grid, order, STEEL_MATERIAL, "bending", few_forces=few), boundary).compliance
+        for few in (True, False)
+    )
+    assert iterated == pytest.approx(factorised, rel=1e-8)
+
+
+@pytest.mark.slow  # the threads wait in loops
+def test_a_mesh_made_on_one_thread_is_that_of_several() -> None:
+    solid, level = shaft_of(Workplane().circle(25).extrude(60), 60), LEVELS[0]
+    one = make_grid(solid, level.fineness).mesh.ngmesh
+    sizes = netgen.meshing.MeshingParameters(
+        maxh=level.fineness.size * solid.scale, grading=0.5, curvaturesafety=level.fineness.curvature
+    )
+    several = OCCGeometry(solid.shape).GenerateMesh(sizes)
+    assert [[*point] for point in one.Points()] == [[*point] for point in several.Points()]
+    assert [element.vertices for element in one.Elements3D()] == [
+        element.vertices for element in several.Elements3D()
+    ]
 
 
 def test_sharp_inner_edges_are_found_and_no_others() -> None:
