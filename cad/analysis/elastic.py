@@ -49,7 +49,7 @@ class System:
     Elements are as much curved as their order allows. The mesh stays so until the next system is built on it.
     It is factorised, or solved for each force by itself where there are few and the order is above 2: by
     conjugate gradients, whose preconditioner solves in second order and adds what the other unknowns of each
-    edge and face alone answer (`_by_order`). At 160 000 unknowns that takes half the memory of BDDC.
+    edge and face alone answer (`_by_order`).
     """
 
     def __init__(
