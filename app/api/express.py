@@ -1,26 +1,31 @@
-"""`POST …/evaluate` past the general machinery of the web framework, which costs more than an evaluation.
+"""`POST …/evaluate` and small saves past the general machinery of the web framework, which costs more than they.
 
 What is plainly right is answered here: a short JSON body of stated length for a version whose every level is
-quick. All else is handed on as it came, and gets its answer, or its error, the general way.
+quick, or for a design of such steps without geometry. All else is handed on as it came, and gets its answer,
+or its error, the general way.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
 from fastapi.routing import APIRoute
 from pydantic_core import from_json, to_json
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api import nul
+from app.api.express_saves import PlainSave, plain_save, saved
 from app.api.gate.roles import VIEWER
 from app.api.reading import JSON_TYPES, MOST_BRACKETS, MOST_QUOTES
 from app.api.routes.calculations import FEW, evaluate_template, router
 from app.api.services import Services
+from app.api.waiting import as_json
 from app.calculations.cost import is_quick
 from app.calculations.schemas import EvaluateIn
 from app.calculations.service import run_evaluate
 from app.calculations.size import points
+from app.schemas.designs import Design
 
 LONGEST = min(65_536, MOST_BRACKETS, MOST_QUOTES)  # bytes: too short to be intricate
 _PATH = re.compile(r"/api/v1/templates/([a-z0-9_]{1,64})/versions/([1-9][0-9]{0,5})/evaluate")
@@ -28,37 +33,52 @@ _TYPES = frozenset(kind.encode() for kind in JSON_TYPES)
 _ROUTE = next(
     route for route in router.routes if isinstance(route, APIRoute) and route.endpoint is evaluate_template
 )
+_METHODS = frozenset({"POST", "PATCH"})
 _HEADER = (b"content-type", b"application/json")
 
 
 class Express:
-    """ASGI middleware for the path that is called most; the innermost, so that all others see its answers."""
+    """ASGI middleware for the paths that are called most; the innermost, so that all others see its answers."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer, or hand on what was received."""
-        named = _named(scope)
-        if named is None:
+        if scope["type"] != "http" or scope["method"] not in _METHODS or scope["query_string"]:
             await self.app(scope, receive, send)
-            return
-        message = await receive()
-        content = await _answer(scope["app"].state.services, *named, message)
-        if content is None:
-            await self.app(scope, _again(message, receive), send)
-            return
-        scope["route"] = _ROUTE  # by which requests are counted and traced
-        headers = [(b"content-length", b"%d" % len(content)), _HEADER]
-        await send({"type": "http.response.start", "status": 200, "headers": headers})
-        await send({"type": "http.response.body", "body": content})
+        elif named := _named(scope):
+            message = await receive()
+            content = await _answer(scope["app"].state.services, *named, message)
+            if content is None:
+                await self.app(scope, _again(message, receive), send)
+                return
+            scope["route"] = _ROUTE  # by which requests are counted and traced
+            await _send(send, 200, content)
+        elif save := plain_save(scope, LONGEST):
+            message = await receive()
+            design = await _saved(scope, save, message)
+            if design is None:
+                await self.app(scope, _again(message, receive), send)
+                return
+            place, tag = f"/api/v1/designs/{design.id}", f'"{design.revision}"'
+            headers = [(b"location", place.encode()), (b"etag", tag.encode())]
+            await _send(send, 200 if save.id else 201, as_json(design), headers)
+        else:
+            await self.app(scope, receive, send)
+
+
+async def _send(
+    send: Send, status: int, content: bytes, headers: Iterable[tuple[bytes, bytes]] = ()
+) -> None:
+    head = [*headers, (b"content-length", b"%d" % len(content)), _HEADER]
+    await send({"type": "http.response.start", "status": status, "headers": head})
+    await send({"type": "http.response.body", "body": content})
 
 
 def _named(scope: Scope) -> tuple[str, int] | None:
     """The template and the version of a plain request to evaluate; None if it is anything else."""
-    if scope["type"] != "http" or scope["method"] != "POST" or scope["query_string"]:
-        return None
-    match = _PATH.fullmatch(scope["path"])
+    match = _PATH.fullmatch(scope["path"]) if scope["method"] == "POST" else None
     return (match[1], int(match[2])) if match and _is_plain(scope["headers"]) else None
 
 
@@ -77,8 +97,8 @@ def _is_plain(headers: list[tuple[bytes, bytes]]) -> bool:
 
 async def _answer(services: Services, id: str, version: int, message: Message) -> bytes | None:
     """The answer's bytes, or None where the general way has to say what is wrong, or to do the work."""
-    body = message.get("body", b"")
-    if message["type"] != "http.request" or message.get("more_body") or nul.may_have(body):
+    body = _whole(message)
+    if body is None:
         return None
     try:
         await services.catalogues.refresh()
@@ -92,6 +112,27 @@ async def _answer(services: Services, id: str, version: int, message: Message) -
         return to_json(run_evaluate(cls, asked))
     except Exception:  # whatever it is, the general way meets it too, and answers it
         return None
+
+
+async def _saved(scope: Scope, asked: PlainSave, message: Message) -> Design | None:
+    """The design that was saved; None where the general way has to say what is wrong, or to do the work."""
+    services: Services = scope["app"].state.services
+    body = _whole(message)
+    if body is None or services.database.is_shared:
+        return None
+    try:
+        await services.catalogues.refresh()
+        return await saved(services, asked, scope, body)
+    except Exception:  # nothing is stored; the general way meets it too, and answers it
+        return None
+
+
+def _whole(message: Message) -> bytes | None:
+    """The body, if all of it has come and no text in it may have U+0000."""
+    body: bytes = message.get("body", b"")
+    if message["type"] != "http.request" or message.get("more_body") or nul.may_have(body):
+        return None
+    return body
 
 
 def _again(message: Message, receive: Receive) -> Receive:

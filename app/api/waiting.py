@@ -78,5 +78,9 @@ def accepted(job: str | None, answer: Answer | None = None) -> Response:
 
 def written(answer: Answer, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
     """An answer as JSON, without the fields that it leaves out."""
-    body = answer.model_dump_json(by_alias=True, exclude_unset=True)
-    return Response(body, status, media_type="application/json", headers=dict(headers or {}))
+    return Response(as_json(answer), status, media_type="application/json", headers=dict(headers or {}))
+
+
+def as_json(answer: Answer) -> bytes:
+    """An answer as JSON, without the fields that it leaves out."""
+    return answer.model_dump_json(by_alias=True, exclude_unset=True).encode()

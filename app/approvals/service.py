@@ -154,7 +154,8 @@ _VERBS: dict[Step, str] = {
 
 def _shown(session: Session, row: RevisionRow) -> Approvals:
     taken, held = steps_taken(session, row), present(session, row)
-    following, newest = next_step(taken), session.scalar(NEWEST_RELEASED, {"design": row.design_id})
+    session.flush()  # the step that was taken may be the release
+    following, newest = next_step(taken), NEWEST_RELEASED.scalar(session, {"design": row.design_id})
     return Approvals(
         design=row.design_id,
         revision=row.number,

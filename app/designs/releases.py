@@ -9,6 +9,7 @@ from sqlalchemy.orm import Session, aliased
 
 from app.schemas.approvals import ORDER, Step
 from app.storage.errors import NotFound
+from app.storage.statements import Statement
 from app.storage.tables import ApprovalRow, RevisionRow
 
 _withdrawal = aliased(ApprovalRow)
@@ -22,11 +23,12 @@ _IS_WITHDRAWN = (
     .exists()
 )
 
-EVER_RELEASED = select(func.max(ApprovalRow.revision)).where(
+_EVER_RELEASED = select(func.max(ApprovalRow.revision)).where(
     ApprovalRow.design_id == bindparam("design"), ApprovalRow.step == "released"
 )
+EVER_RELEASED = Statement(_EVER_RELEASED, "design")
 """The number of the newest revision of a `design` that was released, withdrawn since or not; or null."""
-NEWEST_RELEASED = EVER_RELEASED.where(~_IS_WITHDRAWN)
+NEWEST_RELEASED = Statement(_EVER_RELEASED.where(~_IS_WITHDRAWN), "design")
 """The number of the newest released revision of a `design` that is not withdrawn; or null."""
 
 
@@ -38,7 +40,7 @@ def newest_released(session: Session, design: str) -> int:
     NotFound
         If none is released, or all of them are withdrawn.
     """
-    number = session.scalar(NEWEST_RELEASED, {"design": design})
+    number: int | None = NEWEST_RELEASED.scalar(session, {"design": design})
     if number is None:
         raise NotFound(f"design {design[:80]!r} has no released revision")
     return number

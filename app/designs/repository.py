@@ -19,20 +19,44 @@ from app.identity.audit import record
 from app.plain import JsonObject
 from app.storage.errors import NotFound
 from app.storage.identity import new_id, now
+from app.storage.statements import Statement
 from app.storage.tables import Base, BuildRow, DesignRow, RevisionModelRow, RevisionRow, canonical_json
 
 _DESIGNS = Base.metadata.tables[DesignRow.__tablename__]
-_DESIGN = insert(_DESIGNS)
-_REVISION = insert(Base.metadata.tables[RevisionRow.__tablename__])
-_APPENDED = (
+_REVISIONS = Base.metadata.tables[RevisionRow.__tablename__]
+_DESIGN = Statement(insert(_DESIGNS), "id", "name", "created", "head")
+_REVISION = Statement(
+    insert(_REVISIONS),
+    "design_id",
+    "number",
+    "note",
+    "created",
+    "document",
+    "results",
+    "state",
+    "problem",
+    "author",
+    "supersedes",
+)
+_APPENDED = Statement(
     update(_DESIGNS)
     .where(
         _DESIGNS.c.id == bindparam("of"), _DESIGNS.c.head == bindparam("base"), _DESIGNS.c.deleted.is_(None)
     )
     .values(head=bindparam("number"), name=bindparam("named"))
-    .returning(_DESIGNS.c.head)
+    .returning(_DESIGNS.c.head),
+    "of",
+    "base",
+    "number",
+    "named",
 )
-"""Statements of every save, written once: to build one costs more than to run it."""
+_DOCUMENT = Statement(
+    select(_REVISIONS.c.document).where(
+        _REVISIONS.c.design_id == bindparam("of"), _REVISIONS.c.number == bindparam("at")
+    ),
+    "of",
+    "at",
+)
 
 
 @dataclass(frozen=True)
@@ -109,8 +133,8 @@ def document(session: Session, id: str, number: int) -> JsonObject:
     NotFound
         If there is none.
     """
-    query = select(RevisionRow.document).where(RevisionRow.design_id == id, RevisionRow.number == number)
-    for stored in session.scalars(query):
+    for row in _DOCUMENT.run(session, {"of": id, "at": number}):
+        stored: JsonObject = row[0]
         return stored
     raise _no_revision(id, number)
 
@@ -151,15 +175,15 @@ def revisions(session: Session, id: str, limit: int, before: int | None) -> list
     return list(session.scalars(query.limit(limit + 1)))
 
 
-def create(session: Session, name: str, written: Written) -> tuple[str, int]:
-    """A new design with its first revision; its id and the revision's number."""
-    id = new_id(session)
-    session.connection().execute(_DESIGN, {"id": id, "name": name, "created": now(), "head": 0})
-    return id, append(session, id, 0, written)
+def create(session: Session, name: str, written: Written, at: str | None = None) -> tuple[str, int]:
+    """A new design with its first revision, `at` the time given or now; its id and the revision's number."""
+    id, created = new_id(session), at or now()
+    _DESIGN.run(session, {"id": id, "name": name, "created": created, "head": 0})
+    return id, append(session, id, 0, written, created)
 
 
-def append(session: Session, id: str, base: int, written: Written) -> int:
-    """A new revision of a design whose newest one is `base`; its number.
+def append(session: Session, id: str, base: int, written: Written, at: str | None = None) -> int:
+    """A new revision of a design whose newest one is `base`, `at` the time given or now; its number.
 
     The row of the design decides: of several servers that append to the same revision, one succeeds.
 
@@ -171,13 +195,12 @@ def append(session: Session, id: str, base: int, written: Written) -> int:
         If there is no such design, or it is deleted.
     """
     session.flush()
-    connection = session.connection()
     values = {"of": id, "base": base, "number": base + 1, "named": written.document["name"]}
-    if connection.scalar(_APPENDED, values) is None:
+    if _APPENDED.scalar(session, values) is None:
         raise StaleRevision(f'"{base}"', design(session, id).head)
-    if (row := session.identity_map.get(identity_key(DesignRow, id))) is not None:
+    if session.identity_map and (row := session.identity_map.get(identity_key(DesignRow, id))) is not None:
         session.refresh(row)
-    at = now()
+    at = at or now()
     revision = {
         "design_id": id,
         "number": base + 1,
@@ -188,9 +211,9 @@ def append(session: Session, id: str, base: int, written: Written) -> int:
         "state": written.state,
         "problem": None,
         "author": acting().id,
-        "supersedes": session.scalar(NEWEST_RELEASED, {"design": id}),
+        "supersedes": NEWEST_RELEASED.scalar(session, {"design": id}),
     }
-    connection.execute(_REVISION, revision)
+    _REVISION.run(session, revision)
     digest = hashlib.sha256(canonical_json(written.document).encode()).hexdigest()
     record(session, written.action, f"designs/{id}/revisions/{base + 1}", digest, at)
     if written.models:
@@ -235,7 +258,7 @@ def delete(session: Session, id: str) -> None:
         If one of its revisions was released.
     """
     row = locked(session, id)
-    released = session.scalar(EVER_RELEASED, {"design": id})
+    released = EVER_RELEASED.scalar(session, {"design": id})
     if released is not None:
         raise DesignReleased(id, released)
     row.deleted = now()

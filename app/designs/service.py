@@ -54,7 +54,7 @@ class Saved:
 
 
 @dataclass(frozen=True)
-class _Draft:
+class Draft:
     """A revision to be written, and the job that completes it, should one have to."""
 
     written: Written
@@ -84,7 +84,7 @@ class Designs:
         """
         if saved_before := self._repeated(once):
             return saved_before
-        draft = self._draft(raw, note, action)
+        draft = self.draft(raw, note, action)
 
         def unit(session: Session) -> Saved:
             if before := once.begin(session):
@@ -92,7 +92,7 @@ class Designs:
             certain = _with_builds(session, draft)
             name = certain.written.document["name"]
             design, revision = repository.create(session, name, certain.written)
-            return self._enqueued(session, design, revision, certain, once, created=True)
+            return self.enqueued(session, design, revision, certain, once, created=True)
 
         return self._saved(unit, draft)
 
@@ -168,7 +168,7 @@ class Designs:
     def _append(
         self, id: str, base: int, raw: Mapping[str, Raw], note: str | None, once: Once, action: str
     ) -> Saved:
-        draft = self._draft(raw, note, action)
+        draft = self.draft(raw, note, action)
 
         def unit(session: Session) -> Saved:
             if before := once.begin(session):
@@ -180,12 +180,18 @@ class Designs:
                 return unchanged
             certain = _with_builds(session, draft)
             revision = repository.append(session, id, base, certain.written)
-            return self._enqueued(session, id, revision, certain, once, created=False)
+            return self.enqueued(session, id, revision, certain, once, created=False)
 
         return self._saved(unit, draft)
 
-    def _draft(self, raw: Mapping[str, Raw], note: str | None, action: str) -> _Draft:
-        """The revision to write for a document; its results wait for a job if any part of it waits."""
+    def draft(self, raw: Mapping[str, Raw], note: str | None, action: str) -> Draft:
+        """The revision to write for a document; its results wait for a job if any part of it waits.
+
+        Raises
+        ------
+        InvalidInputs
+            With everything that is wrong.
+        """
         document, calculation = self.prepare(raw)
         raise_if(calculation.faults)
         outcomes = self._variants(document, calculation)
@@ -200,7 +206,7 @@ class Designs:
         if pending and not calculation.deferred:
             self.recent.keep(plain, Prepared(document, calculation))
         written = Written(plain, stored, variants.models(calculation, outcomes), state, note, action)
-        return _Draft(written, _kind(calculation.graph, is_deferred), is_deferred, begun_steps())
+        return Draft(written, _kind(calculation.graph, is_deferred), is_deferred, begun_steps())
 
     def _variants(self, document: Document, base: Calculation) -> list[Outcome]:
         """The variants of a document, as far as they can be calculated now.
@@ -232,8 +238,8 @@ class Designs:
         document, calculation = self.prepare(raw)
         return self._checked(document, calculation)[1]
 
-    def _enqueued(
-        self, session: Session, design: str, revision: int, draft: _Draft, once: Once, *, created: bool
+    def enqueued(
+        self, session: Session, design: str, revision: int, draft: Draft, once: Once, *, created: bool
     ) -> Saved:
         """The job of a revision, if it needs one, and the record of the request; in one transaction."""
         job = None
@@ -248,7 +254,7 @@ class Designs:
         once.keep(session, 201 if created else 200, vars(saved))
         return saved
 
-    def _saved(self, unit: Unit[Saved], draft: _Draft) -> Saved:
+    def _saved(self, unit: Unit[Saved], draft: Draft) -> Saved:
         saved = self.database.write(unit)
         if saved.fresh:
             saved = replace(saved, is_deferred=draft.is_deferred)
@@ -264,7 +270,7 @@ class Designs:
         return _saved_before(before) if before else None
 
 
-def _with_builds(session: Session, draft: _Draft) -> _Draft:
+def _with_builds(session: Session, draft: Draft) -> Draft:
     """The draft with its builds renewed: one that was deleted since it was looked up must be built again."""
     if renew(session, [model.build for model in draft.written.models if model.build]):
         return draft
@@ -283,8 +289,13 @@ def _saved_before(location: JsonObject) -> Saved:
 
 
 def _require_match(expected: str | None, head: int) -> None:
-    if expected is not None and expected.strip() not in ("*", f'"{head}"'):
+    if expected is not None and not matches(expected, head):
         raise StaleRevision(expected, head)
+
+
+def matches(expected: str, head: int) -> bool:
+    """Whether an If-Match names the newest revision, or any."""
+    return expected.strip() in ("*", f'"{head}"')
 
 
 def analyses_wanted(graph: Graph) -> bool:

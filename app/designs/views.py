@@ -20,22 +20,39 @@ STEP = "step"
 
 def design(row: DesignRow, revision: RevisionRow) -> Design:
     """A design as of one revision: what its user wrote, and how its regeneration stands."""
-    document = revision.document
+    state, problem = revision.state, revision.problem
+    return _design(row.id, revision.number, revision.document, row.created, revision.created, state, problem)
+
+
+def current(id: str, number: int, document: JsonObject, created: str, changed: str) -> Design:
+    """A design as of a revision for which nothing is to be regenerated."""
+    return _design(id, number, document, created, changed, "current", None)
+
+
+def _design(
+    id: str,
+    number: int,
+    document: JsonObject,
+    created: str,
+    changed: str,
+    state: str,
+    problem: JsonObject | None,
+) -> Design:
     return Design.model_validate(
         {
-            "id": row.id,
+            "id": id,
             "name": document["name"],
-            "revision": revision.number,
-            "state": revision.state,
+            "revision": number,
+            "state": state,
             "parameters": document["parameters"],
             "steps": document["steps"],
             "models": document["models"],
             "iterations": document["iterations"],
             **{name: document[name] for name in ("criteria",) if name in document},
             **_variants(document),
-            "problem": revision.problem,
-            "created": row.created,
-            "changed": revision.created,
+            "problem": problem,
+            "created": created,
+            "changed": changed,
         }
     )
 

@@ -10,9 +10,19 @@ from sqlalchemy.orm import Session
 
 from app.identity.acting import acting
 from app.storage.identity import now
+from app.storage.statements import Statement
 from app.storage.tables import AuditRow, Base
 
-_RECORDED = insert(Base.metadata.tables[AuditRow.__tablename__])
+_RECORDED = Statement(
+    insert(Base.metadata.tables[AuditRow.__tablename__]),
+    "id",
+    "at",
+    "principal",
+    "name",
+    "action",
+    "object",
+    "digest",
+)
 
 
 def record(
@@ -46,4 +56,4 @@ def record(
         "object": object,
         "digest": digest,
     }
-    session.connection().execute(_RECORDED, row)
+    _RECORDED.run(session, row)

@@ -25,6 +25,7 @@ from sqlalchemy.sql import func
 from sqlalchemy.sql.compiler import SQLCompiler
 from sqlalchemy.sql.functions import GenericFunction
 
+from app.storage.statements import Statement
 from app.storage.tables import Base, CounterRow
 from app.storage.units import Writer
 
@@ -126,12 +127,12 @@ def operated(session: Session) -> int:
     On PostgreSQL it is exact everywhere.
     """
     if session.get_bind().dialect.name == "sqlite":
-        return session.connection().scalar(_COUNTED) or 0
+        return int(_COUNTED.scalar(session) or 0)
     return session.scalar(_OPERATED) or 0
 
 
 _COUNTER = Base.metadata.tables[CounterRow.__tablename__]
-_COUNTED = select(_COUNTER.c.value).where(_COUNTER.c.name == NAME)
+_COUNTED = Statement(select(_COUNTER.c.value).where(_COUNTER.c.name == NAME))
 _THEN = select(CounterRow.value).where(CounterRow.name == TICKED).scalar_subquery()
 _SINCE = func.least(func.greatest(func.floor(present()) - _THEN, 0), LONGEST)
 _OPERATED = select(cast(CounterRow.value + _SINCE, BigInteger)).where(CounterRow.name == NAME)

@@ -17,6 +17,7 @@ from sqlalchemy.orm import Session
 
 from app.storage.clock import NAME
 from app.storage.identity import now
+from app.storage.statements import Statement
 from app.storage.tables import Base, CounterRow, EventRow
 
 Data = Mapping[str, object]
@@ -26,14 +27,19 @@ _EVENTS = Base.metadata.tables["event"]
 _OWNERS: dict[str, Table] = {kind: Base.metadata.tables[kind] for kind in ("design", "job")}
 _OPERATED = select(CounterRow.value).where(CounterRow.name == NAME).scalar_subquery()
 _RAISED = {
-    kind: update(owner)
-    .where(owner.c.id == bindparam("of"))
-    .values(event=owner.c.event + bindparam("more"))
-    .returning(owner.c.event)
+    kind: Statement(
+        update(owner)
+        .where(owner.c.id == bindparam("of"))
+        .values(event=owner.c.event + bindparam("more"))
+        .returning(owner.c.event),
+        "of",
+        "more",
+    )
     for kind, owner in _OWNERS.items()
 }
-_NOTED = insert(_EVENTS).values(operated=_OPERATED)
-"""Statements of every unit, written once: to build one costs more than to run it."""
+_NOTED = Statement(
+    insert(_EVENTS).values(operated=_OPERATED), "topic", "number", "name", "data", "created"
+)
 
 
 @dataclass(frozen=True)
@@ -72,11 +78,10 @@ def note_all(session: Session, *events: Event) -> list[Event]:
     counts = Counter(map(TOPIC, events))
     numbers = dict[str, int]()
     session.flush()  # the rows of which these events tell
-    connection = session.connection()
     for topic in sorted(counts, reverse=True):
         kind, _, id = topic.partition(":")
-        raised = connection.execute(_RAISED[kind], {"of": id, "more": counts[topic]})
-        numbers[topic] = raised.scalar_one() - counts[topic]
+        (raised,) = _RAISED[kind].run(session, {"of": id, "more": counts[topic]})
+        numbers[topic] = raised[0] - counts[topic]
     created, noted, rows = now(), list[Event](), list[dict[str, object]]()
     for event in events:
         numbers[event.topic] += 1
@@ -88,7 +93,7 @@ def note_all(session: Session, *events: Event) -> list[Event]:
                 "data": event.data, "created": created,
             }
         )  # fmt: skip
-    connection.execute(_NOTED, rows)
+    _NOTED.run_many(session, rows)
     return noted
 
 

@@ -16,22 +16,26 @@ from app.plain import JsonObject
 from app.storage.clock import operated
 from app.storage.errors import KeyReused
 from app.storage.identity import now
+from app.storage.statements import Statement, Values
 from app.storage.tables import Base, IdempotencyRow
 from app.storage.units import repeatable
-from app.storage.upserts import insert_new, upsert
+from app.storage.upserts import insert_new_values, upsert_values
 
 BEFORE_CLIENTS = ""  # the client of keys that version 0.1 kept, which asked for none
 
 
 _ROWS = Base.metadata.tables[IdempotencyRow.__tablename__]
-_KEPT = (
+_KEPT = Statement(
     select(_ROWS.c.client, _ROWS.c.fingerprint, _ROWS.c.location)
     .where(
         _ROWS.c.key == bindparam("of"),
         _ROWS.c.scope == bindparam("within"),
         _ROWS.c.client.in_((bindparam("by"), BEFORE_CLIENTS)),
     )
-    .order_by(_ROWS.c.client.desc())  # that of version 0.1 is empty, the last
+    .order_by(_ROWS.c.client.desc()),  # that of version 0.1 is empty, the last
+    "of",
+    "within",
+    "by",
 )
 
 
@@ -74,26 +78,26 @@ class Once:
         if self.client != BEFORE_CLIENTS and BEFORE_CLIENTS in kept:
             return self._answer(*next(iter(kept.values())))
         mine = self._new(operated(session), status=0, location={})
-        if insert_new(session, mine):
+        if insert_new_values(session, _ROWS, mine):
             return None
         return self.find(session)
 
     def keep(self, session: Session, status: int, location: JsonObject) -> None:
         """Remember what this request led to."""
         if self.key:
-            upsert(session, self._new(operated(session), status, location))
+            upsert_values(session, _ROWS, self._new(operated(session), status, location))
 
-    def _new(self, operated: int, status: int, location: JsonObject) -> IdempotencyRow:
-        return IdempotencyRow(
-            key=self.key,
-            scope=self.scope,
-            client=self.client,
-            fingerprint=self.fingerprint,
-            status=status,
-            location=location,
-            created=now(),
-            operated=operated,
-        )
+    def _new(self, operated: int, status: int, location: JsonObject) -> Values:
+        return {
+            "key": self.key,
+            "scope": self.scope,
+            "client": self.client,
+            "fingerprint": self.fingerprint,
+            "status": status,
+            "location": location,
+            "created": now(),
+            "operated": operated,
+        }
 
     def _answer(self, fingerprint: str, location: JsonObject) -> JsonObject:
         if fingerprint != self.fingerprint:
@@ -104,5 +108,5 @@ class Once:
         """Fingerprint and answer by client: of this client first, then of version 0.1."""
         asked = {"of": self.key, "within": self.scope, "by": self.client}
         return {
-            row.client: (row.fingerprint, row.location) for row in session.connection().execute(_KEPT, asked)
+            client: (fingerprint, location) for client, fingerprint, location in _KEPT.run(session, asked)
         }

@@ -10,11 +10,12 @@ from datetime import UTC, datetime
 from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session
 
+from app.storage.statements import Statement
 from app.storage.tables import Base, CounterRow
 
 IDENTITY = "identity"
 _COUNTER = Base.metadata.tables[CounterRow.__tablename__]
-_RAISED = (
+_RAISED = Statement(
     update(_COUNTER)
     .where(_COUNTER.c.name == IDENTITY)
     .values(value=_COUNTER.c.value + 1)
@@ -30,7 +31,7 @@ def new_id(session: Session) -> str:
     It is counted up in the unit of work that uses it.
     """
     is_sqlite = session.get_bind().dialect.name == "sqlite"
-    number: int | None = session.connection().scalar(_RAISED if is_sqlite else _NEXT)
+    number: int | None = _RAISED.scalar(session) if is_sqlite else session.connection().scalar(_NEXT)
     assert number is not None, "a migrated database has its counters"
     return f"{number:014x}{secrets.token_hex(5)}"
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from functools import cache
 
-from sqlalchemy import Insert, Table, inspect
+from sqlalchemy import FromClause, Table, inspect
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
+from app.storage.statements import DRIVER, Statement, Values
 from app.storage.tables import Base
 
 
@@ -16,31 +17,45 @@ def insert_new(session: Session, row: Base) -> bool:
 
     While another transaction is inserting it, this one waits for its end.
     """
-    values, dialect = inspect(row).dict, session.get_bind().dialect.name
-    return session.execute(_insertion(row.__table__, dialect), values).first() is not None
+    return insert_new_values(session, row.__table__, inspect(row).dict)
+
+
+def insert_new_values(session: Session, table: FromClause, values: Values) -> bool:
+    """Likewise, for a row that is given as the values of its columns."""
+    return bool(_insertion(table, tuple(values), _dialect(session)).run(session, values))
 
 
 def upsert(session: Session, row: Base) -> None:
     """Insert a row, or give the one of its key its values; columns that it does not set stay."""
-    values, dialect = inspect(row).dict, session.get_bind().dialect.name
-    session.execute(_replacement(row.__table__, tuple(values), dialect), values)
+    upsert_values(session, row.__table__, inspect(row).dict)
+
+
+def upsert_values(session: Session, table: FromClause, values: Values) -> None:
+    """Likewise, for a row that is given as the values of its columns."""
+    _replacement(table, tuple(values), _dialect(session)).run(session, values)
+
+
+def _dialect(session: Session) -> str:
+    return "sqlite" if DRIVER in session.info else session.get_bind().dialect.name
 
 
 @cache
-def _insertion(table: Table, dialect: str) -> Insert:
+def _insertion(table: FromClause, names: tuple[str, ...], dialect: str) -> Statement:
     key = list(table.primary_key)
-    return _insert(table, dialect).on_conflict_do_nothing(index_elements=key).returning(*key)
+    statement = _insert(table, dialect).on_conflict_do_nothing(index_elements=key).returning(*key)
+    return Statement(statement, *names)
 
 
 @cache
-def _replacement(table: Table, names: tuple[str, ...], dialect: str) -> Insert:
+def _replacement(table: FromClause, names: tuple[str, ...], dialect: str) -> Statement:
     key = list(table.primary_key)
     statement = _insert(table, dialect)
     columns = {column.name for column in table.columns if not column.primary_key}
     changed = {name: statement.excluded[name] for name in names if name in columns}
-    return statement.on_conflict_do_update(index_elements=key, set_=changed)
+    return Statement(statement.on_conflict_do_update(index_elements=key, set_=changed), *names)
 
 
-def _insert(table: Table, dialect: str) -> postgresql.Insert | sqlite.Insert:
+def _insert(table: FromClause, dialect: str) -> postgresql.Insert | sqlite.Insert:
     """The insertion of the database's own kind: the standard knows no conflicts."""
+    assert isinstance(table, Table)
     return sqlite.insert(table) if dialect == "sqlite" else postgresql.insert(table)

@@ -304,7 +304,7 @@ class TestService:
     def test_a_design_whose_build_goes_while_it_is_saved_is_built_again(self, http, served, monkeypatch):
         key = revision(http, created(http, moody("31.25 mm")))["models"]["model"]["build"]
         database, service = served.app.state.services.database, served.app.state.services.designs
-        calculated = service._draft
+        calculated = service.draft
 
         def and_then_purged(*asked):
             draft = calculated(*asked)
@@ -312,7 +312,7 @@ class TestService:
             self.vanish(database, key)
             return draft
 
-        monkeypatch.setattr(service, "_draft", and_then_purged)
+        monkeypatch.setattr(service, "draft", and_then_purged)
         design = settled(http, created(http, moody("31.25 mm", name="again"))["id"])
         assert design["state"] == "current"
         assert http.get(f"{API}/designs/{design['id']}/model.step").status_code == 200

@@ -1,0 +1,154 @@
+"""Saves of designs that calculate next to nothing: each is one unit of work, its answer is what it wrote.
+
+The general way reads in one thread, writes in another, and reads again for the answer. That takes longer than
+such a save itself. Whatever is not quick, or not right, raises `NotQuick`; nothing is stored then, and the
+general way does it, or says what is wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sqlalchemy import bindparam, select
+from sqlalchemy.orm import Session
+
+from app.calculations.cost import is_quick as is_quick_template
+from app.catalogue.catalogues import Catalogues
+from app.designs import repository, views
+from app.designs.document import merge
+from app.designs.schemas import LONGEST_NOTE
+from app.designs.service import Designs, Draft, matches
+from app.plain import Json, JsonObject
+from app.schemas.designs import Design
+from app.storage.database import Unit
+from app.storage.idempotency import Once
+from app.storage.identity import now
+from app.storage.statements import Statement
+from app.storage.tables import DesignRow, RevisionRow
+from templates.core.errors import UnknownTemplate
+
+MOST_STEPS = 4
+MOST_CRITERIA = 10
+MOST_PARAMETERS = 50
+_SLOW = ("model", "models", "variants", "iterations")
+_HEAD = Statement(
+    select(RevisionRow.number, RevisionRow.document, DesignRow.created)
+    .join(DesignRow, (DesignRow.id == RevisionRow.design_id) & (DesignRow.head == RevisionRow.number))
+    .where(DesignRow.id == bindparam("of"), DesignRow.deleted.is_(None)),
+    "of",
+)
+
+
+class NotQuick(Exception):
+    """The general way has to save this, or to say what is wrong with it."""
+
+
+class QuickSaves:
+    """Creates and changes of designs without geometry whose steps are quick."""
+
+    def __init__(self, designs: Designs) -> None:
+        self._designs = designs
+
+    def creation(self, raw: JsonObject, once: Once) -> Unit[Design]:
+        """The unit of work that creates a design, calculated by now.
+
+        Raises
+        ------
+        NotQuick, InvalidInputs
+            The general way has to do it.
+        """
+        note = _note(raw)
+        if not self._is_quick(raw):
+            raise NotQuick
+        draft = self._draft(raw, note, "design.create")
+
+        def unit(session: Session) -> Design:
+            if once.begin(session):
+                raise NotQuick
+            at = now()
+            document = draft.written.document
+            id, number = repository.create(session, document["name"], draft.written, at)
+            self._designs.enqueued(session, id, number, draft, once, created=True)
+            return views.current(id, number, document, at, at)
+
+        return unit
+
+    def change(self, id: str, patch: JsonObject, expected: str, once: Once) -> Unit[Design]:
+        """The unit of work that applies a merge patch to a design; it calculates as well.
+
+        Raises
+        ------
+        NotQuick, InvalidInputs
+            Here or in the unit: the general way has to do it.
+        """
+        note = _note(patch)
+        if patch.keys() == {"name"}:
+            raise NotQuick
+
+        def unit(session: Session) -> Design:
+            if once.begin(session):
+                raise NotQuick
+            for base, stored, created in _HEAD.run(session, {"of": id}):
+                document = merge(stored, patch)
+                if not (matches(expected, base) and self._is_quick(document)):
+                    break
+                draft = self._draft(document, note, "design.change")
+                if draft.written.document == stored:
+                    break
+                at = now()
+                number = repository.append(session, id, base, draft.written, at)
+                self._designs.enqueued(session, id, number, draft, once, created=False)
+                return views.current(id, number, draft.written.document, created, at)
+            raise NotQuick
+
+        return unit
+
+    def _draft(self, raw: JsonObject, note: str | None, action: str) -> Draft:
+        draft = self._designs.draft(raw, note, action)
+        if draft.written.state != "current":
+            raise NotQuick
+        return draft
+
+    def _is_quick(self, document: Mapping[str, Json]) -> bool:
+        """Whether a document, which may be wrong, has no geometry, no arrays, and a few quick steps at most."""
+        if any(document.get(name) for name in _SLOW):
+            return False
+        parameters, steps = document.get("parameters") or {}, document.get("steps") or {}
+        if not isinstance(parameters, dict) or not isinstance(steps, dict):
+            return False
+        return (
+            len(parameters) <= MOST_PARAMETERS
+            and len(steps) <= MOST_STEPS
+            and len(document.get("criteria") or ()) <= MOST_CRITERIA
+            and all(map(_is_single, parameters.values()))
+            and all(_is_quick_step(self._designs.catalogues, step) for step in steps.values())
+        )
+
+
+def _note(raw: JsonObject) -> str | None:
+    """Take the note out of a body."""
+    note = raw.pop("note", None)
+    if note is not None and not (isinstance(note, str) and len(note) <= LONGEST_NOTE):
+        raise NotQuick
+    return note
+
+
+def _is_quick_step(catalogues: Catalogues, step: Json) -> bool:
+    if not isinstance(step, dict):
+        return False
+    id, version, inputs = step.get("template"), step.get("version"), step.get("inputs") or {}
+    if not (isinstance(id, str) and isinstance(inputs, dict) and all(map(_is_single, inputs.values()))):
+        return False
+    templates = catalogues.templates
+    try:
+        cls = templates.get(id, version) if isinstance(version, int) else templates.latest(id)
+    except UnknownTemplate:
+        return False
+    return is_quick_template(cls)
+
+
+def _is_single(value: Json) -> bool:
+    """Whether a value as typed is no list."""
+    if isinstance(value, dict):
+        return not any(isinstance(part, (list, dict)) for part in value.values())
+    return not isinstance(value, list)
