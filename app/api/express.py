@@ -1,4 +1,4 @@
-"""`POST …/evaluate` and small saves past the general machinery of the web framework, which costs more than they.
+"""`POST …/evaluate` and small saves past the general machinery of the web framework, which costs more.
 
 What is plainly right is answered here: a short JSON body of stated length for a version whose every level is
 quick, or for a design of such steps without geometry. All else is handed on as it came, and gets its answer,
@@ -38,7 +38,7 @@ _HEADER = (b"content-type", b"application/json")
 
 
 class Express:
-    """ASGI middleware for the paths that are called most; the innermost, so that all others see its answers."""
+    """ASGI middleware for the paths that are called most; the innermost: all others see its answers."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -68,9 +68,7 @@ class Express:
             await self.app(scope, receive, send)
 
 
-async def _send(
-    send: Send, status: int, content: bytes, headers: Iterable[tuple[bytes, bytes]] = ()
-) -> None:
+async def _send(send: Send, status: int, content: bytes, headers: Iterable[tuple[bytes, bytes]] = ()) -> None:
     head = [*headers, (b"content-length", b"%d" % len(content)), _HEADER]
     await send({"type": "http.response.start", "status": status, "headers": head})
     await send({"type": "http.response.body", "body": content})

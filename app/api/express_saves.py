@@ -1,6 +1,6 @@
-"""Plain creates and changes of designs past the general machinery of the web framework: see `app.api.express`.
+"""Plain creates and changes of designs, past the general machinery of the web framework (`app.api.express`).
 
-They are saved and answered by `app.designs.quick`; SQLite only, whose one writer runs units one after another.
+`app.designs.quick` saves them, on SQLite only: there one writer runs units one after another.
 """
 
 from __future__ import annotations
@@ -65,9 +65,9 @@ def plain_save(scope: Scope, longest: int) -> PlainSave | None:
         if name in _ONCE:
             headers[name] = value
     length = headers.get(b"content-length", b"")
-    is_plain = headers.get(b"content-type") in _TYPES[scope["method"]] and (id is None or b"if-match" in headers)
+    is_json = headers.get(b"content-type") in _TYPES[scope["method"]]
     is_short = len(length) < 6 and length.isdigit() and int(length) <= longest
-    return PlainSave(id, headers) if is_plain and is_short else None
+    return PlainSave(id, headers) if is_json and is_short and (id is None or b"if-match" in headers) else None
 
 
 async def saved(services: Services, asked: PlainSave, scope: Scope, body: bytes) -> Design:
@@ -82,7 +82,8 @@ async def saved(services: Services, asked: PlainSave, scope: Scope, body: bytes)
     raw = from_json(body)
     if not isinstance(raw, dict):
         raise TypeError("a design is an object")
-    once = Once(_key(asked), f"{scope['method']} {scope['path']}", hashlib.sha256(body).hexdigest(), from_whom(scope))
+    digest = hashlib.sha256(body).hexdigest()
+    once = Once(_key(asked), f"{scope['method']} {scope['path']}", digest, from_whom(scope))
     unit: Unit[Design]
     if asked.id is None:
         unit = services.quick.creation(raw, once)

@@ -110,7 +110,7 @@ class QuickSaves:
         return draft
 
     def _is_quick(self, document: Mapping[str, Json]) -> bool:
-        """Whether a document, which may be wrong, has no geometry, no arrays, and a few quick steps at most."""
+        """Whether a document, which may be wrong, has no geometry, no arrays and few steps, all quick."""
         if any(document.get(name) for name in _SLOW):
             return False
         parameters, steps = document.get("parameters") or {}, document.get("steps") or {}

@@ -35,6 +35,8 @@ def _fault(error: Mapping[str, Json]) -> Fault:
 
 def resolved(document: Document, catalogues: Catalogues) -> Document:
     """The document with every version pinned: latest is resolved once, when a step or model comes in."""
+    if all(isinstance(one.version, int) for one in (*document.steps.values(), *document.models.values())):
+        return document
     plain = document.model_copy(deep=True)
     for step in plain.steps.values():
         if not isinstance(step.version, int) and step.template in catalogues.templates.ids:

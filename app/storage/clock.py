@@ -25,7 +25,7 @@ from sqlalchemy.sql import func
 from sqlalchemy.sql.compiler import SQLCompiler
 from sqlalchemy.sql.functions import GenericFunction
 
-from app.storage.statements import Statement
+from app.storage.statements import DRIVER, Statement
 from app.storage.tables import Base, CounterRow
 from app.storage.units import Writer
 
@@ -126,7 +126,7 @@ def operated(session: Session) -> int:
 
     On PostgreSQL it is exact everywhere.
     """
-    if session.get_bind().dialect.name == "sqlite":
+    if DRIVER in session.info or session.get_bind().dialect.name == "sqlite":
         return int(_COUNTED.scalar(session) or 0)
     return session.scalar(_OPERATED) or 0
 

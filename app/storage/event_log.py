@@ -37,9 +37,7 @@ _RAISED = {
     )
     for kind, owner in _OWNERS.items()
 }
-_NOTED = Statement(
-    insert(_EVENTS).values(operated=_OPERATED), "topic", "number", "name", "data", "created"
-)
+_NOTED = Statement(insert(_EVENTS).values(operated=_OPERATED), "topic", "number", "name", "data", "created")
 
 
 @dataclass(frozen=True)

@@ -124,8 +124,9 @@ def _savepoint(connection: Connection) -> Iterator[sqlite3.Connection]:
     try:
         yield driver
     except BaseException:
-        driver.execute("ROLLBACK TO unit")
-        driver.execute("RELEASE unit")
+        if driver.in_transaction:  # SQLite may have rolled all of it back, see `expect_transaction`
+            driver.execute("ROLLBACK TO unit")
+            driver.execute("RELEASE unit")
         raise
     driver.execute("RELEASE unit")
 
@@ -164,7 +165,8 @@ class _Pending:
     def _run(self, session: Session) -> None:
         with session:
             self._result = self._context.run(self._unit, session)
-            session.commit()  # writes what is new; raises if the unit has hidden a failed statement
+            if session.in_transaction():  # the ORM was used
+                session.commit()  # writes what is new; raises if the unit has hidden a failed statement
         self._following = session.info.get(AFTER, [])
 
     def settle(self) -> None:

@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session
 
-from app.storage.statements import Statement
+from app.storage.statements import DRIVER, Statement
 from app.storage.tables import Base, CounterRow
 
 IDENTITY = "identity"
@@ -22,7 +22,6 @@ _RAISED = Statement(
     .returning(_COUNTER.c.value)
 )
 _NEXT = select(func.nextval(IDENTITY))
-_TEXT = "%Y-%m-%dT%H:%M:%S.%fZ"
 
 
 def new_id(session: Session) -> str:
@@ -30,7 +29,7 @@ def new_id(session: Session) -> str:
 
     It is counted up in the unit of work that uses it.
     """
-    is_sqlite = session.get_bind().dialect.name == "sqlite"
+    is_sqlite = DRIVER in session.info or session.get_bind().dialect.name == "sqlite"
     number: int | None = _RAISED.scalar(session) if is_sqlite else session.connection().scalar(_NEXT)
     assert number is not None, "a migrated database has its counters"
     return f"{number:014x}{secrets.token_hex(5)}"
@@ -38,9 +37,9 @@ def new_id(session: Session) -> str:
 
 def now() -> str:
     """Return the present time in UTC as text."""
-    return datetime.now(UTC).strftime(_TEXT)
+    return as_text(datetime.now(UTC))
 
 
 def as_text(moment: datetime) -> str:
     """Return a moment in UTC as ISO 8601 text of constant length: text order is time order."""
-    return moment.strftime(_TEXT)
+    return f"{moment.replace(tzinfo=None).isoformat(timespec='microseconds')}Z"

@@ -1,16 +1,17 @@
 """Statements of every save, compiled once.
 
-SQLAlchemy looks up a compiled statement, converts each value and wraps each row again at every execution, which
-takes ten times as long as SQLite itself. A `Statement` does this once. In a unit of work on SQLite it hands its
-text and its values to the driver; everywhere else (PostgreSQL, reading sessions) SQLAlchemy executes it.
+At every execution SQLAlchemy looks up the compiled statement, prepares each value and wraps each row. That
+takes several times as long as SQLite itself. In a unit of work on SQLite a `Statement` hands its text and its
+values to the driver; everywhere else (PostgreSQL, reading sessions) SQLAlchemy executes it.
 """
 
 from __future__ import annotations
 
 import sqlite3
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 from sqlalchemy import ClauseElement, Executable
 from sqlalchemy.dialects.sqlite import dialect
@@ -51,13 +52,13 @@ class Statement:
         if driver is None:
             result = session.connection().execute(self.clause, values)
             return result.all() if result.returns_rows else ()
-        text, bound, converts = self._compiled
-        row = [convert(given) for convert, given in _arguments(bound, values or {})]
+        compiled = self._compiled
+        row = compiled.parameters(values or {})
         try:
-            rows = driver.execute(text, row).fetchall()
+            rows = driver.execute(compiled.text, row).fetchall()
         except sqlite3.Error as error:
-            raise _translated(text, row, error) from error
-        return [_converted(found, converts) for found in rows] if converts else rows
+            raise _translated(compiled.text, row, error) from error
+        return _converted(rows, compiled.reading) if compiled.reading else rows
 
     def scalar(self, session: Session, values: Values | None = None) -> Any:
         """The first column of the first row; None if there is no row."""
@@ -71,58 +72,59 @@ class Statement:
         if driver is None:
             session.connection().execute(self.clause, many)
             return
-        text, bound, _ = self._compiled
-        rows = [[convert(given) for convert, given in _arguments(bound, values)] for values in many]
+        compiled = self._compiled
+        rows = list(map(compiled.parameters, many))
         try:
-            driver.executemany(text, rows)
+            driver.executemany(compiled.text, rows)
         except sqlite3.Error as error:
-            raise _translated(text, rows, error) from error
+            raise _translated(compiled.text, rows, error) from error
 
     @cached_property
-    def _compiled(self) -> tuple[str, list[_Bound], dict[int, _Convert]]:
-        """Its text for SQLite, where each of its parameters comes from, and how columns of rows are read."""
+    def _compiled(self) -> _Compiled:
         assert isinstance(self.clause, ClauseElement)
         compiled = self.clause.compile(dialect=_SQLITE, column_keys=list(self.names))
-        assert isinstance(compiled, SQLCompiler) and compiled.positiontup is not None
-        late = compiled.literal_execute_params or compiled.post_compile_params
-        assert not (late or compiled.update_prefetch), "it needs SQLAlchemy"
+        assert isinstance(compiled, SQLCompiler)
+        assert compiled.positiontup is not None
+        late = compiled.literal_execute_params or compiled.post_compile_params or compiled.update_prefetch
+        assert not late, "it needs SQLAlchemy at every execution"
         constants = compiled.construct_params(dict.fromkeys(self.names), _check=False)
         for column in compiled.insert_prefetch:
             assert isinstance(column.default, ScalarElementColumnDefault), "its value is computed"
             constants[column.key] = column.default.arg
-        assert set(self.names) <= set(compiled.positiontup), "each name is that of a value"
-        bound = [
-            _Bound(
-                name if name in self.names else None,
-                constants[name],
-                compiled._bind_processors.get(name, _same),
-            )
-            for name in compiled.positiontup
-        ]
+        places = compiled.positiontup
+        assert set(self.names) <= set(places), "each name is that of a value"
         types = [column.type for column in getattr(self.clause, "exported_columns", ())]
-        converts = {n: one for n, kind in enumerate(types) if (one := kind.result_processor(_SQLITE, None))}
-        return str(compiled), bound, converts
+        return _Compiled(
+            str(compiled),
+            [(name if name in self.names else None, constants[name]) for name in places],
+            {n: one for n, name in enumerate(places) if (one := compiled._bind_processors.get(name))},
+            {n: one for n, kind in enumerate(types) if (one := kind.result_processor(_SQLITE, None))},
+        )
 
 
-class _Bound(NamedTuple):
-    """A parameter: the name of its value, or a constant; and how it is converted."""
+@dataclass(frozen=True)
+class _Compiled:
+    """A statement as SQLite's driver takes it.
 
-    name: str | None
-    constant: object
-    convert: _Convert
+    `bound` has for each parameter the name of its value, or None and a constant. `writing` converts
+    parameters by their places, `reading` columns of rows.
+    """
+
+    text: str
+    bound: list[tuple[str | None, object]]
+    writing: dict[int, _Convert]
+    reading: dict[int, _Convert]
+
+    def parameters(self, values: Values) -> list[object]:
+        """The parameters in their order."""
+        row = [constant if name is None else values[name] for name, constant in self.bound]
+        for n, convert in self.writing.items():
+            row[n] = convert(row[n])
+        return row
 
 
-def _same(value: object) -> object:
-    return value
-
-
-def _arguments(bound: Iterable[_Bound], values: Values) -> Iterable[tuple[_Convert, object]]:
-    for name, constant, convert in bound:
-        yield convert, constant if name is None else values[name]
-
-
-def _converted(row: Row, converts: Mapping[int, _Convert]) -> Row:
-    return [converts[n](value) if n in converts else value for n, value in enumerate(row)]
+def _converted(rows: Iterable[Row], converts: Mapping[int, _Convert]) -> list[Row]:
+    return [[converts[n](value) if n in converts else value for n, value in enumerate(row)] for row in rows]
 
 
 def _translated(text: str, parameters: object, error: sqlite3.Error) -> BaseException:
