@@ -58,8 +58,9 @@ def assemble_calculations(
     size = settings.calculation_processes or len(os.sched_getaffinity(0))
     limits = Limits(settings.calculation_job_deadline, settings.calculation_memory_mb)
     preload = (*PRELOAD, *sheets)
-    light = WarmProcesses(preload, spares=size)
-    processes = CalculationProcesses(light, lambda: WarmProcesses((*preload, *designs), spares=size))
+    processes = CalculationProcesses(
+        lambda: WarmProcesses(preload, spares=size), lambda: WarmProcesses((*preload, *designs), spares=size)
+    )
     stack.callback(processes.close)
     pool = CalculationPool(processes, size, settings.calculation_waiting, limits)
     stack.callback(pool.close)

@@ -1,8 +1,8 @@
 """Calculation processes of two kinds: light ones for templates, others with the design network loaded.
 
 The network imports the geometry kernel, which takes seconds and as much memory as all the rest. So functions
-of designs run in processes that are forked from one with these modules loaded. They are started when the
-first such function comes: a service whose clients evaluate templates only never has them.
+of designs run in processes that are forked from one with these modules loaded. Each kind is started when the
+first function for it comes: a service whose clients evaluate quick templates only never has them.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import TypeVar, TypeVarTuple
 
 from app.workers.base import Limits
+from app.workers.errors import JobCancelled
 from app.workers.pool import WarmProcesses
 from templates.core.progress import Reporter
 
@@ -27,13 +28,13 @@ class CalculationProcesses:
     """The worker of the calculation pool.
 
     Args:
-        light: processes with the templates loaded.
-        start: starts those with the network of designs.
+        light: starts processes with the templates loaded.
+        designs: starts those with the network of designs.
     """
 
-    def __init__(self, light: WarmProcesses, start: Callable[[], WarmProcesses]) -> None:
-        self._light, self._start = light, start
-        self._others: WarmProcesses | None = None
+    def __init__(self, light: Callable[[], WarmProcesses], designs: Callable[[], WarmProcesses]) -> None:
+        self._starts = {True: light, False: designs}  # by whether functions need no network of designs
+        self._started: dict[bool, WarmProcesses] = {}
         self._starting = threading.Lock()
         self._closed = False
 
@@ -46,26 +47,34 @@ class CalculationProcesses:
         cancelled: threading.Event | None = None,
     ) -> T:
         """Run the function in a process that has its modules; see `Worker.run`."""
-        worker = self._light if is_light(function.__module__) else self._with_designs()
+        worker = self._processes(is_light(function.__module__))
         return worker.run(function, *args, limits=limits, on_progress=on_progress, cancelled=cancelled)
 
     def answers(self) -> bool:
-        """Return whether a function would find a process that is alive; see `Worker.answers`."""
-        return self._light.answers() and (self._others is None or self._others.answers())
+        """Return whether a function would find a process that is alive, or start one; see `Worker.answers`."""
+        return all(processes.answers() for processes in list(self._started.values()))
 
     def close(self) -> None:
         """Kill all processes."""
-        self._light.close()
         with self._starting:
             self._closed = True
-            if self._others is not None:
-                self._others.close()
+            for processes in self._started.values():
+                processes.close()
 
-    def _with_designs(self) -> WarmProcesses:
+    def _processes(self, light: bool) -> WarmProcesses:
+        """Processes of a kind, started if there are none.
+
+        Raises
+        ------
+        JobCancelled
+            The service ends.
+        """
         with self._starting:
-            if self._others is None and not self._closed:
-                self._others = self._start()
-            return self._others or self._light
+            if self._closed:
+                raise JobCancelled
+            if light not in self._started:
+                self._started[light] = self._starts[light]()
+            return self._started[light]
 
 
 def is_light(module: str) -> bool:

@@ -17,7 +17,9 @@ def insert_new(session: Session, row: Base) -> bool:
 
     While another transaction is inserting it, this one waits for its end.
     """
-    return insert_new_values(session, row.__table__, inspect(row).dict)
+    values = inspect(row).dict
+    statement = _insertion(row.__table__, tuple(values), _dialect(session))
+    return session.execute(statement.clause, values).first() is not None
 
 
 def insert_new_values(session: Session, table: FromClause, values: Values) -> bool:
@@ -27,7 +29,8 @@ def insert_new_values(session: Session, table: FromClause, values: Values) -> bo
 
 def upsert(session: Session, row: Base) -> None:
     """Insert a row, or give the one of its key its values; columns that it does not set stay."""
-    upsert_values(session, row.__table__, inspect(row).dict)
+    values = inspect(row).dict
+    session.execute(_replacement(row.__table__, tuple(values), _dialect(session)).clause, values)
 
 
 def upsert_values(session: Session, table: FromClause, values: Values) -> None:

@@ -6,6 +6,7 @@ import sys
 import pytest
 
 from app.calculations.processes import CalculationProcesses, is_light
+from app.workers.errors import JobCancelled
 from app.workers.pool import WarmProcesses
 
 
@@ -34,25 +35,32 @@ def of_designs(name):
 of_designs.__module__ = "app.designs.for_a_test"
 
 
-def test_processes_for_designs_start_when_they_are_needed(monkeypatch):
+def test_each_kind_of_processes_starts_when_it_is_needed(monkeypatch):
     module = type(sys)("app.designs.for_a_test")
     module.of_designs = of_designs
     monkeypatch.setitem(sys.modules, "app.designs.for_a_test", module)
     started = []
 
-    def start():
-        started.append(1)
-        return WarmProcesses(("json.tool",))
+    def starting(name, *modules):
+        def start():
+            started.append(name)
+            return WarmProcesses(modules)
 
-    processes = CalculationProcesses(WarmProcesses(()), start)
+        return start
+
+    processes = CalculationProcesses(starting("light"), starting("designs", "json.tool"))
     try:
-        assert processes.run(os.getppid) > 0
-        assert processes.answers()
+        assert processes.answers()  # the service is ready before any is there
         assert started == []
+        assert processes.run(os.getppid) == processes.run(os.getppid) > 0
+        assert processes.answers()
+        assert started == ["light"]
         with pytest.raises(ModuleNotFoundError):  # the function is looked for there, where nobody put it
             processes.run(of_designs, "json.tool")
         with pytest.raises(ModuleNotFoundError):
             processes.run(of_designs, "json.tool")
-        assert started == [1]
+        assert started == ["light", "designs"]
     finally:
         processes.close()
+    with pytest.raises(JobCancelled):
+        processes.run(os.getppid)
