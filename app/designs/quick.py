@@ -110,7 +110,7 @@ class QuickSaves:
         return draft
 
     def _is_quick(self, document: Mapping[str, Json]) -> bool:
-        """Whether a document, which may be wrong, has no geometry, no arrays and few steps, all quick."""
+        """Return whether a document, which may be wrong, has no geometry, no arrays, few and quick steps."""
         if any(document.get(name) for name in _SLOW):
             return False
         parameters, steps = document.get("parameters") or {}, document.get("steps") or {}
@@ -148,7 +148,7 @@ def _is_quick_step(catalogues: Catalogues, step: Json) -> bool:
 
 
 def _is_single(value: Json) -> bool:
-    """Whether a value as typed is no list."""
+    """Return whether a value as typed is no list."""
     if isinstance(value, dict):
         return not any(isinstance(part, (list, dict)) for part in value.values())
     return not isinstance(value, list)

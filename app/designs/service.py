@@ -294,7 +294,7 @@ def _require_match(expected: str | None, head: int) -> None:
 
 
 def matches(expected: str, head: int) -> bool:
-    """Whether an If-Match names the newest revision, or any."""
+    """Return whether an If-Match names the newest revision, or any."""
     return expected.strip() in ("*", f'"{head}"')
 
 
