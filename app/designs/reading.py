@@ -35,7 +35,9 @@ def _fault(error: Mapping[str, Json]) -> Fault:
 
 def resolved(document: Document, catalogues: Catalogues) -> Document:
     """The document with every version pinned: latest is resolved once, when a step or model comes in."""
-    if all(isinstance(one.version, int) for one in (*document.steps.values(), *document.models.values())):
+    versions = [step.version for step in document.steps.values()]
+    versions += [model.version for model in document.models.values()]
+    if all(isinstance(version, int) for version in versions):
         return document
     plain = document.model_copy(deep=True)
     for step in plain.steps.values():

@@ -97,7 +97,7 @@ class Statement:
         return _Compiled(
             str(compiled),
             [(name if name in self.names else None, constants[name]) for name in places],
-            {n: one for n, name in enumerate(places) if (one := compiled._bind_processors.get(name))},
+            {n: one for n, name in enumerate(places) if callable(one := compiled._bind_processors.get(name))},
             {n: one for n, kind in enumerate(types) if (one := kind.result_processor(_SQLITE, None))},
         )
 
