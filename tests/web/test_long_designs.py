@@ -101,7 +101,7 @@ def test_a_step_is_fetched_edited_kept_as_a_draft_and_saved(watched, http, long)
     watched.open(long)
     fold, load = page.locator('[data-fold="film_7"]'), page.locator('[name="film_7.radial_load"]')
     expect(load).to_have_count(0)
-    page.locator('[data-pick-for="film_0.radial_load"]').wait_for(state="attached")  # the scripts are there
+    page.locator("[data-pick-for$='.radial_load']").wait_for(state="attached")  # the scripts are there
     fold.locator("summary h2").first.click()
     expect(load).to_have_value("27 kN")
     expect(page.locator('[data-pick-for="film_7.radial_load"]')).to_have_count(1)
