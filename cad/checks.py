@@ -148,7 +148,10 @@ def check_dimensions(model: CadModel, seen: Mapping[str, Seen]) -> dict[str, Dim
     except LookupError as error:
         detail = f"{model.id} does not show the surfaces from which its dimensions are read ({error})"
         raise GeometryError("dimension", detail, model.inputs) from error
-    wanted = {name: _requested(model, name) for name in measured}
+    wanted: dict[str, Dimension] = {}
+    for name in measured:
+        declared = model.inputs[name]
+        wanted[name] = np.asarray(declared.meaning.scale.from_si(getattr(model, declared.attribute))).tolist()
     wrong = {
         n: v
         for n, v in measured.items()
@@ -178,12 +181,6 @@ def _check_body(model: CadModel, part: Part, one: Measured) -> None:
         )
     if not isclose(one.volume, part.volume, rel_tol=part.tolerance):
         raise refuse("volume", f"should have a volume of {part.volume:.9g} mm³; it has {one.volume:.9g} mm³")
-
-
-def _requested(model: CadModel, name: str) -> Dimension:
-    declared = model.inputs[name]
-    value: Dimension = np.asarray(declared.meaning.scale.from_si(getattr(model, declared.attribute))).tolist()
-    return value
 
 
 def _are_alike(measured: Dimension, wanted: Dimension) -> bool:

@@ -94,8 +94,11 @@ def _cell(
     choices: Choices, reference: Reference, name: str, raw: Raw, declared: Input | None = None
 ) -> tuple[Cell, list[Fault]]:
     """A cell with those of its relations that can be read, and the faults of the others."""
-    texts = [item for item in raw if is_relation(item)] if isinstance(raw, list) else [raw]
-    if not texts or not is_relation(texts[0]):
+    if isinstance(raw, list):
+        texts = [item for item in raw if is_relation(item)]
+    else:
+        texts = [raw] if "=" in str(raw) and is_relation(raw) else []  # most cells are plain quantities
+    if not texts:
         return Cell(reference, name, raw, declared=declared), []
     relations: list[Relation] = []
     faults: list[Fault] = []
