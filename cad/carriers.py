@@ -6,15 +6,16 @@ claim the same face, the build is refused.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import isclose
 
 from cadquery import Shape, Vector
 
 from cad.errors import GeometryError
 from cad.surfaces import FaceSeen, X, Y, Z, faces_of
-from cad.toleranced import Carried
+from cad.toleranced import REPEATED, Carried
 
 _AXES = {"x": X, "y": Y, "z": Z}
 _CLOSE = 1e-6  # [mm]: a face of this size is the parameter's
@@ -28,6 +29,24 @@ class Place:
 
     first: tuple[int, ...]
     second: tuple[int, ...] = ()
+
+
+def located(
+    declared: Mapping[str, Carried],
+    solids: Mapping[str, Shape],
+    sizes: Mapping[str, float],
+    names: Iterable[str],
+) -> dict[str, Carried]:
+    """The declarations, with the planes of named dimensions that repeat along an axis counted on the solids.
+
+    Raises
+    ------
+    GeometryError
+        `tolerance`, where no planes show such a dimension.
+    """
+    carriers = Carriers(solids, declared, sizes)
+    repeated = (name for name in names if declared[name].faces in REPEATED)
+    return {**declared, **{name: carriers.counted(name) for name in repeated}}
 
 
 class Carriers:
@@ -61,6 +80,31 @@ class Carriers:
                 detail = f"the same faces are {size:g} mm for {name} and for {other}; change one by 0.1 %"
                 raise GeometryError("tolerance", detail, (name, other))
         return [Place(faces or self._missing(one, size))]
+
+    def counted(self, name: str) -> Carried:
+        """A dimension that repeats along an axis, as pairs of planes across that.
+
+        Raises
+        ------
+        GeometryError
+            `tolerance`, where no planes show it.
+        """
+        one, size = self._declared[name], self._sizes[name]
+        of = [self._declared[other] for other in one.others_named]
+        axis = _AXES[of[0].where]
+        reaches = [face.surface.turned(axis).reach for other in of for face in self._of_size(other)]
+        planes = [f for f in self._faces(one) if f.kind == "plane" and f.surface.along(axis)]
+        levels = sorted({round(f.surface.point.dot(axis), 6) for f in planes})
+        pairs = tuple(
+            (number, number + 1)
+            for number, (low, high) in enumerate(pairwise(levels))
+            if isclose(high - low, size, abs_tol=2 * _CLOSE)
+            and any(low - _CLOSE < (a + b) / 2 < high + _CLOSE for a, b in reaches)
+            == (one.faces == "shoulders")
+        )
+        if not pairs:
+            self._missing(one, size)
+        return replace(one, faces="planes", where=of[0].where, levels=pairs)
 
     def _round(self, one: Carried) -> tuple[int, ...]:
         """The faces of a diameter; without those that belong to the dimension of an end."""

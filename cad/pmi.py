@@ -36,6 +36,8 @@ _TYPES: Mapping[Faces, str] = {
     "spheres": "XCAFDimTolObjects_DimensionType_Size_SphericalDiameter",
     "planes": _DISTANCE,
     "walls": _DISTANCE,
+    "shoulders": _DISTANCE,
+    "discs": _DISTANCE,
     "between": _DISTANCE,
 }
 _FORMS: Mapping[Form, str] = {

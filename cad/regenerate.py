@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from cad.carriers import located
 from cad.catalogue import models
 from cad.checks import (
     check_bodies,
@@ -31,14 +32,14 @@ from cad.errors import GeometryError
 from cad.header import Header
 from cad.inspect import bounding_box, look_at, measure, summarise
 from cad.lists import rounded, written
-from cad.model import CadModel, Dimension, arrays_of_points, mm
+from cad.model import CadModel, Dimension, Part, arrays_of_points, mm
 from cad.overlaps import Clearance, Report, require_few_meeting
 from cad.pmi import Annotations
 from cad.stated import check_statements
 from cad.statements import read_statements
 from cad.step import Body, read_step, write_step
 from cad.step_text import KERNEL
-from cad.toleranced import Limits, carried, in_unit, limits, limits_of
+from cad.toleranced import REPEATED, Limits, carried, in_unit, limits, limits_of
 from cad.toleranced import written as with_limits
 from templates.core.catalogue.digests import content_digest
 from templates.core.catalogue.loading import is_outside
@@ -189,7 +190,7 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
         standing = [Body(part.name, part.solid, part.colour, part.places) for part in parts]
         require_few_meeting(standing, model.component_of)
         report(0.4, "exporting")
-        annotations = _annotations(model, {part.name for part in parts})
+        annotations = _annotations(model, parts)
         header = Header(cls.id, cls.version, texts, key)
         step = write_step(parts, header, annotations, rounds_noise=model.rounds_noise)
         report(0.6, "reading back")
@@ -214,13 +215,14 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
     return Build(key, cls.id, cls.version, _plain(model), step, measures, dimensions, materials, between)
 
 
-def _annotations(model: CadModel, drawn: Collection[str]) -> Annotations | None:
+def _annotations(model: CadModel, parts: Sequence[Part]) -> Annotations | None:
     """What the file says beside the shape; nothing where no dimension has a tolerance."""
     if not (within := limits(model)):
         return None
-    declared = {name: one.among(drawn) for name, one in carried(type(model)).items()}
+    solids = {part.name: part.solid for part in parts}
+    declared = {name: one.among(solids) for name, one in carried(type(model)).items()}
     sizes = {name: mm(getattr(model, model.inputs[name].attribute)) for name in declared}
-    return Annotations(declared, within, sizes)
+    return Annotations(located(declared, solids, sizes, within), within, sizes)
 
 
 def _plain(model: CadModel) -> dict[str, Value]:
@@ -251,7 +253,10 @@ def _within(within: Limits, text: str, unit: str) -> tuple[str, dict[str, Value]
 def _key(cls: type[CadModel], texts: Mapping[str, str]) -> str:
     identity = [cls.id, cls.version, sorted(texts.items()), KERNEL, RECIPE, *_code(cls)]
     if cls.toleranced.keys() & limits_of(texts).keys():
-        identity.append(cls.toleranced)
+        given = limits_of(texts)
+        identity.append(
+            {n: one for n, one in cls.toleranced.items() if n in given or not {*REPEATED} & one.keys()}
+        )  # released models have lengths that repeat since a later time
     return hashlib.sha256(json.dumps(identity, default=dict).encode()).hexdigest()
 
 

@@ -18,6 +18,10 @@ named as the model. One of these says which faces are meant:
 - `planes`: from one plane across that axis to another; `levels` counts these planes, `[[0, -1]]` if it does
   not say, which is from the first to the last. Each pair of numbers is a dimension of its own;
 - `walls`: from the thinnest to the thickest cylinder about that axis;
+- `shoulders`: from plane to plane on either side of each cylinder of another dimension, which is named: the
+  length of each pin of a shaft;
+- `discs`: from plane to plane, neighbours across the axis of other dimensions, all named, with none of their
+  cylinders between: the thickness of each web;
 - `between`: from the axis of one dimension's cylinders to that of another's, both named.
 
 `datum` makes the faces a datum. `cylindricity`, `perpendicularity` and `parallelism` are shares of the
@@ -42,11 +46,15 @@ if TYPE_CHECKING:
     from cad.header import Header
     from cad.model import CadModel
 
-Faces = Literal["cylinders", "beside", "along", "askew", "spheres", "planes", "walls", "between"]
+Faces = Literal[
+    "cylinders", "beside", "along", "askew", "spheres", "planes", "walls", "shoulders", "discs", "between"
+]
 Form = Literal["cylindricity", "perpendicularity", "parallelism"]
 FACES: tuple[Faces, ...] = get_args(Faces)
 FORMS: tuple[Form, ...] = get_args(Form)
 _BY_AXIS = ("cylinders", "beside", "along", "planes", "walls")
+REPEATED = ("shoulders", "discs")
+"""Sorts of faces of a length that may repeat along an axis."""
 _MORE = frozenset({"of", "end", "levels", "datum", "to"})
 _DIGITS = 9  # decimals of a limit in mm: what differs less is the same limit
 
@@ -88,6 +96,11 @@ class Carried:
     to: str = ""
     others: tuple[str, ...] = ()
 
+    @property
+    def others_named(self) -> tuple[str, ...]:
+        """The dimensions that it names, of a length that repeats along a shaft."""
+        return (self.where,) if isinstance(self.where, str) else tuple(self.where)
+
     def among(self, drawn: Collection[str]) -> Carried:
         """The same on that of its parts which is drawn; on the first of them if none is."""
         part = next((name for name in (self.part, *self.others) if name in drawn), self.part)
@@ -126,6 +139,8 @@ def carried(cls: type[CadModel]) -> dict[str, Carried]:
     for name, one in read_.items():
         if one.to and one.to not in letters:
             raise _wrong(cls, name, f"no dimension is the datum {one.to!r}")
+        if one.faces in REPEATED and not {*one.others_named} <= read_.keys() - {name}:
+            raise _wrong(cls, name, f"{one.faces} names other dimensions of toleranced")
         if one.faces == "between" and not (len(one.where) == 2 and {*one.where} <= read_.keys() - {name}):
             raise _wrong(cls, name, "between names two other dimensions of toleranced")
     return read_

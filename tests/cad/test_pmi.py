@@ -5,6 +5,7 @@ import io
 import re
 import subprocess
 import sys
+from collections import Counter
 from decimal import Decimal
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from seeds import seeded
 from cad.catalogue import models
 from cad.errors import GeometryError
 from cad.inspect import measure
-from cad.regenerate import as_text, regenerate_class
+from cad.regenerate import as_text, build_key, regenerate_class
 from cad.statements import UNITS, compared, read_statements
 from cad.step import read_step
 from templates.core.errors import InvalidInputs
@@ -161,6 +162,32 @@ def files(tmp_path_factory):
 
 def test_property_limits_are_read_back_exactly_by_a_second_reader(files):
     assert len(files) == 10
+
+
+@pytest.mark.parametrize("nose", ["35 mm", "55 mm"])  # 55: as thick as the journal, so without a shoulder
+def test_lengths_that_repeat_along_a_shaft_are_stated_at_each_place(nose):
+    cls = models().get("crankshaft", 2)
+    texts = as_text(cls.from_quantities({**cls.example, "nose_diameter": nose}))
+    limits = {
+        "journal_length": (26.0, -0.1, 0.0),
+        "pin_length": (32.0, 0.0, 0.052),
+        "web_thickness": (18.0, -0.05, 0.05),
+    }
+    for name, (_, lower, upper) in limits.items():
+        texts[name] += f" {upper:+g}/{lower:+g} mm"
+    step = check(cls, as_text(cls.from_quantities(texts)), limits)
+    counts = Counter(d.name for d in File(step).dimensions())
+    assert counts == {"journal_length": 3 - (nose == "55 mm"), "pin_length": 2, "web_thickness": 4}
+
+
+def test_a_length_that_repeats_does_not_change_the_key_of_other_tolerances(monkeypatch):
+    cls = models().get("crankshaft", 2)
+    texts = {**cls.example, "pin_diameter": "48 mm h6"}
+    one = build_key(cls.from_quantities(texts))
+    two = build_key(cls.from_quantities({**texts, "pin_length": "32 mm H9"}))
+    older = {n: said for n, said in cls.toleranced.items() if not {"shoulders", "discs"} & said.keys()}
+    monkeypatch.setattr(cls, "toleranced", older)
+    assert build_key(cls.from_quantities(texts)) == one != two
 
 
 def test_property_netgen_opens_some_files(files):

@@ -87,6 +87,8 @@ def test_every_model_carries_its_diameters(model):
         ({"size": {"planes": "z", "perpendicularity": 1, "to": "A"}}, "no dimension is the datum 'A'"),
         ({"size": {"cylinders": "z", "cylindricity": 2}}, "share above 0 and up to 1"),
         ({"size": {"between": ["one", "other"]}}, "names two other dimensions"),
+        ({"size": {"shoulders": "pin"}}, "shoulders names other dimensions"),
+        ({"size": {"discs": ["pin"]}}, "discs names other dimensions"),
         ({"size": {"planes": "w"}}, "an axis"),
         ({"size": {"planes": "z", "levels": "all"}}, "pairs of whole numbers"),
         ({"size": {"cylinders": "z", "end": "front"}}, "low or high"),
