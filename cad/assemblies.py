@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from cad.brought import BroughtModel, Description, Parameter, attribute_of, parts_of_step
 from cad.catalogue import models
 from cad.errors import GeometryError, UnreadableStep
-from cad.model import Box, CadModel, Dimension, Part, names_at
+from cad.model import BETWEEN, Box, CadModel, Dimension, Part, names_at
 from cad.shaft import STEEL_DENSITY
 from templates.core.errors import listed, plain
 from templates.core.nearest import nearest
@@ -126,6 +126,14 @@ class AssemblyModel(BroughtModel):
         """The fixed part to which a solid of this name belongs; None of a solid of its model."""
         name = part.partition(_WITHIN)[0]
         return name if any(name == one.name for one in self.brought.components) else None
+
+    @classmethod
+    def further_measures(cls) -> Mapping[str, str]:
+        """Clearance and overlap of each fixed part, unless a parameter has that name."""
+        measures = {
+            f"{one.name}_{end}": unit for one in cls.brought.components for end, unit in BETWEEN.items()
+        }
+        return {name: unit for name, unit in measures.items() if name not in {*cls.inputs, *cls.formulas}}
 
     def may_overlap(self, one: str, other: str) -> bool:
         """Return whether the description allows two of its solids to take the same space."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from math import isclose, isfinite
+from math import inf, isclose, isfinite
 
 import numpy as np
 
@@ -102,6 +102,21 @@ def check_clearances(model: CadModel, between: Sequence[Clearance]) -> None:
         listed = "; ".join(map(str, wrong[:MOST_NAMED]))
         more = "; and at least one more" if len(wrong) > MOST_NAMED else ""
         raise GeometryError("interference", f"parts of {model.id} interfere: {listed}{more}", model.inputs)
+
+
+def between_parts(model: CadModel, between: Sequence[Clearance]) -> dict[str, float]:
+    """The least distance [mm] of each fixed part from all other parts, and the space that it shares [mm³].
+
+    The distance is 0 where it touches or overlaps one. A part that is compared with none has neither.
+    """
+    measures: dict[str, float] = {}
+    for one in between:
+        for group in {model.component_of(one.one), model.component_of(one.other)} - {None}:
+            clearance, overlap = f"{group}_clearance", f"{group}_overlap"
+            measures[clearance] = min(one.distance, measures.get(clearance, inf))
+            measures[overlap] = one.overlap + measures.get(overlap, 0.0)
+    wanted = model.further_measures()
+    return {name: value for name, value in measures.items() if name in wanted}
 
 
 def _interferes(model: CadModel, one: Clearance) -> bool:

@@ -118,6 +118,10 @@ class Box:
     high: tuple[float, float, float]
 
 
+BETWEEN = {"clearance": "mm", "overlap": "mm**3"}
+"""What is measured between a fixed part of an assembly and all other parts: the ends of names, and units."""
+
+
 class CadModel(Template):
     """Base of all models."""
 
@@ -152,6 +156,11 @@ class CadModel(Template):
     def component_of(self, part: str) -> str | None:
         """The fixed part of an assembly to which a solid belongs; None of the solids of the model itself."""
         return None
+
+    @classmethod
+    def further_measures(cls) -> Mapping[str, str]:
+        """What is measured beside that of every model, with units: `seal_clearance` of an assembly's seal."""
+        return {}
 
     def may_overlap(self, one: str, other: str) -> bool:
         """Return whether two solids, of which one is of a fixed part, may take the same space."""

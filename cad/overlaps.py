@@ -6,7 +6,8 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import chain, combinations
+from math import inf
 
 from cadquery import Shape
 from OCP.Bnd import Bnd_Box
@@ -81,7 +82,8 @@ def clearances(bodies: Sequence[Body], group: Group, report: Report | None = Non
     """What lies between each fixed part and every other part; `group` says to which one a body belongs.
 
     Solids of one fixed part are not compared with each other, nor are those of none. All parts of which the
-    boxes meet are compared; of the others those whose boxes are closest. `report` hears how far it is.
+    boxes meet are compared; of the others those whose boxes are closest, and those that may be closer to a
+    fixed part than what was compared with it. `report` hears how far it is.
 
     Raises
     ------
@@ -93,14 +95,21 @@ def clearances(bodies: Sequence[Body], group: Group, report: Report | None = Non
     pairs = _pairs(standing)
     _require_few(standing, pairs)
     chosen = [pair for n, pair in enumerate(pairs) if n < MOST_CLEARANCES or pair.between <= _TOUCHING]
+    rest = (pair for n, pair in enumerate(pairs) if n >= MOST_CLEARANCES and pair.between > _TOUCHING)
+    nearest: dict[str | None, float] = {}
     shown = 0.0
-    for number, pair in enumerate(chosen):
+    for number, pair in enumerate(chain(chosen, rest)):
         one, other = standing[pair.i], standing[pair.j]
+        groups = {one.group, other.group} - {None}
+        if number >= len(chosen) and all(nearest.get(name, inf) <= pair.between for name in groups):
+            continue
         if report is not None and time.monotonic() - shown >= _SHOWN_EVERY:
             what = f"comparing {one.name} with {other.name}, pair {number + 1} of {len(chosen)}"
-            report(number / len(chosen), what)
+            report(min(number / len(chosen), 1.0), what)
             shown = time.monotonic()
-        yield _between(one.name, one.shape, other.name, other.shape)
+        found = _between(one.name, one.shape, other.name, other.shape)
+        nearest.update((name, min(found.distance, nearest.get(name, inf))) for name in groups)
+        yield found
 
 
 def require_few_meeting(bodies: Sequence[Body], group: Group) -> None:

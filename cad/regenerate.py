@@ -20,6 +20,7 @@ import numpy as np
 from cad.carriers import located
 from cad.catalogue import models
 from cad.checks import (
+    between_parts,
     check_bodies,
     check_box,
     check_clearances,
@@ -209,7 +210,7 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
     if annotations is not None:
         check_statements(parts, bodies, annotations, read_statements(step))
     densities = {part.name: part.density for part in parts}
-    measures = summarise(bodies, measured, densities, box)
+    measures = summarise(bodies, measured, densities, box) | between_parts(model, between)
     report(1.0, "done")
     materials = {part.name: part.made_of for part in parts}
     return Build(key, cls.id, cls.version, _plain(model), step, measures, dimensions, materials, between)

@@ -13,21 +13,23 @@ from app.reference import Reference
 from app.solids.questions import Question, faults, in_order, not_offered, question
 from cad.analysis.kinds import KINDS, LISTS, TABLES
 from cad.inspect import MEASURES
-from cad.model import CadModel
+from cad.model import BETWEEN, CadModel
 from templates.core.errors import Fault, unknown_name
+from templates.core.language.template import Template
 
 
 def measured_unit(reference: Reference) -> str:
     """The unit of what is measured on a solid: `model.mass`, or `throw.torsion.stiffness`."""
     if reference.analysis is None:
-        return MEASURES[reference.output or ""]
+        output = reference.output or ""
+        return MEASURES.get(output) or BETWEEN[output.rpartition("_")[2]]
     return KINDS[reference.analysis][reference.output or ""]
 
 
-def is_measured(reference: Reference, declared: Iterable[str]) -> bool:
+def is_measured(reference: Reference, declared: Iterable[str], cls: type[Template]) -> bool:
     """Return whether a name within a model is a measure of its solid, or an output of a declared analysis."""
     if reference.analysis is None:
-        return reference.output in MEASURES
+        return reference.output in MEASURES or reference.output in _further(cls)
     return reference.analysis in declared and reference.output in KINDS[reference.analysis]
 
 
@@ -43,10 +45,15 @@ def axes_of(reference: Reference) -> int:
     return 2 if reference.output in TABLES else int(reference.output in LISTS)
 
 
-def measured_names(declared: Iterable[str]) -> Iterator[str]:
+def measured_names(declared: Iterable[str], cls: type[Template]) -> Iterator[str]:
     """Every name of that sort."""
     yield from MEASURES
+    yield from _further(cls)
     yield from (f"{kind}.{output}" for kind in declared for output in KINDS[kind])
+
+
+def _further(cls: type[Template]) -> Mapping[str, str]:
+    return cls.further_measures() if issubclass(cls, CadModel) else {}
 
 
 def questions(name: str, model: Model, cls: type[CadModel]) -> tuple[dict[str, Question], list[Fault]]:

@@ -24,6 +24,7 @@ Measures = Mapping[str, float]  # in the units of MEASURES
 Measured = Callable[[CadModel], Measures | None]
 Outputs = Mapping[str, Mapping[str, Json]]  # outputs of an analysis
 Analysed = Callable[[CadModel, Question, tuple[str, ...]], Outputs | None]
+NOT_MEASURED = "this build was measured by an older program, or nothing else is there: change the design"
 DEFERRED: Literal["deferred"] = "deferred"
 Prepared = Evaluation | Literal["deferred"]
 """The evaluation of a step that is shared with other designs, or that nobody waited for it."""
@@ -74,11 +75,14 @@ class Calculation:
         Raises
         ------
         FaultyText
-            With code `no_value`, where an analysis has a reason instead.
+            With code `no_value`, where an analysis has a reason instead, or a build lacks the measure.
         """
         scale = unit(measured_unit(reference))
         if reference.analysis is None:
-            return float(scale.to_si(self.measures[reference.block][reference.member]))
+            measures = self.measures[reference.block]
+            if reference.member not in measures:
+                raise FaultyText("no_value", f"{reference} has no value: {NOT_MEASURED}")
+            return float(scale.to_si(measures[reference.member]))
         computed = self._computed(reference, reference.analysis)
         if is_table(reference):
             return np.asarray(scale.to_si(np.asarray(computed, dtype=float)))

@@ -91,7 +91,7 @@ def _names(graph: Graph) -> Iterator[NetworkName]:
                 yield _declared(f"{block.name}.{tail}", "input", declared)
         for tail, formula in block.cls.formulas.items():
             yield _declared(f"{block.name}.{tail}", "output", formula)
-        for tail in measured_names(block.analyses) if block.is_model else ():
+        for tail in measured_names(block.analyses, block.cls) if block.is_model else ():
             measure = Reference.parse(f"{block.name}.{tail}")
             yield _name(str(measure), "measure", _words(measure), measured_unit(measure))
 

@@ -225,7 +225,9 @@ def _unknown(network: Network, links: Links) -> Iterator[Fault]:
         if is_table(through):
             detail = f"an iteration runs through one value; {through} is a table or a list"
             yield Fault("iterations", "not_a_number", detail)
-        elif through.block not in models or not is_measured(through, models[through.block]):
+        elif through.block not in models or not is_measured(
+            through, models[through.block], network.blocks[through.block].cls
+        ):
             detail = f"an iteration runs through a measure of a model, such as model.mass, not {through}"
             yield Fault("iterations", "unknown_name", remedy(through, models) or detail)
 

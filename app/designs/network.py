@@ -155,7 +155,7 @@ class Network:
             return None if isinstance(cell.declared, Choice) else cell  # a word is no value to calculate with
         if declared := _declared(block, reference):
             return None if isinstance(declared, Choice) else block
-        if not (block.is_model and is_measured(reference, block.analyses)):
+        if not (block.is_model and is_measured(reference, block.analyses, block.cls)):
             return None
         return block.analysed[reference.analysis] if reference.analysis else block.solid
 
@@ -163,7 +163,9 @@ class Network:
         """Every name that a relation may use, for a remedy."""
         inside = (f"{b.name}.{n}" for b in self.blocks.values() for n in (*b.cls.inputs, *b.cls.formulas))
         models = (block for block in self.blocks.values() if block.is_model)
-        measured = (f"{model.name}.{n}" for model in models for n in measured_names(model.analyses))
+        measured = (
+            f"{model.name}.{n}" for model in models for n in measured_names(model.analyses, model.cls)
+        )
         return [*self.parameters, *inside, *measured]
 
     @cached_property

@@ -74,7 +74,7 @@ def place_faults(
     for reference in varied:
         name, cell = str(reference), graph.cell(reference)
         block = graph.blocks.get(reference.block)
-        if block and block.is_model and is_measured(reference, block.analyses):
+        if block and block.is_model and is_measured(reference, block.analyses, block.cls):
             continue  # measures of each row, from whoever knows them
         if cell is None and _declared(graph, reference) is None:
             yield unknown_name(name, _places(graph), "place")

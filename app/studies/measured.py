@@ -26,7 +26,7 @@ def _used(calculation: Calculation) -> set[Reference]:
     models = {
         reference for reference in used if reference.block in blocks and blocks[reference.block].is_model
     }
-    measured = {r for r in models if is_measured(r, blocks[r.block].analyses)}
+    measured = {r for r in models if is_measured(r, blocks[r.block].analyses, blocks[r.block].cls)}
     return {reference for reference in measured if not is_table(reference)}
 
 

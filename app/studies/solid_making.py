@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 
 from app.catalogue.catalogues import Catalogues
 from app.designs.analyses import measured_unit
+from app.designs.calculation import NOT_MEASURED
 from app.designs.document import Document
 from app.designs.graph import build_graph, raise_if
 from app.designs.net import Refusal
@@ -122,6 +123,8 @@ class StudySolids:
         values: dict[str, float] = {}
         for name in wanting.measures:
             reference = Reference.parse(f"{wanting.model}.{name}")
+            if reference.analysis is None and name not in measures:
+                raise AnalysisError("no_value", f"{reference} has no value: {NOT_MEASURED}")
             if reference.analysis is None:
                 values[name] = float(unit(measured_unit(reference)).to_si(measures[name]))
         return values | self._analysed(wanting, shape, runner)

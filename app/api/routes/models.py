@@ -91,7 +91,7 @@ def show_model(id: Id, number: Number, catalogues: TheCatalogues, database: TheD
         {
             **described,
             "parameters": parameters,
-            "measures": MEASURES,
+            "measures": {**MEASURES, **cls.further_measures()},
             "analyses": what_can_be_asked(cls),
             "film_bore": cls.film_bore,
             "picture": f"/api/v1/models/{id}/versions/{number}/picture",

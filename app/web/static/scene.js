@@ -16,7 +16,8 @@ export async function drawScene(figure, traces) {
   const Plotly = await plotly();
   const scene = (figure.dataset.scene ??= `scene${++scenes}`);
   const all = traces.map((trace) => ({ ...trace, scene }));
-  await Plotly.react(figure, all, { height: reserved(figure.parentElement), margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "rgba(0,0,0,0)", uirevision: "kept", showlegend: false, [scene]: { ...box(traces), camera: CAMERA } }, CONFIG);
+  const height = reserved(figure.parentElement), upright = Math.min(1, figure.parentElement.clientWidth / height || 1); // a narrow view shows less
+  await Plotly.react(figure, all, { height, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "rgba(0,0,0,0)", uirevision: "kept", showlegend: false, [scene]: { ...box(traces, upright), camera: CAMERA } }, CONFIG);
 }
 
 // The height that a style reserves for a view before it is drawn.
@@ -24,10 +25,10 @@ function reserved(place) {
   return Math.round(parseFloat(getComputedStyle(place).minHeight)) || HEIGHT;
 }
 
-// The box about all traces, as large as fits.
-function box(traces) {
+// The box about all traces, as large as fits into a view of which the width is so many times the height, at most once.
+function box(traces, upright) {
   const ranges = AXES.map((axis) => rangeOf(traces.flatMap((trace) => Array.from(trace[axis])).filter((value) => value !== null)));
-  const lengths = ranges.map(({ low, high }) => high - low), unit = DIAGONAL / Math.hypot(...lengths);
+  const lengths = ranges.map(({ low, high }) => high - low), unit = (DIAGONAL * upright) / Math.hypot(...lengths);
   const hidden = ({ low, high }) => ({ visible: false, showbackground: false, range: [low - ROOM * (high - low), high + ROOM * (high - low)] });
   const [xaxis, yaxis, zaxis] = ranges.map(hidden), [x, y, z] = lengths.map((length) => length * unit);
   return { aspectmode: "manual", aspectratio: { x, y, z }, xaxis, yaxis, zaxis };

@@ -98,6 +98,31 @@ def test_the_film_drives_the_model_and_the_clearances_of_the_fixed_part_are_meas
     assert between(answer, "journal", "bolt") == pytest.approx(cap + 1.25 - journal / 2, abs=1e-6)
 
 
+def test_relations_and_criteria_use_the_clearance_of_a_fixed_part(http, assembly):
+    described = http.get(f"{API}/models/bolted_bearing/versions/1").json()["measures"]
+    assert (described["bolt_clearance"], described["bolt_overlap"]) == ("mm", "mm**3")
+    assembly = {"id": "bolted_bearing", "version": 1, "parameters": {"journal_diameter": "48 mm"}}
+    wide = {"inner_diameter": "48 mm", "width": "= 20 * assembly.bolt_clearance + shared / 1 mm**2"}
+    written = {
+        "name": "room",
+        "parameters": {"shared": "= assembly.bolt_overlap"},
+        "criteria": {
+            "free": {"require": "assembly.bolt_clearance >= 1.2 mm"},
+            "wide": {"require": "assembly.bolt_clearance >= 1.3 mm"},
+        },
+        "models": {"assembly": assembly, "shell": {"id": "plain_bearing", "version": 1, "parameters": wide}},
+    }
+    design = created(http, written)
+    answer = http.get(f"{API}/designs/{design['id']}/revisions/1").json()
+    assert answer["models"]["shell"]["parameters"]["width"]["value"] == pytest.approx(25, abs=1e-5)
+    assert {one["name"]: one["verdict"] for one in answer["criteria"]} == {"free": "met", "wide": "not_met"}
+    refused = http.post(
+        f"{API}/designs", json={**written, "parameters": {"shared": "= assembly.nut_clearance"}}
+    )
+    assert refused.status_code == 422
+    assert "assembly.bolt_clearance" in refused.text
+
+
 def test_the_step_file_holds_it_with_its_own_name_colour_and_place(http, design):
     file = http.get(f"{API}/designs/{design['id']}/model.step").content
     bodies = {body.name: body for body in read_step(file)}
