@@ -89,22 +89,32 @@ class Carriers:
         GeometryError
             `tolerance`, where no planes show it.
         """
+        one = self._declared[name]
+        of = self._declared[one.others_named[0]]
+        levels = self._levels_along(one, _AXES[of.where])
+        pairs = tuple((levels.index(low), levels.index(high)) for low, high in self.spans(name))
+        if not pairs:
+            self._missing(one, self._sizes[name])
+        return replace(one, faces="planes", where=of.where, levels=pairs)
+
+    def spans(self, name: str) -> list[tuple[float, float]]:
+        """Where a dimension that repeats along an axis begins and ends, each time [mm]."""
         one, size = self._declared[name], self._sizes[name]
         of = [self._declared[other] for other in one.others_named]
         axis = _AXES[of[0].where]
         reaches = [face.surface.turned(axis).reach for other in of for face in self._of_size(other)]
-        planes = [f for f in self._faces(one) if f.kind == "plane" and f.surface.along(axis)]
-        levels = sorted({round(f.surface.point.dot(axis), 6) for f in planes})
-        pairs = tuple(
-            (number, number + 1)
-            for number, (low, high) in enumerate(pairwise(levels))
+        return [
+            (low, high)
+            for low, high in pairwise(self._levels_along(one, axis))
             if isclose(high - low, size, abs_tol=2 * _CLOSE)
             and any(low - _CLOSE < (a + b) / 2 < high + _CLOSE for a, b in reaches)
             == (one.faces == "shoulders")
-        )
-        if not pairs:
-            self._missing(one, size)
-        return replace(one, faces="planes", where=of[0].where, levels=pairs)
+        ]
+
+    def _levels_along(self, one: Carried, axis: Vector) -> list[float]:
+        """Where planes across an axis lie, from low to high."""
+        planes = (f for f in self._faces(one) if f.kind == "plane" and f.surface.along(axis))
+        return sorted({round(f.surface.point.dot(axis), 6) for f in planes})
 
     def _round(self, one: Carried) -> tuple[int, ...]:
         """The faces of a diameter; without those that belong to the dimension of an end."""
@@ -122,7 +132,7 @@ class Carriers:
     def _levels(self, one: Carried, size: float, low: int, high: int) -> Place:
         axis = _AXES[one.where]
         planes = [f for f in self._faces(one) if f.kind == "plane" and f.surface.along(axis)]
-        levels = sorted({round(f.surface.point.dot(axis), 6) for f in planes})
+        levels = self._levels_along(one, axis)
         count = len(levels)
         if not (-count <= low < count and -count <= high < count):
             self._missing(one, size)

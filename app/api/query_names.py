@@ -31,9 +31,9 @@ def refuse_unknown(request: Request) -> None:
 
 def _fault(name: str, declared: list[str]) -> Fault:
     near = nearest(name, declared)
-    meant = f"did you mean {near[0]}? " if near else ""
-    there_are = f"there are {listed(declared)}" if declared else "this address takes none"
-    return Fault(plain(name), "unknown_name", f"{meant}{there_are}")
+    meant = f"Did you mean {near[0]}? " if near else ""
+    taken = f"This address takes {listed(declared)}" if declared else "This address takes none"
+    return Fault(plain(name), "unknown_name", f"{meant}{taken}")
 
 
 KNOWN_NAMES = Depends(refuse_unknown)

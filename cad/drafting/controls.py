@@ -21,6 +21,7 @@ from cad.drafting.symbols import Symbol, arrow, datum, texture
 
 _HIGH = 2 * TEXT  # of a frame [mm on paper]
 _INTO = 3.0  # from the corner of a face to where a leader points [mm on paper]
+_ACROSS = 20.0  # a leader runs within a view, where another place is free [mm on paper]
 _STEMS = range(2, 90, 3)
 
 BoxAt = Callable[[float, float], Rectangle]
@@ -112,13 +113,14 @@ class Controls:
         tries = (
             _beside(target, away, radians(turn), width)
             for away in range(8, round(150 * self.plan.format.width / FORMATS[0].width), 4)
-            for turn in range(0, 360, 20)
+            for turn in range(0, 360, 10)
         )
         free = [place for place in tries if self.room.is_free(box_at(*place))]
         if not free and not self.is_last:
             raise NoRoom
-        clear = (place for place in free if self.room.passes([target, place]))
-        place = next(clear, free[0] if free else _beside(target, 8, 0.0, width))
+        clear = [place for place in free if self.room.passes([target, place])]
+        short = (place for place in clear if self.room.length_in_views(target, place) <= _ACROSS)
+        place = next(short, (clear or free or [_beside(target, 8, 0.0, width)])[0])
         self.room.add(box_at(*place))
         return place
 

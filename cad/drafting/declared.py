@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from cad.assemblies import AssemblyModel
+from cad.carriers import Carriers
 from cad.catalogue import models
+from cad.drafting.curves import Point
+from cad.drafting.matching import length_of
 from cad.drafting.title import TEXTURE, roughness
 from cad.header import Header
 from cad.model import CadModel
-from cad.toleranced import Limits, carried, limits_in
+from cad.step import Body
+from cad.toleranced import REPEATED, Carried, Limits, carried, limits_in
 
 _FACES = ("cylinders", "beside", "spheres", "planes")  # that a tool machines, so they have a texture
 
@@ -40,6 +44,8 @@ class Declared:
         Letters of datums by parameter; in an assembly only of those to which a tolerance refers.
     textures
         Greatest roughness Ra [µm] by parameter, where it is less than that of all other faces.
+    carriers
+        The faces that carry dimensions, by parameter.
     sections
         Removed sections by letter, in the words of `cad.drafting.removed`.
     """
@@ -50,6 +56,18 @@ class Declared:
     datums: Mapping[str, str] = field(default_factory=dict)
     textures: Mapping[str, float] = field(default_factory=dict)
     sections: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    carriers: Mapping[str, Carried] = field(default_factory=dict)
+
+    def repeated(self, parameters: Mapping[str, str], bodies: Sequence[Body]) -> dict[str, list[Point]]:
+        """Where the lengths begin and end that repeat along the shaft, by parameter [mm]."""
+        sizes = {name: length_of(parameters[name]) for name in self.carriers}
+        carriers = Carriers({body.name: body.shape for body in bodies}, self.carriers, sizes)
+        along = (
+            name
+            for name, one in self.carriers.items()
+            if one.faces in REPEATED and all(self.carriers[other].where == "z" for other in one.others_named)
+        )
+        return {name: spans for name in along if (spans := carriers.spans(name))}
 
     @staticmethod
     def of(header: Header | None, *, is_assembly: bool = False) -> Declared:
@@ -77,6 +95,7 @@ class Declared:
                 and (height := roughness(limits[name].width)) < TEXTURE
             },
             model.sections,
+            carriers,
         )
 
 

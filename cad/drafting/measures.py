@@ -40,13 +40,13 @@ class Measure:
     count: int = 1  # of equal parts that have it
 
 
-def measures(bodies: Sequence[Body], section: View, end: View) -> list[Measure]:
-    """Every size that the views show."""
+def measures(bodies: Sequence[Body], section: View, end: View, most: int = _MOST_LEVELS) -> list[Measure]:
+    """Every size that the views show; of more planes along the shaft than `most` those at its ends."""
     results: list[Measure] = []
     seen = look_at(bodies)
     for one in seen.values():
         results += _of_cylinders(one, section, end)
-        results += _of_planes(one, section, end)
+        results += _of_planes(one, section, end, most)
         results += _of_flanks(one, end)
     results += _of_axes([c for one in seen.values() for c in one.cylinders if c.along(Z)], section)
     results += _of_arcs(section, {d: one.count for one in seen.values() for d in one.spheres})
@@ -147,10 +147,16 @@ def _drilled(cylinder: Surface, section: View, count: int) -> Measure:
     return Measure("diameter", cylinder.diameter, "section", form, points, count)
 
 
-def _of_planes(seen: Seen, section: View, end: View) -> Iterator[Measure]:
-    for low, high in _spans(seen.levels(Z)[:_MOST_LEVELS]):
-        points = (low, _foot(section, low)), (high, _foot(section, high))
-        yield Measure("length", high - low, "section", "across", points, seen.count)
+def length_between(low: float, high: float, section: View, count: int = 1) -> Measure:
+    """The length between two planes across the shaft."""
+    points = (low, _foot(section, low)), (high, _foot(section, high))
+    return Measure("length", high - low, "section", "across", points, count)
+
+
+def _of_planes(seen: Seen, section: View, end: View, most: int) -> Iterator[Measure]:
+    levels = seen.levels(Z)
+    for low, high in _spans(levels if len(levels) <= most else [*levels[: most - 1], levels[-1]]):
+        yield length_between(low, high, section, seen.count)
     for axis in (X, Y):
         right, up = end.frame.flat(axis)
         sign = right + up  # one of them is 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
+from math import hypot
 
 import numpy as np
 
@@ -22,14 +23,14 @@ class Room:
         self.area = area
         self.boxes: list[Rectangle] = []
         self.words: list[Rectangle] = []
+        self.views: list[Rectangle] = []
         self._lines: list[tuple[float, float, float, float]] = []
         self._array = np.zeros((0, 4))
 
     def add(self, box: Rectangle, *, is_view: bool = False) -> None:
         """Take a rectangle; lines to a part's faces cross only that of a view."""
         self.boxes.append(box)
-        if not is_view:
-            self.words.append(box)
+        (self.views if is_view else self.words).append(box)
 
     def add_line(self, points: Sequence[Point]) -> None:
         """Take what lies on a line through points."""
@@ -53,6 +54,10 @@ class Room:
         piece = np.array([[*line[0], *line[-1]]])
         return not any(crossed(piece, box).any() for box in self.words)
 
+    def length_in_views(self, one: Point, other: Point) -> float:
+        """The length of a straight line within the boxes of views [mm on paper]."""
+        return sum(_length_within(one, other, box) for box in self.views)
+
     def first(self, boxes: Iterable[tuple[Rectangle, Point]]) -> Point | None:
         """The point that belongs to the first free rectangle, which is taken."""
         for box, point in boxes:
@@ -65,6 +70,20 @@ class Room:
         if len(self._array) != len(self._lines):
             self._array = np.array(self._lines)
         return bool(len(self._array) and crossed(self._array, box, _APART).any())
+
+
+def _length_within(one: Point, other: Point, box: Rectangle) -> float:
+    """The part of a straight line that lies within a rectangle (Liang and Barsky)."""
+    enter, leave = 0.0, 1.0
+    for axis in (0, 1):
+        away = other[axis] - one[axis]
+        if abs(away) < 1e-12:
+            if not box[axis] <= one[axis] <= box[axis + 2]:
+                return 0.0
+            continue
+        low, high = sorted(((box[axis] - one[axis]) / away, (box[axis + 2] - one[axis]) / away))
+        enter, leave = max(enter, low), min(leave, high)
+    return max(leave - enter, 0.0) * hypot(other[0] - one[0], other[1] - one[1])
 
 
 def overlap(one: Rectangle, other: Rectangle, apart: float = 0.0) -> bool:

@@ -10,7 +10,7 @@ import io
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import islice
+from itertools import chain, islice
 
 from ezdxf._options import options
 from ezdxf.document import Drawing
@@ -20,7 +20,7 @@ from cad.drafting.declared import Declared
 from cad.drafting.formats import Format
 from cad.drafting.marks import Centres, centre_lines, cutting_line, pitch_circles, section_label
 from cad.drafting.matching import Dimension, matched, references
-from cad.drafting.measures import measures
+from cad.drafting.measures import length_between, measures
 from cad.drafting.page import Page, document_of
 from cad.drafting.placing import NoRoom, Placed, Placing
 from cad.drafting.plan import Plan, plans
@@ -34,6 +34,8 @@ from cad.header import Header
 from cad.inspect import bounding_box
 from cad.step import Body
 
+_MOST_LEVELS, _MOST_REPEATED = 14, 100
+"""Planes along the shaft between which lengths are given; and if those are counted that repeat."""
 _MOST_PLANS = 8  # sheets and scales that are tried
 
 
@@ -111,14 +113,21 @@ def draw(bodies: Sequence[Body], header: Header | None) -> tuple[Drawing, Format
 def _laid_out(bodies: Sequence[Body], header: Header | None, declared: Declared) -> tuple[_Content, _Laid]:
     """The first sheet on which everything has a place; one without removed sections if there is no other."""
     section, end = views(bodies, is_shaft=declared.is_shaft)
-    seen = [*measures(bodies, section, end), *standing(bodies, section, end)]
     parameters = header.parameters if header else {}
+    repeated = declared.repeated(parameters, bodies)
+    most = _MOST_REPEATED if repeated else _MOST_LEVELS
+    seen = [*measures(bodies, section, end, most), *standing(bodies, section, end)]
+    several = [
+        Dimension(length_between(*spans[0], section, len(spans)), name, declared.limits.get(name))
+        for name, spans in repeated.items()
+    ]
     removed = removed_sections(declared.sections, parameters, declared.limits, bodies, end)
     for some in ([removed] if removed else []) + [[]]:
-        names = {name for one in some for name in one.names}
+        names = {name for one in some for name in one.names} | repeated.keys()
         rest = {name: text for name, text in parameters.items() if name not in names}
         matches, unseen = matched(rest, seen, declared.limits)
-        along = [ends for one in some for ends in one.along]
+        matches += several
+        along = [ends for one in some for ends in one.along] + list(chain.from_iterable(repeated.values()))
         content = _Content(section, end, some, [*matches, *references(matches, seen, along)], unseen)
         tried = content.plans()
         for plan in tried:

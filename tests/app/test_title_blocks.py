@@ -69,10 +69,10 @@ def test_nobody_is_typed_who_has_not_signed(http, place, name):
 @pytest.mark.parametrize(
     ("path", "name", "meant"),
     [
-        ("{}.dxf", "drawing_nmber", "did you mean drawing_number?"),
+        ("{}.dxf", "drawing_nmber", "Did you mean drawing_number?"),
         ("{}.step", "zzzz", "deflection"),
-        ("{}", "deflecton", "did you mean deflection?"),
-        (f"{API}/builds/{'0' * 64}/model.dxf", "drawing_number", "this address takes none"),
+        ("{}", "deflecton", "Did you mean deflection?"),
+        (f"{API}/builds/{'0' * 64}/model.dxf", "drawing_number", "This address takes none"),
     ],
 )
 def test_a_misspelt_name_in_the_address_is_refused(http, place, path, name, meant):

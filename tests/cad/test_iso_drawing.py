@@ -16,7 +16,7 @@ from slow_models import DRAWN
 from benchmarks.drawings import SIZES, latest, sized
 from cad.catalogue import models
 from cad.drafting.curves import Curve, Round, joined, recognised, rounded
-from cad.drafting.room import overlap
+from cad.drafting.room import Room, overlap
 from cad.drafting.title import general_profile
 from cad.export import derive
 from cad.model import CadModel
@@ -337,6 +337,37 @@ def test_a_rod_is_cut_across_its_shank(rod: Build, font: ImageFont.FreeTypeFont)
         assert dimensions[name].get_measurement() == pytest.approx(sizes[name])
     assert not any("(" in text for text in labels(drawing).values())
     assert overlapping(derive(rod.step, "drawing.svg"), font) == []
+
+
+def test_lengths_that_repeat_are_given_once_and_counted() -> None:
+    """ISO 129-1: a shaft of four throws has 5 journals, 4 pins, 8 webs; its overall length is the solid's."""
+    model = models().get("crankshaft", 2)
+    angles = {"value": [0, 180, 180, 0], "unit": "deg"}
+    texts = as_text(
+        model.from_quantities({**model.example, "pin_angles": angles, "counterweight_radius": "0 mm"})
+    )
+    build = regenerate_from_text(model.id, 2, {**texts, "pin_length": "32 mm ±0.1 mm"})
+    drawing = read(derive(build.step, "dxf"))
+    result = labels(drawing)
+    assert (result["journal_length"], result["web_thickness"]) == ("5×26", "8×18")
+    assert result["pin_length"] == "4×32 ±0.1"
+    lengths = [
+        d.get_measurement()
+        for d in drawing.modelspace().query("DIMENSION")
+        if not d.has_xdata("CRANKWRIGHT") and d.dxf.angle % 180 == 0
+    ]
+    whole = build.measures["high_z"] - build.measures["low_z"]
+    assert max(lengths) == pytest.approx(whole)
+    assert len(lengths) <= 2  # nothing that the counted lengths locate
+
+
+def test_a_leader_keeps_out_of_the_views_where_it_can() -> None:
+    room = Room((0, 0, 100, 100))
+    room.add((20, 20, 60, 60), is_view=True)
+    assert room.length_in_views((30, 50), (30, 90)) == pytest.approx(10)
+    assert room.length_in_views((0, 40), (100, 40)) == pytest.approx(40)
+    assert room.length_in_views((0, 70), (100, 70)) == 0
+    assert room.length_in_views((10, 10), (30, 30)) == pytest.approx(10 * 2**0.5)
 
 
 def test_general_tolerances_with_a_datum(rod: Build, example_of) -> None:
