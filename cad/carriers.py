@@ -95,6 +95,13 @@ class Carriers:
         pairs = tuple((levels.index(low), levels.index(high)) for low, high in self.spans(name))
         if not pairs:
             self._missing(one, self._sizes[name])
+        for other in (n for n, o in self._declared.items() if n != name and o.faces in REPEATED):
+            if not {*self.spans(name)}.isdisjoint(self.spans(other)):
+                size = self._sizes[name]
+                detail = (
+                    f"the same planes are {size:g} mm apart for {name} and for {other}; change one by 0.1 %"
+                )
+                raise GeometryError("tolerance", detail, (name, other))
         return replace(one, faces="planes", where=of.where, levels=pairs)
 
     def spans(self, name: str) -> list[tuple[float, float]]:

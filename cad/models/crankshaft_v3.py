@@ -101,6 +101,12 @@ class Crankshaft(SplitParameters, EndParameters):
         "nose_diameter": {"cylinders": "z", "end": "low", "cylindricity": 0.5},
         "flange_diameter": {"cylinders": "z", "end": "high"},
         "bolt_hole_diameter": {"beside": "z"},
+        "journal_length": {"shoulders": "journal_diameter"},
+        "pin_length": {"shoulders": "pin_diameter", "perpendicularity": 1, "to": "A"},
+        "web_thickness": {"discs": ["journal_diameter", "pin_diameter", "nose_diameter", "flange_diameter"]},
+        "middle_web_thickness": {
+            "discs": ["journal_diameter", "pin_diameter", "nose_diameter", "flange_diameter"]
+        },
     }
 
     R_w: Array = curve(

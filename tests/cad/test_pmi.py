@@ -180,6 +180,20 @@ def test_lengths_that_repeat_along_a_shaft_are_stated_at_each_place(nose):
     assert counts == {"journal_length": 3 - (nose == "55 mm"), "pin_length": 2, "web_thickness": 4}
 
 
+def test_a_shaft_of_split_pins_states_its_middle_webs_apart():
+    cls = models().get("crankshaft", 3)
+    texts = as_text(cls.from_quantities(cls.example))
+    numbers = {name: float(texts[name].split(" ")[0]) for name in ("web_thickness", "middle_web_thickness")}
+    limits = {name: (number, -0.05, 0.05) for name, number in numbers.items()}
+    for name in limits:
+        texts[name] += " ±0.05 mm"
+    step = check(cls, as_text(cls.from_quantities(texts)), limits)
+    throws = len(cls.example["pin_angles"]["value"])
+    assert Counter(d.name for d in File(step).dimensions()) == {
+        "web_thickness": 2 * throws, "middle_web_thickness": throws,
+    }  # fmt: skip
+
+
 def test_a_length_that_repeats_does_not_change_the_key_of_other_tolerances(monkeypatch):
     cls = models().get("crankshaft", 2)
     texts = {**cls.example, "pin_diameter": "48 mm h6"}
