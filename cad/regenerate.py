@@ -104,7 +104,8 @@ def as_quantities(model: CadModel) -> dict[str, dict[str, Value]]:
 
 def build_key(model: CadModel) -> str:
     """The cache key of a build of this model: SHA-256 of model, version, parameters, kernel and recipe."""
-    return _canonical(model).key
+    kept: _Canonical | None = vars(model).get(_KEPT)
+    return (kept or _canonical(model)).key
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -110,14 +111,16 @@ def _face(number: int, adaptor: BRepAdaptor_Surface) -> FaceSeen:
 
 def look(solid: Shape, count: int = 1) -> Seen:
     """Look at every face of a solid of which there are `count`."""
-    adaptors = [BRepAdaptor_Surface(face.wrapped) for face in solid.Faces()]
-    of = {kind: [a for a in adaptors if a.GetType() == kind] for kind in {a.GetType() for a in adaptors}}
+    of = defaultdict[Any, list[BRepAdaptor_Surface]](list)
+    for face in solid.Faces():
+        adaptor = BRepAdaptor_Surface(face.wrapped)
+        of[adaptor.GetType()].append(adaptor)
     return Seen(
         count,
-        planes=tuple(_surface(a.Plane().Axis()) for a in of.get(Kind.GeomAbs_Plane, ())),
-        cylinders=tuple(_cylinder(a) for a in of.get(Kind.GeomAbs_Cylinder, ())),
-        spheres=tuple(2 * a.Sphere().Radius() for a in of.get(Kind.GeomAbs_Sphere, ())),
-        tori=tuple(a.Torus().MinorRadius() for a in of.get(Kind.GeomAbs_Torus, ())),
+        planes=tuple(_surface(a.Plane().Axis()) for a in of[Kind.GeomAbs_Plane]),
+        cylinders=tuple(map(_cylinder, of[Kind.GeomAbs_Cylinder])),
+        spheres=tuple(2 * a.Sphere().Radius() for a in of[Kind.GeomAbs_Sphere]),
+        tori=tuple(a.Torus().MinorRadius() for a in of[Kind.GeomAbs_Torus]),
     )
 
 

@@ -197,9 +197,8 @@ def _wrong(cls: type[CadModel], name: str, detail: str) -> TypeError:
 
 def limits(model: CadModel) -> dict[str, Limits]:
     """The limits that a user gave to dimensions of a model which its faces carry, by parameter."""
-    declared = type(model).toleranced
-    pairs = ((name, model.ledger.typed.get(name)) for name in declared)
-    return dict(_single((name, typed) for name, typed in pairs if isinstance(typed, Typed)))
+    declared, given = type(model).toleranced, model.ledger.typed
+    return dict(_single((name, typed) for name in declared if isinstance(typed := given.get(name), Typed)))
 
 
 def limits_in(header: Header) -> dict[str, Limits]:

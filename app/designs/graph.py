@@ -199,8 +199,11 @@ def _cells(
 
 def _links(network: Network, cell: Cell, unread: Set[str]) -> dict[Reference, Node | None]:
     """The node behind each name that a cell uses, None if there is none; an assumed value needs none."""
-    uses = (reference for reference in cell.uses.values() if reference not in network.assumed)
-    return {reference: network.node(reference) for reference in uses if reference.block not in unread}
+    return {
+        reference: network.node(reference)
+        for reference in cell.uses.values()
+        if reference not in network.assumed and reference.block not in unread
+    }
 
 
 Links = Mapping[Cell, Mapping[Reference, Node | None]]

@@ -127,7 +127,8 @@ def operated(session: Session) -> int:
     On PostgreSQL it is exact everywhere.
     """
     if DRIVER in session.info or session.get_bind().dialect.name == "sqlite":
-        return int(_COUNTED.scalar(session) or 0)
+        counted = _COUNTED.run(session)
+        return int(counted[0][0]) if counted else 0
     return session.scalar(_OPERATED) or 0
 
 

@@ -93,8 +93,8 @@ def _sqlite_engine(url: str, pragmas: tuple[str, ...], begin: str) -> Engine:
     def start(connection: Connection) -> None:
         connection.exec_driver_sql(begin)
 
-    event.listen(engine, "savepoint", expect_transaction)
-    event.listen(engine, "commit", expect_transaction)
+    event.listen(engine, "savepoint", _expect_transaction)
+    event.listen(engine, "commit", _expect_transaction)
     return engine
 
 
@@ -103,12 +103,17 @@ def _lower(value: str | float | None) -> str | float | None:
     return value.lower() if isinstance(value, str) else value
 
 
-def expect_transaction(connection: Connection, name: str | None = None) -> None:
-    """Refuse to go on in a transaction that SQLite has rolled back by itself, as it does on a full disk.
+def _expect_transaction(connection: Connection, name: str | None = None) -> None:
+    """Refuse to go on in a transaction that SQLite has rolled back; see `rolled_back`."""
+    driver = connection.connection.driver_connection
+    if isinstance(driver, sqlite3.Connection) and not driver.in_transaction:
+        raise rolled_back()
+
+
+def rolled_back() -> OperationalError:
+    """Return the error of a transaction that SQLite has rolled back by itself, as it does on a full disk.
 
     What follows would be committed alone, and the driver would take the final commit for a success.
     """
-    driver = connection.connection.driver_connection
-    if isinstance(driver, sqlite3.Connection) and not driver.in_transaction:
-        error = sqlite3.OperationalError("SQLite has rolled the transaction back")
-        raise OperationalError("COMMIT", None, error)
+    error = sqlite3.OperationalError("SQLite has rolled the transaction back")
+    return OperationalError("COMMIT", None, error)

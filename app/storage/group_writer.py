@@ -21,7 +21,7 @@ from sqlalchemy.orm import Session
 
 from app.storage.clock import OperationClock
 from app.storage.damage import Watch
-from app.storage.engines import expect_transaction
+from app.storage.engines import rolled_back
 from app.storage.errors import CommitFailed, DatabaseClosed, DatabaseDamaged
 from app.storage.statements import DRIVER
 from app.storage.units import AFTER, T, Unit, follow
@@ -118,13 +118,14 @@ class GroupWriter:
 @contextmanager
 def _savepoint(connection: Connection) -> Iterator[sqlite3.Connection]:
     """A savepoint within the transaction of a group; whatever is raised undoes what was written in it."""
-    expect_transaction(connection)
     driver: sqlite3.Connection = connection.connection.driver_connection  # type: ignore[assignment]
+    if not driver.in_transaction:
+        raise rolled_back()
     driver.execute("SAVEPOINT unit")
     try:
         yield driver
     except BaseException:
-        if driver.in_transaction:  # SQLite may have rolled all of it back, see `expect_transaction`
+        if driver.in_transaction:  # SQLite may have rolled all of it back, see `rolled_back`
             driver.execute("ROLLBACK TO unit")
             driver.execute("RELEASE unit")
         raise
@@ -151,23 +152,19 @@ class _Pending:
         """
         try:
             with _savepoint(connection) as driver:
-                self._run(
-                    Session(
-                        connection,
-                        join_transaction_mode="create_savepoint",
-                        expire_on_commit=False,
-                        info={DRIVER: driver},
-                    )
+                session = Session(
+                    connection,
+                    join_transaction_mode="create_savepoint",
+                    expire_on_commit=False,
+                    info={DRIVER: driver},
                 )
+                with session:
+                    self._result = self._context.run(self._unit, session)
+                    if session.in_transaction():  # the ORM was used
+                        session.commit()  # writes what is new; raises if the unit hid a failed statement
+                self._following = session.info.get(AFTER, [])
         except BaseException as error:  # even SystemExit belongs to the caller, not to the writer thread
             self.error = error
-
-    def _run(self, session: Session) -> None:
-        with session:
-            self._result = self._context.run(self._unit, session)
-            if session.in_transaction():  # the ORM was used
-                session.commit()  # writes what is new; raises if the unit has hidden a failed statement
-        self._following = session.info.get(AFTER, [])
 
     def settle(self) -> None:
         """Hand the outcome to the caller: the group is durable."""

@@ -53,7 +53,10 @@ class Statement:
             result = session.connection().execute(self.clause, values)
             return result.all() if result.returns_rows else ()
         compiled = self._compiled
-        row = compiled.parameters(values or {})
+        row = list(map({**compiled.constants, **(values or {})}.__getitem__, compiled.places))
+        for n, convert in compiled.writing.items():
+            if row[n] is not None:
+                row[n] = convert(row[n])
         try:
             rows = driver.execute(compiled.text, row).fetchall()
         except sqlite3.Error as error:
@@ -96,7 +99,8 @@ class Statement:
         types = [column.type for column in getattr(self.clause, "exported_columns", ())]
         return _Compiled(
             str(compiled),
-            [(name if name in self.names else None, constants[name]) for name in places],
+            places,
+            {name: constants[name] for name in places if name not in self.names},
             {n: one for n, name in enumerate(places) if callable(one := compiled._bind_processors.get(name))},
             {n: one for n, kind in enumerate(types) if (one := kind.result_processor(_SQLITE, None))},
         )
@@ -106,20 +110,22 @@ class Statement:
 class _Compiled:
     """A statement as SQLite's driver takes it.
 
-    `bound` has for each parameter the name of its value, or None and a constant. `writing` converts
-    parameters by their places, `reading` columns of rows.
+    `places` has for each parameter the name of its value; `constants` are those that no caller gives.
+    `writing` converts parameters by their places, `reading` columns of rows. None is NULL in all our columns.
     """
 
     text: str
-    bound: list[tuple[str | None, object]]
+    places: list[str]
+    constants: Values
     writing: dict[int, _Convert]
     reading: dict[int, _Convert]
 
     def parameters(self, values: Values) -> list[object]:
         """The parameters in their order."""
-        row = [constant if name is None else values[name] for name, constant in self.bound]
+        row = list(map({**self.constants, **values}.__getitem__, self.places))
         for n, convert in self.writing.items():
-            row[n] = convert(row[n])
+            if row[n] is not None:
+                row[n] = convert(row[n])
         return row
 
 

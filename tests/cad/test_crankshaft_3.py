@@ -171,6 +171,12 @@ def test_what_cannot_be_built_is_refused_by_name(given: dict[str, Any], named: s
     assert named <= set(refused({**PLAIN, **MIDDLE, "pin_angles": angles(0, 120), **given}))
 
 
+def test_a_single_shaft_whose_list_breaks_a_rule_is_refused_and_not_masked() -> None:
+    low = {"counterweight_radius": {"value": [70, 0, 0, 0, 0, 30], "unit": "mm"}}
+    with pytest.raises(InvalidInputs, match="A counterweight reaches at least 2 % further"):
+        evaluate(Crankshaft, {**Crankshaft.example, **low})
+
+
 def test_box_holds_the_middle_web() -> None:
     """At 180° apart the middle web reaches to either side beyond the narrow outer webs."""
     given = {**PLAIN, "pin_angles": angles(0), "pin_split": "180 deg", "middle_web_width": "90 mm"}

@@ -190,6 +190,8 @@ def check_shapes(self: Template) -> None:
         Naming the arrays and their shapes.
     """
     arrays = {n: v for n, v in vars(self).items() if isinstance(v, np.ndarray)}
+    if not arrays:
+        return
     curves = {n: d for n, d in self.declarations.items() if isinstance(d, Curve) and n in arrays}
     points = {n: v.shape[:-1] if n in curves else v.shape for n, v in arrays.items()}
     together = [{n: shape for n, shape in points.items() if shape}]
@@ -237,7 +239,7 @@ def violations(self: Template, rules: Iterable[Requirement]) -> list[Fault]:
             continue
         try:
             holds = rule.function(self)
-            if isinstance(holds, np.ndarray):
+            if isinstance(holds, np.ndarray) and holds.ndim:
                 self.ledger.masks += _violated_points(self, rule, holds)
             elif not holds:
                 faults.append(_violation(self, rule))
