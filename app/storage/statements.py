@@ -26,7 +26,7 @@ DRIVER = "driver"
 
 Values = Mapping[str, object]
 Row = Sequence[Any]  # as SQLAlchemy's: whoever selects columns knows their types
-_Convert = Callable[[Any], object]
+_Convert = Callable[[object], object]
 _SQLITE: Dialect = dialect(paramstyle="qmark")
 
 
@@ -63,10 +63,11 @@ class Statement:
             raise _translated(compiled.text, row, error) from error
         return _converted(rows, compiled.reading) if compiled.reading else rows
 
-    def scalar(self, session: Session, values: Values | None = None) -> Any:
-        """The first column of the first row; None if there is no row."""
+    def scalar(self, session: Session, values: Values | None = None) -> int | None:
+        """The number in the first column of the first row; None if there is no row."""
         for row in self.run(session, values):
-            return row[0]
+            number: int | None = row[0]
+            return number
         return None
 
     def run_many(self, session: Session, many: Sequence[Values]) -> None:

@@ -204,9 +204,9 @@ def check_shapes(self: Template) -> None:
             raise InvalidInputs(_of_different_shapes(self, shapes)) from None
 
 
-def _of_different_shapes(self: Template, shapes: Mapping[str, tuple[int, ...]]) -> list[Fault]:
-    """A fault for each of the arrays that have to go together, with the shapes of all."""
-    names = {self.declarations[n].name: shape for n, shape in shapes.items()}
+def _of_different_shapes(self: Template, shapes: Iterable[str]) -> list[Fault]:
+    """A fault for each of the arrays that have to go together, with the shapes of all as they were given."""
+    names = {self.declarations[n].name: np.shape(getattr(self, n)) for n in shapes}
     listed = ", ".join(f"{name} {'×'.join(map(str, shape))}" for name, shape in names.items())
     detail = (
         f"arrays of different shapes do not fit together ({listed}); give equal lengths or a single value"
