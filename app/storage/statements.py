@@ -11,7 +11,6 @@ import sqlite3
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 from sqlalchemy import ClauseElement, Executable
 from sqlalchemy.dialects.sqlite import dialect
@@ -21,11 +20,13 @@ from sqlalchemy.orm import Session
 from sqlalchemy.sql.compiler import SQLCompiler
 from sqlalchemy.sql.schema import ScalarElementColumnDefault
 
+from app.plain import Json
+
 DRIVER = "driver"
 """Under which the session of a unit of work keeps, in its `info`, the connection of SQLite's driver."""
 
 Values = Mapping[str, object]
-Row = Sequence[Any]  # as SQLAlchemy's: whoever selects columns knows their types
+Row = Sequence[Json]  # whoever selects columns knows their types
 _Convert = Callable[[object], object]
 _SQLITE: Dialect = dialect(paramstyle="qmark")
 
