@@ -51,7 +51,7 @@ def csv_of(
     return stream.getvalue().encode()
 
 
-def _depth(value: Json) -> int:
+def _depth(value: object) -> int:
     return 1 + _depth(value[0]) if isinstance(value, list) and value else 0
 
 

@@ -148,6 +148,6 @@ def _range(numbers: Numbers) -> dict[str, float]:
     return {"least": float(finite.min()), "largest": float(finite.max())} if finite.size else {}
 
 
-def _count(value: Json) -> int:
+def _count(value: object) -> int:
     """Return the number of values, at any depth."""
     return sum(map(_count, value)) if isinstance(value, list) else 1

@@ -18,7 +18,6 @@ from app.designs import repository, views
 from app.designs.document import merge
 from app.designs.schemas import LONGEST_NOTE
 from app.designs.service import Designs, Draft, matches
-from app.plain import Json, JsonObject
 from app.schemas.designs import Design
 from app.storage.database import Unit
 from app.storage.idempotency import Once
@@ -30,6 +29,9 @@ from templates.core.errors import UnknownTemplate
 MOST_STEPS = 4
 MOST_CRITERIA = 10
 MOST_PARAMETERS = 50
+Body = dict[str, object]
+"""A document or a patch as it came."""
+
 _SLOW = ("model", "models", "variants", "iterations")
 _HEAD = Statement(
     select(RevisionRow.number, RevisionRow.document, DesignRow.created)
@@ -49,7 +51,7 @@ class QuickSaves:
     def __init__(self, designs: Designs) -> None:
         self._designs = designs
 
-    def creation(self, raw: JsonObject, once: Once) -> Unit[Design]:
+    def creation(self, raw: Body, once: Once) -> Unit[Design]:
         """The unit of work that creates a design, calculated by now.
 
         Raises
@@ -73,7 +75,7 @@ class QuickSaves:
 
         return unit
 
-    def change(self, id: str, patch: JsonObject, expected: str, once: Once) -> Unit[Design]:
+    def change(self, id: str, patch: Body, expected: str, once: Once) -> Unit[Design]:
         """The unit of work that applies a merge patch to a design; it calculates as well.
 
         Raises
@@ -103,29 +105,30 @@ class QuickSaves:
 
         return unit
 
-    def _draft(self, raw: JsonObject, note: str | None, action: str) -> Draft:
+    def _draft(self, raw: Body, note: str | None, action: str) -> Draft:
         draft = self._designs.draft(raw, note, action)
         if draft.written.state != "current":
             raise NotQuick
         return draft
 
-    def _is_quick(self, document: Mapping[str, Json]) -> bool:
+    def _is_quick(self, document: Mapping[str, object]) -> bool:
         """Return whether a document, which may be wrong, has no geometry, no arrays, few and quick steps."""
         if any(document.get(name) for name in _SLOW):
             return False
-        parameters, steps = document.get("parameters") or {}, document.get("steps") or {}
-        if not isinstance(parameters, dict) or not isinstance(steps, dict):
+        groups = (document.get(name) or {} for name in ("parameters", "steps", "criteria"))
+        parameters, steps, criteria = (group if isinstance(group, dict) else None for group in groups)
+        if parameters is None or steps is None or criteria is None:
             return False
         return (
             len(parameters) <= MOST_PARAMETERS
             and len(steps) <= MOST_STEPS
-            and len(document.get("criteria") or ()) <= MOST_CRITERIA
+            and len(criteria) <= MOST_CRITERIA
             and all(map(_is_single, parameters.values()))
             and all(_is_quick_step(self._designs.catalogues, step) for step in steps.values())
         )
 
 
-def _note(raw: JsonObject) -> str | None:
+def _note(raw: Body) -> str | None:
     """Take the note out of a body."""
     note = raw.pop("note", None)
     if note is not None and not (isinstance(note, str) and len(note) <= LONGEST_NOTE):
@@ -133,7 +136,7 @@ def _note(raw: JsonObject) -> str | None:
     return note
 
 
-def _is_quick_step(catalogues: Catalogues, step: Json) -> bool:
+def _is_quick_step(catalogues: Catalogues, step: object) -> bool:
     if not isinstance(step, dict):
         return False
     id, version, inputs = step.get("template"), step.get("version"), step.get("inputs") or {}
@@ -147,7 +150,7 @@ def _is_quick_step(catalogues: Catalogues, step: Json) -> bool:
     return is_quick_template(cls)
 
 
-def _is_single(value: Json) -> bool:
+def _is_single(value: object) -> bool:
     """Return whether a value as typed is no list."""
     if isinstance(value, dict):
         return not any(isinstance(part, (list, dict)) for part in value.values())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from sqlalchemy.orm import Session
 
 from app.designs import releases, repository, tolerances
@@ -24,7 +26,7 @@ def design(row: DesignRow, revision: RevisionRow) -> Design:
     return _design(row.id, revision.number, revision.document, row.created, revision.created, state, problem)
 
 
-def current(id: str, number: int, document: JsonObject, created: str, changed: str) -> Design:
+def current(id: str, number: int, document: Mapping[str, object], created: str, changed: str) -> Design:
     """A design as of a revision for which nothing is to be regenerated."""
     return _design(id, number, document, created, changed, "current", None)
 
@@ -32,11 +34,11 @@ def current(id: str, number: int, document: JsonObject, created: str, changed: s
 def _design(
     id: str,
     number: int,
-    document: JsonObject,
+    document: Mapping[str, object],
     created: str,
     changed: str,
     state: str,
-    problem: JsonObject | None,
+    problem: Mapping[str, object] | None,
 ) -> Design:
     return Design.model_validate(
         {

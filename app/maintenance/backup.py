@@ -26,7 +26,6 @@ from app.maintenance.errors import CannotRun
 from app.maintenance.files import fault_of
 from app.maintenance.folder import database_file, reading, refuse_other_schema
 from app.maintenance.rows import Named, named_files
-from app.plain import Json
 from app.storage.identity import now
 from app.storage.integrity import faults
 
@@ -176,7 +175,7 @@ def _missing(contents: Contents) -> list[str]:
     return sorted([*contents.damaged, *contents.deleted])
 
 
-def _json(value: Json) -> bytes:
+def _json(value: object) -> bytes:
     return json.dumps(value, indent=1).encode()
 
 
