@@ -26,7 +26,7 @@ def design(row: DesignRow, revision: RevisionRow) -> Design:
     return _design(row.id, revision.number, revision.document, row.created, revision.created, state, problem)
 
 
-def current(id: str, number: int, document: Mapping[str, object], created: str, changed: str) -> Design:
+def current(id: str, number: int, document: JsonObject, created: str, changed: str) -> Design:
     """A design as of a revision for which nothing is to be regenerated."""
     return _design(id, number, document, created, changed, "current", None)
 
@@ -34,7 +34,7 @@ def current(id: str, number: int, document: Mapping[str, object], created: str, 
 def _design(
     id: str,
     number: int,
-    document: Mapping[str, object],
+    document: JsonObject,
     created: str,
     changed: str,
     state: str,
