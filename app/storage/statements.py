@@ -73,16 +73,11 @@ class Statement:
 
     def run_many(self, session: Session, many: Sequence[Values]) -> None:
         """Execute it once for each of several sets of values; it returns no rows."""
-        driver: sqlite3.Connection | None = session.info.get(DRIVER)
-        if driver is None:
+        if DRIVER in session.info:
+            for values in many:
+                self.run(session, values)
+        else:
             session.connection().execute(self.clause, many)
-            return
-        compiled = self._compiled
-        rows = list(map(compiled.parameters, many))
-        try:
-            driver.executemany(compiled.text, rows)
-        except sqlite3.Error as error:
-            raise _translated(compiled.text, rows, error) from error
 
     @cached_property
     def _compiled(self) -> _Compiled:
@@ -121,14 +116,6 @@ class _Compiled:
     constants: Values
     writing: dict[int, _Convert]
     reading: dict[int, _Convert]
-
-    def parameters(self, values: Values) -> list[object]:
-        """The parameters in their order."""
-        row = list(map({**self.constants, **values}.__getitem__, self.places))
-        for n, convert in self.writing.items():
-            if row[n] is not None:
-                row[n] = convert(row[n])
-        return row
 
 
 def _converted(rows: Iterable[Row], converts: Mapping[int, _Convert]) -> list[Row]:
