@@ -23,9 +23,15 @@ from templates.core.units.units import unit
 
 FOLDER = Path("docs/drawings")
 PAGE = Path("docs/drawings.md")
-_GALLERY = "All lengths of the example times 0.25, 1 and 4, drawn by `python -m benchmarks.drawings`.\n"
+_GALLERY = (
+    "All lengths of the example times 0.25, 1 and 4, drawn by `python -m benchmarks.drawings`; "
+    "of `deep_groove_bearing` 6000, 6210 and 6330.\n"
+)
 SIZES = (0.25, 1.0, 4.0)
 """Factors of all lengths of a model's example."""
+
+STANDARD = {0.25: "6000", 4.0: "6330"}
+"""The smallest and the largest bearing of the series 60 to 63, which have no other sizes, by factor."""
 
 
 def latest() -> Iterator[type[CadModel]]:
@@ -42,6 +48,8 @@ def sized(model: type[CadModel], factor: float) -> Build:
     TemplateError, GeometryError
         If the model has no such size.
     """
+    if model.id == "deep_groove_bearing" and factor in STANDARD:
+        return regenerate(model.id, model.version, {"designation": STANDARD[factor]})
     example = model.from_quantities(model.example)
     given: dict[str, Any] = {name: example.inputs_si()[name] for name in model.example}
     for name, value in given.items():

@@ -101,7 +101,7 @@ def test_fields_of_a_title_block_are_typed_before_a_download(watched, http):
     page.goto(f"{watched.url}/designs/{design(http, 'typed')}")
     page.get_by_text("Title block of a drawing").click()
     page.get_by_label("Identification number").fill("4711-08")
-    page.get_by_label("Checked by").fill("Bo & Co")
+    page.get_by_label("Created by").fill("Bo & Co")
     with page.expect_download(timeout=PATIENCE) as download:
         page.locator("[data-buttons]").get_by_role("button", name="DXF").click()
     assert download.value.suggested_filename == "typed_shell_r1.dxf"
