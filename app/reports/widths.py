@@ -47,7 +47,7 @@ _REFERENCE = re.compile("&#x([0-9A-Fa-f]+);")
 
 
 def fits(mathml: Iterable[str], width: float) -> bool:
-    """Whether formulas, one beside the other, are certainly no wider than so much [em]."""
+    """Return whether formulas, one beside the other, are certainly no wider than so much [em]."""
     return sum(_bound(_alike(one)) for one in mathml if one) <= width
 
 
