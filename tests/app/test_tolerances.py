@@ -46,7 +46,7 @@ def test_a_preview_warns(http, design):
 @pytest.mark.slow
 def test_a_report_says_so(http, design):
     text = http.get(f"{API}/designs/{design['id']}/report.html", headers={"Prefer": "wait=60"}).text
-    assert "Note on model.width: its tolerance is kept" in text
+    assert "Note on model.width: the solid is built at the value" in text
     assert "Note on scale: its tolerance is kept" in text
 
 
