@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from templates.physics.films.complementarity import rupture
 from templates.physics.films.film_dynamics import plain_coefficients
 from templates.physics.films.film_measures import force
 from templates.physics.films.long_bearing import rupture_Swift_Stieber
-from templates.physics.films.reynolds import extrapolated_film, static_field, static_film
+from templates.physics.films.reynolds import extrapolated_film, journal_equations, static_field, static_film
 from templates.physics.films.short_bearing import (
     attitude_Ocvirk_1952,
     load_Ocvirk_1952,
@@ -144,6 +145,15 @@ def test_pressure_is_a_complementary_solution() -> None:
     assert field.rupture.P.min() == 0
     assert np.abs(excess[film]).max() < 1e-11 * scale
     assert excess[1:-1, :-1].min() > -1e-11 * scale
+
+
+@pytest.mark.parametrize(("eps", "ratio"), [(1e-6, 0.02), (0.6, 0.5), (0.9, 20.0), (0.99995, 1.0)])
+def test_a_film_does_not_depend_on_where_the_solver_starts(eps: float, ratio: float) -> None:
+    """A start from the coarser film, and one from nothing but the nodes to which motion brings oil."""
+    field = static_field(eps, ratio, 96, 16)
+    alone = rupture(journal_equations(eps, ratio, field.mesh))
+    assert (field.rupture.film == alone.film).all()
+    np.testing.assert_allclose(field.rupture.P, alone.P, rtol=0, atol=1e-12 * alone.P.max())
 
 
 @pytest.mark.parametrize(

@@ -33,6 +33,6 @@ def test_property_resumed_solutions_are_those_from_the_start(n: int, m: int, is_
 def test_a_matrix_that_is_not_positive_definite_is_refused() -> None:
     mesh = journal_mesh(0.5, 1.0, 32, 6)
     matrix = banded(journal_equations(0.5, 1.0, mesh))
-    turned = Resumed(replace(matrix, bands=-matrix.bands))
+    turned = Resumed(replace(matrix, diagonals=-matrix.diagonals))
     with pytest.raises(ArithmeticError, match="positive definite"):
         turned.solve(np.ones(matrix.shape, bool), np.ones(matrix.shape))

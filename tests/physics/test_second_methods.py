@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from templates.physics.films.film_mesh import gap, graded_across, gregory, journal_mesh, ring_mesh
+from templates.physics.films.film_mesh import gap, graded_across, gregory, halved, journal_mesh, ring_mesh
 from templates.physics.films.film_mesh import sommerfeld_angle as sommerfeld
 from templates.physics.films.long_bearing import rupture_Swift_Stieber
 from templates.physics.films.short_dynamics import coefficients_Holmes_1960
@@ -116,12 +116,19 @@ class TestFilmMeshes:
     def test_ends_of_the_meshes(self):
         ring, film = ring_mesh(0.6, 0.8, 32, 8), journal_mesh(0.6, 0.8, 32, 8)
         assert ring.phi[[0, -1]] == pytest.approx([-np.pi, np.pi])
-        rupture = float(rupture_Swift_Stieber(np.asarray(0.6))) - np.pi  # in Sommerfeld's angle
+        rupture = rupture_Swift_Stieber(0.6) - np.pi  # in Sommerfeld's angle
         assert film.phi[0] == pytest.approx(-np.pi)
         assert sommerfeld(film.phi[-1:], 0.6)[0] == pytest.approx(1.03 * rupture)
         assert film.zeta[[0, -1]] == pytest.approx([0, 1])
         assert film.coarser().phi == pytest.approx(film.phi[::2])
         assert film.coarser().zeta == pytest.approx(film.zeta[::2])
+
+    @pytest.mark.parametrize("make", [journal_mesh, ring_mesh])
+    @pytest.mark.parametrize(("eps", "ratio"), [(0.0, 1.0), (0.6, 0.02), (1 - 1e-7, 50.0)])
+    def test_half_a_mesh_is_the_mesh_of_half_as_many_intervals(self, make, eps, ratio):
+        half, made = halved(make(eps, ratio, 64, 16)), make(eps, ratio, 32, 8)
+        for ours, theirs in zip(vars(half).values(), vars(made).values(), strict=True):
+            assert ours == pytest.approx(theirs, rel=1e-12, abs=1e-14)
 
     @pytest.mark.parametrize("layer", [0.01, 0.5, 1.0, 3.0])
     def test_a_layer_at_the_end_is_resolved(self, layer):

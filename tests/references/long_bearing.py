@@ -15,6 +15,8 @@ from templates.core.arrays import Array
 from templates.physics.films.long_bearing import rupture_Swift_Stieber
 from templates.physics.numerics.arrays import require_film
 
+_rupture = np.vectorize(rupture_Swift_Stieber)
+
 
 def load_Sommerfeld_1904(eps: Array) -> Array:
     r"""Sommerfeld number So of a full film that bears tension; its attitude is 90° [-].
@@ -108,7 +110,7 @@ def force_Swift_Stieber(eps: Array) -> tuple[Array, Array]:
     ----------
     Swift 1932; Stieber 1933; integrals by parts of the pressure in `pressure_Swift_Stieber`.
     """
-    gamma = rupture_Swift_Stieber(eps)
+    gamma = _rupture(eps)
     s2, one = (1 - eps) * (1 + eps), 1 - eps * np.cos(gamma)
     along = 1.5 * eps * (1 - np.cos(gamma)) ** 2 / (s2 * one)
     across = 1.5 * eps * (gamma - np.sin(gamma) * np.cos(gamma)) / (np.sqrt(s2) * one)
@@ -154,7 +156,7 @@ def pressure_Swift_Stieber(eps: Array, gamma: Array) -> Array:
     ----------
     Swift 1932; Stieber 1933.
     """
-    end = rupture_Swift_Stieber(eps)
+    end = _rupture(eps)
     s2, sin, cos, cos_end = (1 - eps) * (1 + eps), np.sin(gamma), np.cos(gamma), np.cos(end)
     bracket = 2 * (sin - gamma * cos_end) + eps * (2 * cos_end * sin - gamma - sin * cos)
     return np.where(gamma < end, 3 * eps * bracket / (s2**1.5 * (1 - eps * cos_end)), 0.0)

@@ -17,7 +17,7 @@ import numpy as np
 
 from templates.core.arrays import Array, Mask
 from templates.physics.films.banded import Banded, Resumed, banded
-from templates.physics.films.film_equations import Equations, dual_widths
+from templates.physics.films.film_equations import Equations
 
 _MOST_STEPS = 1000
 
@@ -54,8 +54,9 @@ def rupture(equations: Equations, film: Mask | None = None) -> Rupture:
     matrix = banded(equations)
     may = np.zeros(matrix.shape, bool)
     may[matrix.order, :-1] = True
-    b = equations.source[:, None] * dual_widths(equations.zeta)
+    b = equations.brought
     if equations.ring:
+        b = b.copy()
         b[0] += b[-1]
     film = (may & (b > 0)) if film is None else may & film
     noise = 1e-13 * np.abs(b).max()

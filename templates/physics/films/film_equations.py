@@ -10,6 +10,7 @@ again a set of such equations.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -38,11 +39,28 @@ class Equations:
     ring: bool = False
     """Whether the last node is the first; else P = 0 at both."""
 
+    @cached_property
+    def conductance_around(self) -> Array:
+        """Flow from a node to the next around for a unit of pressure, (n, m + 1)."""
+        return np.asarray(self.around[:, None] * dual_widths(self.zeta))
+
+    @cached_property
+    def conductance_across(self) -> Array:
+        """Flow from a node to the next across for a unit of pressure, (n + 1, m)."""
+        return np.asarray(self.across[:, None] / np.diff(self.zeta))
+
+    @cached_property
+    def brought(self) -> Array:
+        """What rotation and squeeze bring to a node, (n + 1, m + 1)."""
+        return np.asarray(self.source[:, None] * dual_widths(self.zeta))
+
     def residual(self, P: Array) -> Array:
         """A P − b: what a node loses by pressure less what it gains by motion, (n + 1, m + 1)."""
-        flow = self.around[:, None] * dual_widths(self.zeta) * np.diff(P, axis=0)
-        axial = self.across[:, None] * np.diff(P, axis=1) / np.diff(self.zeta)
-        excess = -self.source[:, None] * dual_widths(self.zeta)
+        flow = P[1:] - P[:-1]
+        flow *= self.conductance_around
+        axial = P[:, 1:] - P[:, :-1]
+        axial *= self.conductance_across
+        excess = -self.brought
         excess[:-1] -= flow
         excess[1:] += flow
         excess[:, :-1] -= axial
@@ -51,13 +69,11 @@ class Equations:
 
     def diagonal(self) -> Array:
         """The diagonal of A, (n + 1, m + 1)."""
-        flow = self.around[:, None] * dual_widths(self.zeta)
-        axial = self.across[:, None] / np.diff(self.zeta)
         total = np.zeros((self.across.size, self.zeta.size))
-        total[:-1] += flow
-        total[1:] += flow
-        total[:, :-1] += axial
-        total[:, 1:] += axial
+        total[:-1] += self.conductance_around
+        total[1:] += self.conductance_around
+        total[:, :-1] += self.conductance_across
+        total[:, 1:] += self.conductance_across
         return self._closed(total)
 
     def _closed(self, balance: Array) -> Array:

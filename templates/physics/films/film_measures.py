@@ -96,11 +96,13 @@ def rupture_angle(field: Field) -> Array:
 def _peak(phi: Array, P: Array) -> tuple[float, float]:
     """Place and height of the largest pressure, by a parabola through the three nodes about it."""
     k = min(max(int(P.argmax()), 1), P.size - 2)
-    x, y = phi[k - 1 : k + 2] - phi[k], P[k - 1 : k + 2]
-    bend, slope, top = np.polyfit(x / x[2], y, 2)
+    before, after = phi[k - 1] - phi[k], phi[k + 1] - phi[k]
+    slope_before, slope_after = (P[k - 1] - P[k]) / before, (P[k + 1] - P[k]) / after
+    bend = (slope_after - slope_before) / (after - before)
+    slope = slope_after - bend * after
     if bend >= 0:
-        return float(phi[k]), float(y[1])
-    return float(phi[k] - x[2] * slope / (2 * bend)), float(top - slope**2 / (4 * bend))
+        return float(phi[k]), float(P[k])
+    return float(phi[k] - slope / (2 * bend)), float(P[k] - slope**2 / (4 * bend))
 
 
 def _flows(field: Field) -> tuple[float, float, float]:

@@ -8,14 +8,15 @@ References
 H. W. Swift, Proc. Inst. Civ. Eng. 233, 1932, p. 267; W. Stieber, Das Schwimmlager, VDI 1933.
 """
 
+from math import cos, pi, sin
+
 import numpy as np
+from scipy.optimize import brentq
 
-from templates.core.arrays import Array
 from templates.physics.numerics.arrays import require_film
-from templates.physics.numerics.roots import bracketed_root
 
 
-def rupture_Swift_Stieber(eps: Array) -> Array:
+def rupture_Swift_Stieber(eps: float) -> float:
     r"""Sommerfeld's angle gamma at which the film ruptures with P = dP/dtheta = 0, in (pi, 3 pi/2) [rad].
 
     .. math:: \epsilon(\sin\gamma\cos\gamma - \gamma) + 2(\sin\gamma - \gamma\cos\gamma) = 0
@@ -25,15 +26,20 @@ def rupture_Swift_Stieber(eps: Array) -> Array:
     eps
         Relative eccentricity, 0 … 1 − 1e-7 [-].
 
+    Raises
+    ------
+    ValueError
+        If the eccentricity lies outside its range.
+
     References
     ----------
     Swift 1932; Stieber 1933.
     """
-    require_film(eps, np.ones(()))
-    eps = np.asarray(eps, float)
+    eps = float(eps)
+    require_film(np.asarray(eps), np.ones(()))
 
-    def pressure(gamma: Array) -> Array:
-        sin, cos = np.sin(gamma), np.cos(gamma)
-        return np.asarray(eps * (sin * cos - gamma) + 2 * (sin - gamma * cos))
+    def pressure(gamma: float) -> float:
+        s, c = sin(gamma), cos(gamma)
+        return eps * (s * c - gamma) + 2 * (s - gamma * c)
 
-    return bracketed_root(pressure, np.full_like(eps, np.pi), np.full_like(eps, 1.5 * np.pi))
+    return float(brentq(pressure, pi, 1.5 * pi, xtol=1e-300, rtol=4 * np.finfo(float).eps))

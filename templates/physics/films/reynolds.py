@@ -18,13 +18,16 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from templates.physics.films.complementarity import Rupture, finer, rupture
+from templates.core.arrays import Mask
+from templates.physics.films.complementarity import finer, rupture
 from templates.physics.films.film_equations import Equations, film_equations, midpoints, rotation
-from templates.physics.films.film_measures import Field, Film, measure
-from templates.physics.films.film_mesh import Mesh, gap, journal_mesh, swell
+from templates.physics.films.film_measures import Field, Film, measure, rupture_angle
+from templates.physics.films.film_mesh import Mesh, gap, halved, journal_mesh, swell
 from templates.physics.numerics.arrays import require_film
 
 _COARSEST = 16, 4
+_CLOSE = 0.9999
+"""Eccentricity above which rounding decides about nodes (1e-7 of a load): there the start is kept [-]."""
 _CENTRED = 1e-9
 """Eccentricity at which a centred journal's attitude and places are taken: their limits."""
 
@@ -71,31 +74,37 @@ def extrapolated_film(eps: float, ratio: float, around: int = 128, across: int =
     if eps == 0:
         coarse, fine = (static_film(eps, ratio, k * around, k * across) for k in (1, 2))
     else:
-        first = static_field(eps, ratio, around, across)
-        coarse, fine = measure(first), measure(static_field(eps, ratio, 2 * around, 2 * across, first))
+        require_film(np.asarray(eps), np.asarray(ratio))
+        mesh = journal_mesh(eps, ratio, 2 * around, 2 * across)
+        first = _nested(eps, ratio, halved(mesh))
+        coarse, fine = measure(first), measure(_nested(eps, ratio, mesh, first))
     values = [(getattr(coarse, f.name), getattr(fine, f.name)) for f in fields(Film)]
     return Film(*(f + (f - c) / 3 for c, f in values)), Film(*((f - c) / 3 for c, f in values))
 
 
-def static_field(
-    eps: float, ratio: float, around: int = 128, across: int = 16, coarser: Field | None = None
-) -> Field:
-    """Solve for the pressure, from the solution on half as many intervals or from a coarse mesh."""
+def static_field(eps: float, ratio: float, around: int = 128, across: int = 16) -> Field:
+    """Solve for the pressure; arguments as those of `static_film`, eps above 0."""
     require_film(np.asarray(eps), np.asarray(ratio))
-    mesh = journal_mesh(eps, ratio, around, across)
-    equations, solution = _nested(eps, ratio, mesh, None if coarser is None else coarser.rupture)
-    return Field(eps, ratio, mesh, equations, solution)
+    return _nested(eps, ratio, journal_mesh(eps, ratio, around, across))
 
 
-def _nested(
-    eps: float, ratio: float, mesh: Mesh, coarser: Rupture | None = None
-) -> tuple[Equations, Rupture]:
+def _nested(eps: float, ratio: float, mesh: Mesh, coarser: Field | None = None) -> Field:
     """Solve with the start taken from the next coarser mesh, as long as there is one."""
     n, m = mesh.phi.size - 1, mesh.zeta.size - 1
     if coarser is None and min(n // _COARSEST[0], m // _COARSEST[1]) > 1 and n % 2 == m % 2 == 0:
-        _, coarser = _nested(eps, ratio, mesh.coarser())
+        coarser = _nested(eps, ratio, mesh.coarser())
     equations = journal_equations(eps, ratio, mesh)
-    return equations, rupture(equations, None if coarser is None else finer(coarser.film))
+    start = None if coarser is None else _start(coarser, mesh)
+    return Field(eps, ratio, mesh, equations, rupture(equations, start))
+
+
+def _start(coarser: Field, mesh: Mesh) -> Mask:
+    """The nodes of a finer mesh that lie before the end of a film, (n + 1, m + 1)."""
+    if coarser.eps > _CLOSE:
+        return finer(coarser.rupture.film)
+    end = rupture_angle(coarser)
+    end[-1] += end[-2] - end[-3]  # at the edge of the bearing, where it is taken from the node beside
+    return np.asarray(mesh.phi[:, None] < np.interp(mesh.zeta, coarser.mesh.zeta, end))
 
 
 def journal_equations(eps: float, ratio: float, mesh: Mesh) -> Equations:
