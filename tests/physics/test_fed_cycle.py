@@ -9,9 +9,15 @@ import pytest
 from templates.core.language.evaluate import evaluate
 from templates.oil_film.oil_film_cycle_v2 import OilFilmCycle
 from templates.oil_film.oil_film_v2 import OilFilm
+from templates.physics.orbits.cyclic_film import Duty
 from templates.physics.orbits.grooved_mobility import Groove
+from templates.physics.orbits.journal_orbit import CyclicLoad
 from templates.physics.orbits.turning import turning
+from templates.physics.supplied.feeding import Feeding, feed_under_load
+from templates.physics.supplied.supplied_march import Duty as FilmDuty
 from templates.physics.supplied.supplied_mesh import supplied_mesh
+from templates.physics.supplied.supplied_orbit import under_load
+from templates.physics.supplied.supply import Pocket, Supply
 
 D, PSI, ETA, OMEGA, RATIO = 0.1, 1e-3, 0.02, 300.0, 0.5
 COUNT = 24
@@ -69,6 +75,27 @@ def test_analytic_share_of_the_sector_about_the_load():
     assert everywhere.covers(direction) == pytest.approx(1)
     none = Groove(np.array([0.0]), np.array([1.0]), np.array([2 * np.pi]))
     assert none.covers(direction) == pytest.approx(0)
+
+
+def test_analytic_a_hole_in_a_pin_at_half_speed_stays_under_a_load_that_turns_with_it():
+    """The pin turns once in a cycle of two turns of the crank. At the crank's own speed it lies within 60° of
+    the load for a third of that cycle."""
+    angle, none = np.radians(np.arange(0, 720, 5.0)), np.array(np.nan)
+    hole = Feeding(np.array(D), np.array(D * RATIO), *[none] * 6, *map(np.array, (5e-3, 5e-3, 0.0)))
+    load = np.cos(angle / 2), np.sin(angle / 2)
+    for speed, share in ((OMEGA / 2, 1.0), (OMEGA, 1 / 3)):
+        speeds = map(np.array, (speed, 0.0, 0.0, OMEGA))
+        duty = Duty(angle, *load, *speeds, np.array(SCALE), np.array(RATIO))
+        assert feed_under_load(duty, hole) == pytest.approx(share, abs=2 / 144)
+
+
+@pytest.mark.parametrize("centre", np.radians([-170.0, -50.0, 0.0, 100.0, 350.0]))
+def test_analytic_a_load_that_turns_once_lies_over_a_hole_for_a_third_of_the_cycle(centre):
+    load = CyclicLoad(
+        ANGLE, 2 * np.pi, np.stack([np.cos(ANGLE), np.sin(ANGLE)])[:, None], np.zeros((1, COUNT))
+    )
+    supply = Supply((Pocket(float(centre), 0.1, 0.3),), 0.3)
+    assert under_load(FilmDuty(load, np.zeros(COUNT), supply, 0.0)) == pytest.approx(1 / 3, abs=2 / 720)
 
 
 @pytest.mark.parametrize("around", range(32, 400, 2))
