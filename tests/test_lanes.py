@@ -1,5 +1,6 @@
 """Which tests run together, which slow ones after a change, and how tests wait."""
 
+import fnmatch
 import os
 import shutil
 import subprocess
@@ -112,10 +113,14 @@ def test_the_fixed_selection_holds_slow_tests():
 
 
 def test_a_test_of_a_whole_server_is_about_files_that_exist():
-    files = [changed.name(file) for file in (ROOT / "app").rglob("*.py")]
-    for test in changed.ABOUT:
-        assert test in changed.slow_files()
-        assert changed.is_related(test, files)
+    tree = [changed.name(file) for part in ("app", "cad", "templates") for file in (ROOT / part).rglob("*.*")]
+    slow = changed.slow_files()
+    for test, patterns in changed.ABOUT.items():
+        assert test in slow
+        for pattern in patterns:
+            files = fnmatch.filter([*tree, "pyproject.toml"], pattern)
+            assert files, f"{test}: {pattern} names no file"
+            assert changed.is_related(test, files[:1])
         assert not changed.is_related(test, ["app/web/static/icon.svg"])
 
 

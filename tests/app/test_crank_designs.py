@@ -157,6 +157,7 @@ class TestWhatWaitsForTheSolid:
 class TestIteration:
     """Mass → load → web thickness → mass."""
 
+    @pytest.mark.slow
     def test_analytic_one_that_converges_reports_its_steps(self, http):
         design = created(http, growing(tolerance=1e-6))
         assert design["state"] == "current", design["problem"]

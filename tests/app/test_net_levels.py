@@ -10,6 +10,7 @@ from templates.core.language.evaluate import evaluate
 from templates.door import built_in
 
 
+@pytest.mark.slow
 def test_levels_for_a_tolerance_at_a_share_of_the_rows():
     net = net_of(BEARING, "diameter", "width", "clearance")
     rows = spread(net, 40, 0.5, 1.5)

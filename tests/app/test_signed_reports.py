@@ -122,6 +122,7 @@ def test_a_released_report_is_the_same_whatever_follows(room, design, printed):
     assert failures(printed, approvals_of(room.author, design), printed) == []
 
 
+@pytest.mark.slow
 def test_a_changed_page_is_named(room, design, printed, unsigned):
     pages = pypdf.PdfWriter(clone_from=io.BytesIO(unsigned))
     pages.root_object["/Names"].get_object().pop("/EmbeddedFiles", None)

@@ -91,6 +91,7 @@ def test_the_record_is_not_served(film, templates):
     assert "record" not in RevisionStep.model_json_schema(mode="serialization")["properties"]
 
 
+@pytest.mark.slow
 def test_a_record_restores_every_inexpensive_template(templates):
     restored_ones = 0
     for cls in templates:

@@ -120,6 +120,7 @@ def test_the_interface_says_how_many_solids(http):
     assert "720 rows are up to 720 solids" in fault["detail"]
 
 
+@pytest.mark.slow
 def test_a_plan_does_not_follow_from_what_was_measured_before():
     asked_for, rows = task(
         FILM, method="sample", points=9000, vary=TWO, outputs=[THICKNESS], confirm={"tolerance": 0.001}

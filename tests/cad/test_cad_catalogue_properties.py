@@ -80,6 +80,7 @@ def test_file_says_what_it_is(model: type[CadModel], example: Build) -> None:
     assert header.build == example.key == build_key(asked)
 
 
+@slow_for(("crankshaft", 3))
 def test_model_is_made_again_from_the_text_in_its_file(model: type[CadModel], example: Build) -> None:
     header = read_header(example.step)
     assert header is not None

@@ -136,6 +136,7 @@ def test_rotating_couple_is_that_of_the_engine() -> None:
     assert abs(couple - wanted) < 1e-8 * abs(wanted)
 
 
+@pytest.mark.slow
 def test_throws_cut_at_the_mains_add_up_to_the_whole(cross: Build) -> None:
     throws = throws_measured(cross.step, [k * PITCH for k in range(1, 4)])
     assert len(throws) == 4

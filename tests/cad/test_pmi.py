@@ -164,6 +164,7 @@ def test_property_limits_are_read_back_exactly_by_a_second_reader(files):
     assert len(files) == 10
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("nose", ["35 mm", "55 mm"])  # 55: as thick as the journal, so without a shoulder
 def test_lengths_that_repeat_along_a_shaft_are_stated_at_each_place(nose):
     cls = models().get("crankshaft", 2)
@@ -180,6 +181,7 @@ def test_lengths_that_repeat_along_a_shaft_are_stated_at_each_place(nose):
     assert counts == {"journal_length": 3 - (nose == "55 mm"), "pin_length": 2, "web_thickness": 4}
 
 
+@pytest.mark.slow
 def test_a_shaft_of_split_pins_states_its_middle_webs_apart():
     cls = models().get("crankshaft", 3)
     texts = as_text(cls.from_quantities(cls.example))

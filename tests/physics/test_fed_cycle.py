@@ -139,6 +139,7 @@ def test_property_hole_that_stays_under_the_load_starves_with_its_reason():
     assert answers["cycles_run"].value > 1
 
 
+@pytest.mark.slow
 def test_property_oil_of_the_cycle_balances():
     x = 2 + 3 * np.exp(6 * (np.cos(ANGLE - 0.4) - 1)) + 0.5 * np.cos(2 * ANGLE)
     answers = marched(inputs(x, np.sin(ANGLE), **PIN)).outputs

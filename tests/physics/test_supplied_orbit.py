@@ -131,6 +131,7 @@ def test_curves_are_of_one_cycle_and_the_oil_is_kept() -> None:
     assert orbit.under_load == 0
 
 
+@pytest.mark.slow
 def test_hole_under_the_load_starves() -> None:
     """The pin hole of a two-stroke big end, under the load for most of the cycle: its film thins at last."""
     duty = random_duty(17, 40)

@@ -59,6 +59,7 @@ def level(wrong, band):
     return answer
 
 
+@pytest.mark.slow
 def test_a_corrected_front_is_met_everywhere_and_near_the_closed_form():
     effort = Effort(population=40, generations=80, confirmed=10)
     front = pareto_front(PROBLEM, level(1, 0.4), level(0, 1e-3), seed=3, effort=effort)

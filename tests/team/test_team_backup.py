@@ -80,6 +80,7 @@ def test_a_restored_backup_is_served_and_clean(kept, run, cluster, object_store,
     cluster.drop("restored")
 
 
+@pytest.mark.slow
 def test_a_lost_file_is_named_and_missing_in_the_backup(kept, run, tmp_path):
     settings, before = kept
     sha = before["models"]["model"]["artifacts"]["step"]

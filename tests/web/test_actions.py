@@ -42,6 +42,7 @@ def test_the_choice_of_units_keeps_the_rest_of_the_address(http, paper):
     assert 'href="?units=us"' in http.get("/").text
 
 
+@pytest.mark.slow
 def test_the_choice_of_units_keeps_what_is_typed(watched):
     watched.open("/templates/third/1")
     page = watched.page

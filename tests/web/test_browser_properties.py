@@ -78,7 +78,8 @@ def test_no_page_asks_an_outside_address_fails_or_breaks_the_policy(watched, req
         assert watched.page.get_by_text("could not be drawn").count() == 0, path
 
 
-@pytest.mark.parametrize("all_or_one", ["some", pytest.param("paths", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("all_or_one", ["some", "paths"])
 def test_no_page_is_wider_than_a_narrow_screen(browser, watched, http, kinds, request, all_or_one):
     paths = request.getfixturevalue(all_or_one)
     watched.page.set_viewport_size(NARROW)
@@ -171,6 +172,7 @@ def test_without_a_script_all_is_readable_and_a_form_saves(plain, http):
     expect(page.locator('[data-output=".third_of_the_length"] .number')).to_have_text("4")
 
 
+@pytest.mark.slow
 def test_a_template_file_has_its_page_form_formulas_and_report(watched):
     page = watched.page
     watched.open("/")
@@ -209,6 +211,7 @@ QUANTITIES = (
 )
 
 
+@pytest.mark.slow
 def test_the_browser_writes_numbers_as_the_server_does(watched):
     watched.open("/")
     script = "async ([numbers, units, quantities]) => { const m = await import('/static/numbers.js');"

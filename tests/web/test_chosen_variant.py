@@ -53,6 +53,7 @@ def test_a_variant_that_is_none_is_named(http, engine):
     assert "slow, wide" in part
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
 def test_by_mouse_without_scripts(plain, engine):
     page = plain.page

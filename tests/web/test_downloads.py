@@ -51,6 +51,7 @@ def test_the_step_file_is_the_first_of_the_downloads(http):
     assert len(offered) == len({*offered}) == len(MEDIA_TYPES) - 1  # all kinds but the picture
 
 
+@pytest.mark.slow
 def test_a_job_is_followed_and_its_answer_is_not_saved(watched, http):
     """202 twice, as of a queue that is long; the page shows how far the job is, and saves the file alone."""
     page, asked, id = watched.page, [], design(http, "slow")

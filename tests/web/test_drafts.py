@@ -38,6 +38,7 @@ def test_two_tabs_keep_their_own_drafts(watched, open_design):
     expect(load(one)).to_have_value("31 kN")
 
 
+@pytest.mark.slow
 def test_what_is_saved_at_once_after_it_was_typed_is_no_draft_afterwards(open_design):
     page = open_design
     page.get_by_label("scale", exact=True).fill("1.01")

@@ -137,7 +137,8 @@ def saves(page, place, url):
 
 
 # Same site, another port, to which cookies are sent; another site.
-@pytest.mark.parametrize("site", ["127.0.0.1", pytest.param("localhost", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("site", ["127.0.0.1", "localhost"])
 def test_a_page_of_another_origin(browser, served, http, paper, site, caplog):
     caplog.set_level(logging.INFO, "app.api.gate.guard")
     context = browser.new_context()

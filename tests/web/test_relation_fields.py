@@ -172,6 +172,7 @@ def test_a_narrow_page_scrolls_the_drawing_inside_its_panel(browser, served, pap
     context.close()
 
 
+@pytest.mark.slow
 def test_a_design_without_relations_has_no_drawing(http):
     design = http.post(f"{API}/designs", json={"name": "alone", "parameters": {"scale": "1"}}).json()
     settled(http, f"/designs/{design['id']}")

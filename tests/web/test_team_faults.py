@@ -21,6 +21,7 @@ def file(http, served):
     until(lambda: http.get(f"{API}/templates/third/versions/1").status_code == 200)
 
 
+@pytest.mark.slow
 def test_a_broken_file_is_seen_from_the_list_to_the_line(watched, http, file):
     step = {"template": "third", "version": 1, "inputs": {"whole_length": "9 mm"}}
     design = http.post(f"{API}/designs", json={"name": "thirds", "steps": {"t": step}}).json()

@@ -72,6 +72,7 @@ class TestLimits:
         for name in (*CHANGED, "largest_deformation"):
             assert found[name] == pytest.approx(ring[name], rel=1e-3), name
 
+    @pytest.mark.slow
     def test_property_the_bore_turns_with_its_load(self):
         """The modes' second harmonic softened along c2: a quarter turn of the load takes s and c in turn."""
         soft, other = RING.copy(), RING.copy()
