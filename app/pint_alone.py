@@ -1,17 +1,12 @@
-"""Import Pint without Dask, for a command of the shell: import this module before all that imports Pint.
+"""Import Pint without Dask: import this module before all that imports Pint.
 
-Where Dask is installed, Pint imports it, for arrays that these commands do not have, and that takes longer
-than Pint itself. So Pint does not find Dask here. Dask cannot hold the quantities of such a Pint: a service,
-a worker and a notebook import Pint as it is.
+Where Dask is installed, Pint imports it, for arrays that neither the commands of the shell nor the server
+have, and that takes longer than Pint itself. Dask cannot hold the quantities of such a Pint, so a notebook
+imports Pint as it is. A server of a team hands Dask packed bytes only.
 """
 
 from __future__ import annotations
 
-import sys
+from app.alone import import_alone
 
-if {"pint", "dask"}.isdisjoint(sys.modules):
-    sys.modules["dask"] = None  # type: ignore[assignment]  # as Python marks what is not to be imported
-    try:
-        import pint  # noqa: F401
-    finally:
-        del sys.modules["dask"]
+import_alone("pint", without="dask")

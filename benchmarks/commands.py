@@ -15,6 +15,8 @@ import sys
 from pathlib import Path
 from statistics import median
 
+from benchmarks.processor_time import environment
+
 HERE = Path(__file__).parents[1]
 FILM = (
     "radial_load=25 kN", "diametral_clearance=0.055 mm", "bearing_diameter=48 mm", "bearing_width=18 mm",
@@ -41,7 +43,7 @@ def measured(program: Path, arguments: tuple[str, ...]) -> tuple[float, float]:
     process = subprocess.Popen(
         [sys.executable, "-m", "app", *arguments],
         cwd=program,
-        env={**os.environ, "PYTHONPATH": str(program)},
+        env={**environment(), "PYTHONPATH": str(program)},
         stdout=subprocess.DEVNULL,
     )
     _, status, usage = os.wait4(process.pid, 0)

@@ -11,6 +11,14 @@ _TICK = 1 / os.sysconf("SC_CLK_TCK")  # s
 _PARENT, _OWN, _ENDED = 1, slice(11, 13), slice(13, 15)  # fields of a `stat` behind the name of its program
 
 
+def environment() -> dict[str, str]:
+    """The environment of this process, but Python keeps bytecode, as it does for users.
+
+    Where the variable is set, each process compiles the whole program, which takes as long as importing it.
+    """
+    return {name: text for name, text in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+
+
 @dataclass(frozen=True)
 class Cores:
     """Processor time of the machine since it started, in work and idle [s]."""

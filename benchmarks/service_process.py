@@ -12,6 +12,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from benchmarks import processor_time
+
 LOOPS = '''
 """A model whose build never ends."""
 
@@ -86,7 +88,9 @@ def bare(answers: Path) -> Iterator[Server]:
 @contextmanager
 def _serving(port: int, arguments: list[str], environment: dict[str, str]) -> Iterator[Server]:
     process = subprocess.Popen(
-        [sys.executable, *arguments], env={**os.environ, **environment}, stderr=subprocess.DEVNULL
+        [sys.executable, *arguments],
+        env={**processor_time.environment(), **environment},
+        stderr=subprocess.DEVNULL,
     )
     try:
         _await(port, process)

@@ -25,7 +25,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
-from benchmarks.processor_time import used
+from benchmarks.processor_time import environment, used
 from benchmarks.service_process import free_port
 
 HERE = Path(__file__).parents[1]
@@ -56,11 +56,11 @@ def measured(program: Path, python: str) -> Start:
     port = free_port()
     with tempfile.TemporaryDirectory(prefix="crankwright-start-") as folder:
         command = [python, "-m", "app", "serve", "--port", str(port), "--data", f"{folder}/data"]
-        kept = {name: text for name, text in os.environ.items() if not name.startswith("CRANKWRIGHT_")}
-        environment = kept | {"PYTHONPATH": str(program)}
+        kept = {name: text for name, text in environment().items() if not name.startswith("CRANKWRIGHT_")}
+        variables = kept | {"PYTHONPATH": str(program)}
         with Path(folder, "log").open("wb") as log:
             server = subprocess.Popen(
-                command, cwd=program, env=environment, stdout=log, stderr=log, start_new_session=True
+                command, cwd=program, env=variables, stdout=log, stderr=log, start_new_session=True
             )
             try:
                 _wait(server, port, Path(folder, "log"))

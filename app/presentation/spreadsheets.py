@@ -1,13 +1,17 @@
-"""Texts in spreadsheets: what a program could take for a formula is stored so that it stays a text."""
+"""Texts in spreadsheets: what a program could take for a formula is stored so that it stays a text.
+
+openpyxl has 180 modules. It is imported where an XLSX file is read or written, here and elsewhere.
+"""
 
 from __future__ import annotations
 
-from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE, Cell  # type: ignore[import-untyped]
+import re
 
 XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
 """The media type of a sheet."""
 DANGEROUS = ("=", "+", "-", "@", "\t", "\r")
 LONGEST_CELL = 32_000
+_ILLEGAL = re.compile(r"[\000-\010]|[\013-\014]|[\016-\037]")  # openpyxl's ILLEGAL_CHARACTERS_RE
 
 Value = float | int | str | None
 
@@ -19,6 +23,8 @@ def harmless(value: Value) -> Value:
 
 def put(cell: object, value: Value) -> None:
     """Write a value into a cell of an XLSX file: a number as a number, a text as a text."""
+    from openpyxl.cell.cell import Cell  # type: ignore[import-untyped]
+
     assert isinstance(cell, Cell), "no cells are merged"
     if not isinstance(value, str):
         cell.value = value
@@ -31,4 +37,4 @@ def put(cell: object, value: Value) -> None:
 
 def without_illegal(text: str) -> str:
     """A text without the control characters that XLSX cannot hold, at most `LONGEST_CELL` long."""
-    return str(ILLEGAL_CHARACTERS_RE.sub("", text))[:LONGEST_CELL]
+    return str(_ILLEGAL.sub("", text))[:LONGEST_CELL]

@@ -13,10 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from itertools import chain, count, zip_longest
-
-from openpyxl import Workbook  # type: ignore[import-untyped]
-from openpyxl.styles import Font  # type: ignore[import-untyped]
-from openpyxl.worksheet.worksheet import Worksheet  # type: ignore[import-untyped]
+from typing import TYPE_CHECKING
 
 from app.plain import Json, Raw
 from app.presentation.spreadsheets import Value, harmless, put, without_illegal
@@ -28,6 +25,9 @@ from app.schemas.evaluations import Output, UsedInput
 from templates.core.errors import FaultyText
 from templates.core.units.quantity import read_any
 from templates.core.units.relation import is_relation
+
+if TYPE_CHECKING:
+    from openpyxl.worksheet.worksheet import Worksheet  # type: ignore[import-untyped]
 
 HEAD = ("block", "kind", "name", "index", "value", "unit", "origin", "remark")
 WIDTHS = (16, 12, 34, 8, 18, 14, 34, 40)
@@ -133,6 +133,9 @@ def _each(value: Json, remark: Json, index: str = "") -> Iterator[tuple[str, Val
 
 def write_xlsx(table: Table) -> bytes:
     """A sheet of all single values, and for each block that has arrays a sheet with a column for each."""
+    from openpyxl import Workbook  # type: ignore[import-untyped]
+    from openpyxl.worksheet.worksheet import Worksheet
+
     book = Workbook()
     created = datetime.fromisoformat(table.created).replace(tzinfo=None)
     book.properties.title, book.properties.creator = without_illegal(table.title), "Crankwright"
@@ -182,6 +185,8 @@ def _columns(name: str, unit: str, value: list[Json]) -> Iterator[Column]:
 
 
 def _fill(sheet: Worksheet, lines: Sequence[Sequence[Value]]) -> None:
+    from openpyxl.styles import Font  # type: ignore[import-untyped]
+
     for number, line in enumerate(lines, 1):
         for place, value in enumerate(line, 1):
             if value is not None and value != "":

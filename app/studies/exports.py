@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from typing import IO
 
 import numpy as np
-from openpyxl import Workbook  # type: ignore[import-untyped]
 
 from app.presentation.spreadsheets import Value, harmless
 from app.presentation.units import System, shown_unit, shown_value
@@ -79,6 +78,8 @@ def xlsx(listing: Listing, system: System) -> bytes:
             f"a sheet holds at most {MOST_XLSX} rows here; ask for rows.csv or rows.npz, or filter by `where`"
         )
         raise InvalidInputs([Fault("rows", "too_many_rows", detail)])
+    from openpyxl import Workbook  # type: ignore[import-untyped]
+
     book = Workbook(write_only=True)
     sheet = book.create_sheet("rows")
     for line in (*heads(listing, system), *lines(listing, system)):

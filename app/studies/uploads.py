@@ -11,8 +11,6 @@ from collections.abc import Iterator, Mapping
 from itertools import islice
 from typing import Literal
 
-from openpyxl import load_workbook  # type: ignore[import-untyped]
-
 from app.calculations.tables import read_table
 from app.designs.variant_sheets.grid import MOST_FAULTS
 from app.plain import Raw
@@ -88,6 +86,8 @@ def _of_csv(content: bytes) -> str:
 
 def _of_xlsx(content: bytes) -> str:
     """The first visible sheet as text, a row a line, its cells separated by tabs."""
+    from openpyxl import load_workbook  # type: ignore[import-untyped]
+
     _check_size(content)
     try:
         book = load_workbook(io.BytesIO(content), read_only=True, keep_links=False)

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 from app.calculations.schemas import OIL_FILM
+from benchmarks.processor_time import environment
 from benchmarks.speed.figures import Figure
 
 REPEATS = 3
@@ -32,7 +33,9 @@ def figures() -> list[Figure]:
 
 def measured(command: list[str]) -> tuple[float, float]:
     """Processor time [s] and most memory [MB] of a process with its children."""
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, cwd=Path(__file__).parents[2])
+    process = subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, cwd=Path(__file__).parents[2], env=environment()
+    )
     _, status, usage = os.wait4(process.pid, 0)
     if status:
         raise RuntimeError(f"{' '.join(command)} ended with {status}")

@@ -11,7 +11,7 @@ from app.calculations.schemas import OIL_FILM
 from app.cli import COMMANDS, main
 
 INPUTS = [f"{name}={value}" for name, value in OIL_FILM.items()]
-HEAVY = {"cadquery", "OCP", "ngsolve", "sqlalchemy", "fastapi", "pydantic", "numba"}
+HEAVY = {"cadquery", "OCP", "ngsolve", "sqlalchemy", "fastapi", "pydantic", "numba", "latex2mathml"}
 BOOT = """
 import sys
 from app.__main__ import main

@@ -11,17 +11,16 @@ import math
 import zipfile
 from collections.abc import Iterable, Iterator, Sequence
 from datetime import date, time, timedelta
-from typing import Protocol
-
-from openpyxl import Workbook, load_workbook  # type: ignore[import-untyped]
-from openpyxl.styles import Alignment, Font, PatternFill  # type: ignore[import-untyped]
-from openpyxl.utils import get_column_letter  # type: ignore[import-untyped]
-from openpyxl.worksheet.worksheet import Worksheet  # type: ignore[import-untyped]
+from typing import TYPE_CHECKING, Protocol
 
 from app.designs.variant_sheets.grid import LAST_ROW, Grid, address, grid_of
 from app.designs.variant_sheets.values import FORMULA
 from app.presentation.spreadsheets import Value, put, without_illegal
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt
+
+if TYPE_CHECKING:
+    from openpyxl import Workbook  # type: ignore[import-untyped]
+    from openpyxl.worksheet.worksheet import Worksheet  # type: ignore[import-untyped]
 
 SHEET = "variants"
 MOST_BYTES, MOST_UNPACKED, MOST_PARTS = 2_000_000, 4_000_000, 500
@@ -52,6 +51,8 @@ def read_xlsx(content: bytes) -> Grid:
     InvalidInputs
         If the file is too large, damaged, or has no visible sheet.
     """
+    from openpyxl import load_workbook
+
     _check_size(content)
     try:
         book = load_workbook(io.BytesIO(content), read_only=True, keep_links=False)
@@ -146,6 +147,9 @@ def number_text(number: float) -> str:
 
 def write_xlsx(rows: Sequence[Sequence[Value]], results: Sequence[bool], title: str) -> bytes:
     """Rows as an XLSX file with frozen headings; `results` says which columns hold results."""
+    from openpyxl import Workbook
+    from openpyxl.worksheet.worksheet import Worksheet
+
     book = Workbook()
     book.properties.title, book.properties.creator = without_illegal(title), "Crankwright"
     sheet = book.active
@@ -165,6 +169,9 @@ def write_xlsx(rows: Sequence[Sequence[Value]], results: Sequence[bool], title: 
 
 def _style(sheet: Worksheet, place: int, cells: Sequence[Value], *, is_result: bool) -> None:
     """Width, headings and ground of a column."""
+    from openpyxl.styles import Alignment, Font, PatternFill  # type: ignore[import-untyped]
+    from openpyxl.utils import get_column_letter  # type: ignore[import-untyped]
+
     longest = max((len(str(cell)) for cell in cells if cell is not None), default=0)
     sheet.column_dimensions[get_column_letter(place)].width = min(max(longest + 2, NARROWEST), WIDEST)
     for row in range(1, len(cells) + 1):

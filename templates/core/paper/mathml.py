@@ -13,7 +13,6 @@ from sys import getsizeof
 from threading import Lock
 from typing import Any
 
-import latex2mathml.converter
 from cachetools import LRUCache, cached
 
 from templates.core.language.body import Body
@@ -117,6 +116,8 @@ def symbols(cls: type[Template]) -> dict[str, str]:
 @cached(LRUCache(_KEPT, getsizeof=getsizeof), lock=Lock())
 def mathml(latex: str) -> str:
     """LaTeX as MathML that browsers draw themselves; what it quotes of a user's words is escaped."""
+    import latex2mathml.converter  # long beside a command that writes no formula
+
     # latex2mathml copies texts as they are: signs of its own stand for the brackets of markup meanwhile.
     upright = _OPERATOR.sub(_upright, latex)
     markup: str = latex2mathml.converter.convert(upright.replace("<", _LESS).replace(">", _MORE))

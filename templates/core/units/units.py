@@ -13,16 +13,28 @@ import math
 import re
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
+import flexcache
+import flexparser
 import pint
 
+from templates.core import prepared
 from templates.core.arrays import Array
 from templates.core.errors import FaultyText
 
 Value = float | Array
 
-registry: pint.UnitRegistry[float] = pint.UnitRegistry()
+_PARSED = f"units-{pint.__version__}-{flexparser.__version__}-{flexcache.__version__}"
+"""The folder that keeps Pint's definitions parsed; Pint names its files by what they were made from."""
+
+
+def _registry(parsed: Path | None) -> pint.UnitRegistry[float]:
+    return pint.UnitRegistry(cache_folder=parsed)
+
+
+registry: pint.UnitRegistry[float] = prepared.from_folder(_PARSED, _registry)
 registry.define("@alias revolution = rev")
 
 _NAME = r"(?:[A-Za-zµμ°Ω]+(?:_[A-Za-z]+)*|%)"
