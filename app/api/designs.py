@@ -54,7 +54,7 @@ def shown(
     """A design as of a revision, by default the newest; the ETag is that revision."""
     with designs.database.read() as session:
         row = repository.design(session, id)
-        revision = repository.revision(session, id, number or row.head)
+        revision = repository.lean(session, id, number or row.head)
         design = views.design(row, revision)
     if proposals is not None:
         design = MappedDesign(**dict(design), proposals=list(proposals))

@@ -8,6 +8,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.approvals.errors import NotReady
+from app.designs.stored_results import results_of
 from app.schemas.approvals import ORDER, Approval, Files, Present, Signed
 from app.solids import rows
 from app.storage.tables import ApprovalRow, RevisionRow, canonical_json
@@ -26,7 +27,7 @@ def present(session: Session, row: RevisionRow) -> Present:
     files = rows.artifacts_of(session, set(builds.values()))
     return Present(
         document=digest(row.document),
-        results=digest(row.results),
+        results=results_of(session, row).digest,
         files={name: files.get(key, {}) for name, key in builds.items()},
     )
 

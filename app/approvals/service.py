@@ -36,7 +36,7 @@ class Approving:
             If there is no such revision.
         """
         with self.database.read() as session:
-            return _shown(session, repository.revision(session, id, number))
+            return _shown(session, repository.lean(session, id, number))
 
     def sign(self, id: str, number: int, body: ApprovalIn, expected: str, once: Once) -> Approvals:
         """Take a step on behalf of the acting principal.

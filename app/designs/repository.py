@@ -7,7 +7,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from sqlalchemy import bindparam, insert, select, update
-from sqlalchemy.orm import Session
+from sqlalchemy.orm import Session, defer
 from sqlalchemy.orm.util import identity_key
 
 from app.designs.errors import DesignReleased, StaleRevision
@@ -57,6 +57,7 @@ _DOCUMENT = Statement(
     "of",
     "at",
 )
+_LEAN = (defer(RevisionRow.results),)
 
 
 @dataclass(frozen=True)
@@ -114,9 +115,28 @@ def revision(session: Session, id: str, number: int) -> RevisionRow:
     return row
 
 
+def lean(session: Session, id: str, number: int) -> RevisionRow:
+    """A revision whose results are loaded only if somebody reads them from the row.
+
+    Raises
+    ------
+    NotFound
+        If there is none.
+    """
+    row = session.get(RevisionRow, (id, number), options=_LEAN)
+    if row is None:
+        raise _no_revision(id, number)
+    return row
+
+
 def head(session: Session, id: str) -> RevisionRow:
     """The newest revision of a design."""
     return revision(session, id, design(session, id).head)
+
+
+def lean_head(session: Session, id: str) -> RevisionRow:
+    """The newest revision of a design, as `lean` has it."""
+    return lean(session, id, design(session, id).head)
 
 
 def newest_document(session: Session, id: str) -> tuple[int, JsonObject]:
@@ -170,6 +190,7 @@ def designs(
 def revisions(session: Session, id: str, limit: int, before: int | None) -> list[RevisionRow]:
     """One page of a design's revisions, newest first, and one more if there are more."""
     query = select(RevisionRow).where(RevisionRow.design_id == id).order_by(RevisionRow.number.desc())
+    query = query.options(*_LEAN)
     if before is not None:
         query = query.where(RevisionRow.number < before)
     return list(session.scalars(query.limit(limit + 1)))

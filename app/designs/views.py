@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from sqlalchemy.orm import Session
 
 from app.designs import releases, repository, tolerances
+from app.designs.stored_results import results_of
 from app.designs.variants.names import natural
 from app.identity.rows import names
 from app.plain import JsonObject
@@ -84,30 +85,41 @@ def listed(
 
 def revision(session: Session, row: RevisionRow) -> Revision:
     """A revision: its inputs, which never change, and its results."""
-    results = row.results or {"steps": {}, "iterations": []}
+    results = results_of(session, row)
     steps, models = row.document["steps"], row.models
     return Revision.model_validate(
         {
-            "design": row.design_id,
-            "number": row.number,
-            "note": row.note,
-            "created": row.created,
-            "author": author(session, row.author),
-            "state": row.state,
-            "problem": row.problem,
-            "name": row.document["name"],
-            "parameters": row.document["parameters"],
-            "steps": {name: _step(step, results["steps"].get(name)) for name, step in steps.items()},
+            **_heading(session, row),
+            "steps": {name: results.steps.get(name) or _waiting(step) for name, step in steps.items()},
             "models": {
-                model.name: {**_model(session, model), "analyses": _analyses(row, model.name)}
+                model.name: {**_model(session, model), "analyses": results.analyses.get(model.name, {})}
                 for model in models
             },
-            "iterations": results["iterations"],
+            "iterations": results.iterations,
             **({"warnings": unused} if (unused := tolerances.warnings(row.document)) else {}),
-            **{name: results[name] for name in ("criteria", "verdict") if name in results},
-            **_signed(session, row),
+            **results.judged,
         }
     )
+
+
+def summary(session: Session, row: RevisionRow) -> Revision:
+    """A revision without its steps, models and results."""
+    return Revision.model_validate({**_heading(session, row), "steps": {}, "models": {}, "iterations": []})
+
+
+def _heading(session: Session, row: RevisionRow) -> JsonObject:
+    return {
+        "design": row.design_id,
+        "number": row.number,
+        "note": row.note,
+        "created": row.created,
+        "author": author(session, row.author),
+        "state": row.state,
+        "problem": row.problem,
+        "name": row.document["name"],
+        "parameters": row.document["parameters"],
+        **_signed(session, row),
+    }
 
 
 def _signed(session: Session, row: RevisionRow) -> dict[str, str | int]:
@@ -121,13 +133,11 @@ def author(session: Session, id: str | None) -> Author | None:
     return None if id is None else Author(id=id, name=names(session, [id]).get(id, id))
 
 
-def _step(typed: JsonObject, calculated: JsonObject | None) -> JsonObject:
-    """A step with its results, or as typed while it waits for a solid or for its job."""
-    if calculated is None or "outputs" not in calculated:
-        template = {"id": typed["template"], "version": typed["version"]}
-        empty: JsonObject = {"outputs": {}, "level": None, "error": {}, "warnings": []}
-        return {"template": template, "inputs": typed["inputs"], **empty, "pending": True}
-    return calculated
+def _waiting(typed: JsonObject) -> JsonObject:
+    """A step as typed, while it waits for a solid or for its job."""
+    template = {"id": typed["template"], "version": typed["version"]}
+    empty: JsonObject = {"outputs": {}, "level": None, "error": {}, "warnings": []}
+    return {"template": template, "inputs": typed["inputs"], **empty, "pending": True}
 
 
 def _model(session: Session, row: RevisionModelRow) -> JsonObject:
@@ -143,7 +153,7 @@ def _model(session: Session, row: RevisionModelRow) -> JsonObject:
 
 def measurements(session: Session, id: str) -> dict[str, ModelMeasurements]:
     """Measurements of the newest good model of every name."""
-    head = repository.head(session, id)
+    head = repository.lean_head(session, id)
     measured: dict[str, ModelMeasurements] = {}
     for model in head.models:
         good = repository.newest_good(session, id, model.name, head.number)
@@ -156,16 +166,15 @@ def measurements(session: Session, id: str) -> dict[str, ModelMeasurements]:
                 "revision": good.number,
                 "build": row.key,
                 **measures.measurements(**row.measurements).plain(),
-                "analyses": _analyses(repository.revision(session, id, good.number), model.name),
+                "analyses": _analyses(session, id, good.number).get(model.name, {}),
             }
         )
     return measured
 
 
-def _analyses(row: RevisionRow, model: str) -> JsonObject:
-    """The analyses of a model in a revision; none in revisions of before there were any."""
-    analyses: JsonObject = (row.results or {}).get("analyses", {}).get(model, {})
-    return analyses
+def _analyses(session: Session, id: str, number: int) -> JsonObject:
+    """The analyses in a revision by model; none in revisions of before there were any."""
+    return results_of(session, repository.lean(session, id, number)).analyses
 
 
 def good_model(session: Session, id: str, name: str | None, number: int | None) -> RevisionModelRow:

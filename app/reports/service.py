@@ -62,8 +62,9 @@ class Reports:
             If there is no such design or revision.
         """
         with self.database.read() as session:
-            row = repository.head(session, id) if number is None else repository.revision(session, id, number)
-            return row.number
+            if number is None:
+                return repository.design(session, id).head
+            return repository.lean(session, id, number).number
 
     def worksheet(
         self,
@@ -81,7 +82,7 @@ class Reports:
             If there is no such revision, or no such step in it.
         """
         with self.database.read() as session:
-            revision = views.revision(session, repository.revision(session, id, number))
+            revision = views.revision(session, repository.lean(session, id, number))
         if only is not None and only not in revision.steps:
             raise NotFound(f"revision {number} has no step {only[:80]!r}")
         return worksheet(revision, self.catalogues.templates, system, only=only, has_formulas=has_formulas)
@@ -131,7 +132,7 @@ class Reports:
         """Gather the content of the report; `pending` if a job still draws its pictures."""
         worked = self.worksheet(id, number, system)
         with self.database.read() as session:
-            row = repository.revision(session, id, number)
+            row = repository.lean(session, id, number)
             view = views.revision(session, row)
             models = [
                 self._model(session, id, number, name, model, system, pending)

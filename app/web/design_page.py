@@ -113,7 +113,7 @@ async def design_page(
         measured=measured,
         analyses=await _analyses(request, api, measured, models),
         painted_fields=await _fields_of_solids(api, id, measured),
-        revisions=await api.get(f"/designs/{id}/revisions", RevisionList, limit=20),
+        revisions=await api.get(f"/designs/{id}/revisions", RevisionList, limit=20, steps=False),
         proposals=await _proposals(api, design),
         job=await _job(api, design),
         studies=await studies_of(api, id),
@@ -171,7 +171,7 @@ async def _form(request: Request, api: Api, design: Design, refusal: Refusal) ->
     query: dict[str, Scalar] = {"worksheet": has_parameters, "units": units_of(request), "within": within}
     has_values = has_parameters or bool(design.models)  # the page shows nothing else of a preview
     preview = await api.post(f"/designs/{id}/preview", Preview, {}, **query) if has_values else None
-    before = await _revision(request, api, id, design.revision - 1, within=0) if design.revision > 1 else None
+    before = await _before(request, api, design)
     computed = {name: step.outputs for name, step in design.steps.items()}
     tables = await library(api) if templates else []
     has_criteria = bool(design.criteria) or any(template.criteria for template in templates.values())
@@ -193,6 +193,13 @@ async def _form(request: Request, api: Api, design: Design, refusal: Refusal) ->
     parameters = sheet.of_parameters(design.parameters, values, typed, faults)
     steps = with_keys(steps, revision, design)
     return Form(revision, preview, parameters, steps, parts, models, verdict, in_full)
+
+
+async def _before(request: Request, api: Api, design: Design) -> RevisionWorksheet | None:
+    """The revision before the newest; of it the page shows parameters of models alone."""
+    if design.revision == 1 or not design.models:
+        return None
+    return await _revision(request, api, design.id, design.revision - 1, within=0, formulas=False)
 
 
 async def step_section(request: Request, api: Api, id: str, name: str) -> Response:

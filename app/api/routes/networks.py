@@ -24,6 +24,6 @@ Id = Annotated[str, Path(max_length=64)]
 def show_network(id: Id, designs: TheDesigns) -> DesignNetwork:
     """The dependencies of a design: its blocks in order of calculation, its relations, and names for them."""
     with designs.database.read() as session:
-        document = repository.head(session, id).document
+        _, document = repository.newest_document(session, id)
     graph, _ = build_graph(resolved(read_document(document), designs.catalogues), designs.catalogues)
     return network_of(graph)

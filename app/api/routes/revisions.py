@@ -55,12 +55,13 @@ def list_revisions(
     database: TheDatabase,
     limit: Limit = 50,
     cursor: Annotated[int | None, Query(ge=1, le=10**9)] = None,
+    steps: Annotated[bool, Query(description="with steps, models and results of each")] = True,
 ) -> RevisionList:
     """The revisions of a design, newest first."""
     with database.read() as session:
         repository.design(session, id)
         rows = repository.revisions(session, id, limit, cursor)
-        show = partial(views.revision, session)
+        show = partial(views.revision if steps else views.summary, session)
         return page(RevisionList, rows, limit, show, lambda row: str(row.number))
 
 
@@ -68,4 +69,4 @@ def list_revisions(
 def show_revision(id: Id, number: Number, database: TheDatabase) -> Revision:
     """A revision: its inputs never change, its results are attached once."""
     with database.read() as session:
-        return views.revision(session, repository.revision(session, id, number))
+        return views.revision(session, repository.lean(session, id, number))

@@ -43,7 +43,7 @@ def variants(
         If there is no such design or revision.
     """
     design = repository.design(session, id) if number is None else None
-    row = repository.revision(session, id, design.head if design else number or 0)
+    row = repository.lean(session, id, design.head if design else number or 0)
     table = _Table.of(session, row)
     _require_outputs(outputs, table.stored)
     names = sorted(row.document.get("variants", {}), key=natural)
@@ -89,7 +89,8 @@ class _Table:
         for model in row.variant_models:
             models.setdefault(model.variant or BASE, []).append(model)
         keys = {model.build_key for group in models.values() for model in group if model.build_key}
-        stored = (row.results or {}).get("variants", {})
+        has_variants = bool(row.document.get("variants"))
+        stored = (row.results or {}).get("variants", {}) if has_variants else {}
         return cls(row, stored, models, rows.builds(session, keys), rows.artifacts_of(session, keys))
 
     def row(self, name: str, outputs: Collection[str]) -> VariantResult:

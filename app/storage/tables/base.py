@@ -27,6 +27,20 @@ class NotWritten(ValueError):
     """A column holds what this program has never written there."""
 
 
+def stored_json(text: str) -> plain.Json:
+    """The value of a stored text.
+
+    Raises
+    ------
+    NotWritten
+        If it is not JSON.
+    """
+    try:
+        return json.loads(text)
+    except ValueError as error:
+        raise NotWritten(f"a stored text is not JSON: {error}") from error
+
+
 class JsonText(TypeDecorator[plain.Json]):
     """A JSON value in a text column; None is NULL. Replace a value whole: a change inside it is not seen."""
 
@@ -39,10 +53,7 @@ class JsonText(TypeDecorator[plain.Json]):
 
     def process_result_value(self, value: str | None, dialect: Dialect) -> plain.Json:
         """From the column to Python; text that is not JSON was not written by this program."""
-        try:
-            return None if value is None else json.loads(value)
-        except ValueError as error:
-            raise NotWritten(f"a stored text is not JSON: {error}") from error
+        return None if value is None else stored_json(value)
 
 
 class Base(DeclarativeBase):
