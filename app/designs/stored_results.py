@@ -17,15 +17,18 @@ from pydantic import TypeAdapter
 from sqlalchemy import Text, bindparam, select, type_coerce
 from sqlalchemy.orm import Session
 
-from app.plain import JsonObject
+from app.schemas.analyses import ModelAnalysis
 from app.schemas.criteria import Criterion, Verdict
-from app.schemas.designs import RevisionStep
-from app.storage.tables import RevisionRow, canonical_json, stored_json
+from app.schemas.designs import RevisionStep, Round
+from app.storage.tables import JsonText, RevisionRow, canonical_json
 
 KEPT = 4 * 2**20  # characters of stored texts; their models take some ten times as many bytes
 _TEXT = select(type_coerce(RevisionRow.results, Text)).where(
     RevisionRow.design_id == bindparam("of"), RevisionRow.number == bindparam("at")
 )
+_JSON = JsonText()
+_ROUNDS = TypeAdapter(list[Round])
+_ANALYSES = TypeAdapter(dict[str, dict[str, ModelAnalysis]])
 _JUDGED: Mapping[str, TypeAdapter[list[Criterion] | Verdict | None]] = {
     "criteria": TypeAdapter(list[Criterion] | None),
     "verdict": TypeAdapter(Verdict | None),
@@ -39,14 +42,13 @@ class Results:
     text: str | None
     steps: Mapping[str, RevisionStep]  # those that are calculated
     judged: Mapping[str, list[Criterion] | Verdict | None]  # what is stored of `criteria` and `verdict`
-    iterations: list[JsonObject]
-    analyses: JsonObject  # by model and kind
+    iterations: list[Round]
+    analyses: Mapping[str, dict[str, ModelAnalysis]]  # by model and kind
 
     @cached_property
     def digest(self) -> str:
         """SHA-256 of their canonical form, which a signature covers."""
-        plain = None if self.text is None else stored_json(self.text)
-        return hashlib.sha256(canonical_json(plain).encode()).hexdigest()
+        return hashlib.sha256(canonical_json(_JSON.process_result_value(self.text)).encode()).hexdigest()
 
 
 _kept: LRUCache[str, Results] = LRUCache(KEPT, getsizeof=lambda results: len(results.text or ""))
@@ -69,7 +71,7 @@ def results_of(session: Session, row: RevisionRow) -> Results:
 
 
 def _read(text: str) -> Results:
-    plain: JsonObject = stored_json(text)
+    plain = _JSON.process_result_value(text)
     return Results(
         text=text,
         steps={
@@ -78,6 +80,6 @@ def _read(text: str) -> Results:
             if "outputs" in step
         },
         judged={name: kind.validate_python(plain[name]) for name, kind in _JUDGED.items() if name in plain},
-        iterations=plain["iterations"],
-        analyses=plain.get("analyses", {}),
+        iterations=_ROUNDS.validate_python(plain["iterations"]),
+        analyses=_ANALYSES.validate_python(plain.get("analyses", {})),
     )

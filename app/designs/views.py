@@ -11,6 +11,7 @@ from app.designs.stored_results import results_of
 from app.designs.variants.names import natural
 from app.identity.rows import names
 from app.plain import JsonObject
+from app.schemas.analyses import ModelAnalysis
 from app.schemas.designs import Design, DesignSummary, ModelMeasurements, Revision
 from app.schemas.identity import Author
 from app.solids import measures, rows
@@ -107,7 +108,7 @@ def summary(session: Session, row: RevisionRow) -> Revision:
     return Revision.model_validate({**_heading(session, row), "steps": {}, "models": {}, "iterations": []})
 
 
-def _heading(session: Session, row: RevisionRow) -> JsonObject:
+def _heading(session: Session, row: RevisionRow) -> dict[str, object]:
     return {
         "design": row.design_id,
         "number": row.number,
@@ -172,7 +173,7 @@ def measurements(session: Session, id: str) -> dict[str, ModelMeasurements]:
     return measured
 
 
-def _analyses(session: Session, id: str, number: int) -> JsonObject:
+def _analyses(session: Session, id: str, number: int) -> Mapping[str, dict[str, ModelAnalysis]]:
     """The analyses in a revision by model; none in revisions of before there were any."""
     return results_of(session, repository.lean(session, id, number)).analyses
 

@@ -1,7 +1,7 @@
 """The tables. Times are ISO 8601 texts in UTC; JSON is stored canonically: equal values are equal texts."""
 
 from app.storage.tables.approvals import ApprovalRow, CommentRow
-from app.storage.tables.base import NAMING, Base, JsonText, NotWritten, canonical_json, stored_json
+from app.storage.tables.base import NAMING, Base, JsonText, NotWritten, canonical_json
 from app.storage.tables.brought import BroughtModelRow
 from app.storage.tables.designs import (
     DesignRow,
@@ -46,6 +46,5 @@ __all__ = [
     "UsageRow",
     "WorksheetVersionRow",
     "canonical_json",
-    "stored_json",
     "variant_of",
 ]

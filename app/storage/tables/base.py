@@ -27,20 +27,6 @@ class NotWritten(ValueError):
     """A column holds what this program has never written there."""
 
 
-def stored_json(text: str) -> plain.Json:
-    """The value of a stored text.
-
-    Raises
-    ------
-    NotWritten
-        If it is not JSON.
-    """
-    try:
-        return json.loads(text)
-    except ValueError as error:
-        raise NotWritten(f"a stored text is not JSON: {error}") from error
-
-
 class JsonText(TypeDecorator[plain.Json]):
     """A JSON value in a text column; None is NULL. Replace a value whole: a change inside it is not seen."""
 
@@ -51,9 +37,12 @@ class JsonText(TypeDecorator[plain.Json]):
         """From Python to the column."""
         return None if value is None else canonical_json(value)
 
-    def process_result_value(self, value: str | None, dialect: Dialect) -> plain.Json:
+    def process_result_value(self, value: str | None, dialect: Dialect | None = None) -> plain.Json:
         """From the column to Python; text that is not JSON was not written by this program."""
-        return None if value is None else stored_json(value)
+        try:
+            return None if value is None else json.loads(value)
+        except ValueError as error:
+            raise NotWritten(f"a stored text is not JSON: {error}") from error
 
 
 class Base(DeclarativeBase):
