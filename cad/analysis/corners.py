@@ -41,12 +41,8 @@ def sharp_inner_edges(shape: Any, scale: float) -> Edges:
         perfstepsend=MeshingStep.MESHSURFACE,
     )
     surface = OCCGeometry(shape).GenerateMesh(parameters)
-    points = np.array([[*point] for point in surface.Points()])
-    elements = [
-        (element.index, [vertex.nr - 1 for vertex in element.vertices]) for element in surface.Elements2D()
-    ]
-    face = np.array([index for index, _ in elements])
-    corners = np.array([vertices for _, vertices in elements])
+    elements = surface.Elements2D().NumPy()
+    points, face, corners = surface.Coordinates(), elements["index"], elements["nodes"] - 1
     first, second = _neighbours(corners)
     normal, centre = _normals(points[corners]), points[corners].mean(axis=1)
     one, other = first[:, 0], second[:, 0]

@@ -18,7 +18,6 @@ between them and the load, so no other system is solved.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import chain
 from typing import Any
 
 import ngsolve as ng
@@ -30,7 +29,7 @@ from cad.analysis.mesh import Grid, curve
 from cad.analysis.solid import HELD, LOADED, MIRROR
 from cad.errors import AnalysisError
 from cad.shaft import Material
-from templates.core.arrays import Array
+from templates.core.arrays import Array, Integers
 
 _RESIDUAL = 1e-5  # relative, in the preconditioner's norm: stresses change by some 1e-5, stiffnesses by 1e-9
 _MOST_STEPS = 1000
@@ -49,11 +48,19 @@ class System:
     Elements are as much curved as their order allows. The mesh stays so until the next system is built on it.
     It is factorised, or solved for each force by itself where there are few and the order is above 2: by
     conjugate gradients, whose preconditioner solves in second order and adds what the other unknowns of each
-    edge and face alone answer (`_by_order`).
+    edge and face alone answer. A system of less order on the same mesh, `coarser`, lends its factors of
+    second order, though its elements are less curved: steps become no more, and the solution stays the same.
     """
 
     def __init__(
-        self, grid: Grid, order: int, material: Material, load: Kind, *, few_forces: bool = False
+        self,
+        grid: Grid,
+        order: int,
+        material: Material,
+        load: Kind,
+        *,
+        few_forces: bool = False,
+        coarser: System | None = None,
     ) -> None:
         self.grid, self.order, self.material, self.load = grid, order, material, load
         self.deformation = curve(grid.mesh, order)
@@ -63,14 +70,24 @@ class System:
             grid.mesh, order=order, dirichletx=where["x"], dirichlety=where["y"], dirichletz=where["z"]
         )
         u, v = self.space.TnT()
-        self.form = ng.BilinearForm(self.space, symmetric=True, condense=True)
-        self.form += ng.InnerProduct(stress(u, material), ng.Sym(ng.Grad(v))) * ng.dx
+        self.form = ng.BilinearForm(self.space, symmetric=True, symmetric_storage=True, condense=True)
+        self.form += ng.InnerProduct(stress(u, material), ng.Grad(v)) * ng.dx  # a stress is symmetric
         self.form.Assemble()
+        free = self.space.FreeDofs(True)
+        self.second: Any = (
+            coarser.second if coarser else None
+        )  # the inverse in second order, numbered as there
         if few_forces and order > 2:
-            by_order = _by_order(self.form, self.space)
+            low = _second_order(self.space)
+            pick = ng.la.PermutationMatrix(self.space.ndof, low.tolist())
+            if self.second is None:
+                part = ng.BitArray(np.isin(np.arange(self.space.ndof), low).tolist())
+                self.second = pick @ self.form.mat.Inverse(part & free, inverse="sparsecholesky") @ pick.T
+            by_order = pick.T @ self.second @ pick + _by_edges_and_faces(self.form, self.space)
             self.inverse = CGSolver(self.form.mat, by_order, tol=_RESIDUAL, maxiter=_MOST_STEPS)
         else:
-            self.inverse = self.form.mat.Inverse(self.space.FreeDofs(True), inverse="sparsecholesky")
+            self.inverse = self.form.mat.Inverse(free, inverse="sparsecholesky")
+            self.second = self.inverse if order == 2 else self.second
 
     def solve(self, force: Any) -> Any:
         """The displacement under a force, both as vectors; the dofs inside elements are eliminated.
@@ -112,26 +129,37 @@ class System:
         return self.traction(unit), guides
 
 
-def _by_order(form: Any, space: Any) -> Any:
-    """An approximate inverse of an assembled form: exact in second order; of the rest by edges and faces.
+def _second_order(space: Any) -> Integers:
+    """The unknowns of second order, numbered as in a space of that order.
 
-    The basis is hierarchical: the unknowns of second order are those of vertices and the first of each edge.
+    The basis is hierarchical: they are those of the vertices and the first of each edge.
     """
-    scalar, free = space.components[0], space.FreeDofs(True)
-    mesh, count = space.mesh, scalar.ndof
-    edges = [scalar.GetDofNrs(edge) for edge in mesh.edges]
-    faces = [scalar.GetDofNrs(face) for face in mesh.faces]
-    low = ng.BitArray(space.ndof)
-    low.Clear()
-    for number in chain(range(mesh.nv), (first for first, *_ in edges)):
-        for component in range(3):
-            low[number + component * count] = True
+    scalar, mesh = space.components[0], space.mesh
+    edges = mesh.nv + (scalar.globalorder - 1) * np.arange(mesh.nedge)
+    return _of_components(np.concatenate([np.arange(mesh.nv), edges])[None], scalar.ndof).ravel()
+
+
+def _by_edges_and_faces(form: Any, space: Any) -> Any:
+    """The inverse of the unknowns above second order, each edge and each face by itself."""
+    scalar, mesh, order = space.components[0], space.mesh, space.components[0].globalorder
+    per_edge, per_face = order - 1, (order - 1) * (order - 2) // 2
+    faces = mesh.nv + mesh.nedge * per_edge
+    free = np.fromiter(space.FreeDofs(True), bool, space.ndof)
     blocks = []
-    for numbers in chain((rest for _, *rest in edges), faces):
-        unknowns = [number + component * count for component in range(3) for number in numbers]
-        blocks.append([unknown for unknown in unknowns if free[unknown]])
-    rest = form.mat.CreateBlockSmoother([block for block in blocks if block])
-    return form.mat.Inverse(low & free, inverse="sparsecholesky") + rest
+    for numbers in (
+        np.arange(mesh.nv, faces).reshape(mesh.nedge, per_edge)[:, 1:],
+        np.arange(faces, faces + mesh.nface * per_face).reshape(mesh.nface, per_face),
+    ):
+        unknowns = _of_components(numbers, scalar.ndof)
+        whole = free[unknowns].all(axis=1)
+        blocks += unknowns[whole].tolist()
+        blocks += [block for row in unknowns[~whole] if (block := row[free[row]].tolist())]
+    return form.mat.CreateBlockSmoother(blocks)
+
+
+def _of_components(numbers: Integers, count: int) -> Integers:
+    """Unknowns (n, 3 k) of the three components for those (n, k) of one, of which there are so many."""
+    return np.concatenate([numbers + component * count for component in range(3)], axis=1)
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,8 @@ only stiffens, and is part of the error that is estimated.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from math import ceil, pi
 from typing import Any
@@ -22,7 +23,7 @@ import numpy as np
 from netgen.meshing import MeshingParameters
 from netgen.occ import OCCGeometry
 
-from cad.analysis.corners import along, sharp_inner_edges
+from cad.analysis.corners import Edges, along, sharp_inner_edges
 from cad.analysis.solid import FREE, Solid, planar
 from cad.errors import AnalysisError
 
@@ -63,28 +64,27 @@ class Grid:
     is_sharp: bool = False  # whether it has sharp inner edges
 
 
-def make_grid(solid: Solid, fineness: Fineness, near: Iterable[Near] = ()) -> Grid:
-    """Mesh a solid.
+def make_grid(
+    solid: Solid, fineness: Fineness, near: Iterable[Near] = (), edges: Edges | None = None
+) -> Grid:
+    """Mesh a solid; where several meshes of one fineness are made, `edges` are its `sharp_edges`.
 
     Raises
     ------
     AnalysisError
         `mesh` if Netgen fails, or the mesh becomes larger than a job can bear.
     """
-    bound_sizes(solid, fineness)
+    edges = sharp_edges(solid, fineness) if edges is None else edges
     parameters = MeshingParameters(
         maxh=fineness.size * solid.scale, grading=_GRADING, curvaturesafety=fineness.curvature, **ONE_THREAD
     )
     for place in near:
         for point in _ball(place):
             parameters.RestrictH(*point, place.size)
-    try:
-        edges = sharp_inner_edges(solid.shape, solid.scale)
+    with _meshing():
         for point, size in along(edges, fineness.sharp):
             parameters.RestrictH(*point, size)
         mesh = ng.Mesh(OCCGeometry(solid.shape).GenerateMesh(parameters))
-    except Exception as error:  # Netgen has one kind of exception
-        raise AnalysisError("mesh", f"Netgen could not mesh the solid: {error}") from error
     if mesh.ne > MOST_ELEMENTS:
         detail = (
             f"the mesh would have {mesh.ne} elements, more than {MOST_ELEMENTS}: ask for less "
@@ -92,6 +92,28 @@ def make_grid(solid: Solid, fineness: Fineness, near: Iterable[Near] = ()) -> Gr
         )
         raise AnalysisError("mesh", detail)
     return Grid(mesh, solid, len(edges.ends) > 0)
+
+
+def sharp_edges(solid: Solid, fineness: Fineness) -> Edges:
+    """The sharp inner edges of a solid, in pieces as its elements of a fineness divide them.
+
+    Raises
+    ------
+    AnalysisError
+        `mesh` if Netgen fails.
+    """
+    bound_sizes(solid, fineness)
+    with _meshing():
+        return sharp_inner_edges(solid.shape, solid.scale)
+
+
+@contextmanager
+def _meshing() -> Iterator[None]:
+    """Refuse a solid at which Netgen fails."""
+    try:
+        yield
+    except Exception as error:  # Netgen has one kind of exception
+        raise AnalysisError("mesh", f"Netgen could not mesh the solid: {error}") from error
 
 
 def curve(mesh: Any, order: int) -> Any:
@@ -102,7 +124,7 @@ def curve(mesh: Any, order: int) -> Any:
     scalar = ng.H1(mesh, order=order, dirichlet=".*")
     straight = _straight_coordinates(mesh, scalar)
     u, v = scalar.TnT()
-    laplace = ng.BilinearForm(scalar, symmetric=True)
+    laplace = ng.BilinearForm(scalar, symmetric=True, symmetric_storage=True)
     laplace += ng.InnerProduct(ng.grad(u), ng.grad(v)) * ng.dx
     laplace.Assemble()
     inverse = laplace.mat.Inverse(scalar.FreeDofs(), inverse="sparsecholesky")
@@ -131,25 +153,38 @@ def _straight_coordinates(mesh: Any, space: Any) -> list[Any]:
 def _coordinates(mesh: Any, order: int) -> list[Any]:
     """The coordinates of the points of curved elements as functions on them."""
     mesh.Curve(order)
+    together = ng.GridFunction(ng.H1(mesh, order=order, dim=3))
+    together.Set(ng.CF((ng.x, ng.y, ng.z)))  # at once: a quarter of the time
+    scalar = ng.H1(mesh, order=order)
     vectors = []
-    for axis in (ng.x, ng.y, ng.z):
-        function = ng.GridFunction(ng.H1(mesh, order=order))
-        function.Set(axis)
-        vectors.append(function.vec)
+    for values in together.vec.FV().NumPy().reshape(-1, 3).T:
+        vector = ng.GridFunction(scalar).vec
+        vector.FV().NumPy()[:] = values
+        vectors.append(vector)
     return vectors
 
 
 def bound_sizes(solid: Solid, fineness: Fineness) -> None:
     """Limit the size of elements along curved edges, and on the curved faces that full turns bound."""
+    limits: dict[Any, tuple[float, float]] = {}  # of edges: how far they turn, and their longest segment
     for face in solid.shape.faces:
         rims = []
         for edge in face.edges:
-            turn = _turning(edge) if edge.mass > 0 else 0.0
+            if edge not in limits:
+                limits[edge] = _limits(edge, fineness.turn)
+            turn, longest = limits[edge]
             if turn > fineness.turn:
-                edge.maxh = edge.mass / ceil(turn / fineness.turn - 1e-6)
-                rims += [edge.maxh] if turn > 0.6 * pi else []
+                edge.maxh = longest
+                rims += [longest] if turn > 0.6 * pi else []
         if rims and face.name == FREE and not planar(face):
             face.maxh = min(face.maxh, 1.3 * min(rims))
+
+
+def _limits(edge: Any, most: float) -> tuple[float, float]:
+    """By what angle [rad] an edge turns, and how long [mm] a segment is that turns by the most allowed."""
+    length = edge.mass
+    turn = _turning(edge) if length > 0 else 0.0
+    return turn, length / ceil(turn / most - 1e-6) if turn > most else length
 
 
 def _turning(edge: Any) -> float:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from math import pi, sqrt
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -37,7 +38,7 @@ class Solid:
     mirror: str  # "x", "y" or ""
     radius: float  # [mm], of the loaded face about z
 
-    @property
+    @cached_property
     def scale(self) -> float:
         """In what elements are measured [mm]: the loaded end's radius, unless that is small for the solid."""
         low, high = self.shape.bounding_box
@@ -93,32 +94,43 @@ def _halves(whole: Any, mirrors: Iterable[str]) -> Any:
         if all(len(group) == 1 for group in solids):
             one, other = solids[0][0], solids[1][0]
             if _images(one, other, axis, whole.mass):
-                yield axis, max((one, other), key=lambda half: half.center[_AXES.index(axis)])
+                yield axis, max((one, other), key=lambda half: _middle(half)[_AXES.index(axis)])
+
+
+def _middle(shape: Any) -> NDArray[np.float64]:
+    """The middle of the box around a shape [mm]."""
+    return np.asarray(sum(np.array([*corner]) for corner in shape.bounding_box) / 2)
 
 
 def _images(one: Any, other: Any, axis: str, volume: float) -> bool:
     """Return whether two halves are each other's mirror images, and together the whole."""
-    if abs(one.mass + other.mass - volume) > _ALIKE * volume:
+    inside = _look([one, other])
+    if abs(inside[:, 0].sum() - volume) > _ALIKE * volume:
         return False
-    seen, wanted = _look(one, axis), _look(other, axis, mirrored=True)
+    seen, wanted = (
+        np.vstack([_look(half.faces), row]) for half, row in zip((one, other), inside, strict=True)
+    )
     if seen.shape != wanted.shape:
         return False
     scale = np.concatenate([[np.abs(seen[:, kind]).max()] * count for kind, count in _COLUMNS])
-    apart = (np.abs(seen[:, None] - wanted[None]) / scale).max(axis=2)
+    apart = (np.abs(seen[:, None] - wanted[None] * _mirrored(axis)) / scale).max(axis=2)
     partner = apart.argmin(axis=1)
     return bool(len(set(partner)) == len(seen) and apart.min(axis=1).max() < 10 * _ALIKE)
 
 
-def _look(half: Any, axis: str, *, mirrored: bool = False) -> NDArray[np.float64]:
-    """The faces of a half, or of its image, as rows of area, centre and moments; the last is the inside."""
-    flip = np.array([-1.0 if mirrored and other == axis else 1.0 for other in _AXES])
-    shapes = (*half.faces, half)
-    return np.array([[s.mass, *(flip * np.array([*s.center])), *_moments(s, flip)] for s in shapes])
+def _look(shapes: Iterable[Any]) -> NDArray[np.float64]:
+    """Shapes as rows of area or volume, centre and moments."""
+    rows = []
+    for shape in shapes:
+        size, centre = shape.Properties()
+        rows.append([size, *centre, *_inertia(shape)[np.triu_indices(3)]])
+    return np.array(rows)
 
 
-def _moments(shape: Any, flip: NDArray[np.float64]) -> NDArray[np.float64]:
-    tensor = _inertia(shape) * np.outer(flip, flip)
-    return np.asarray(tensor[np.triu_indices(3)])
+def _mirrored(axis: str) -> NDArray[np.float64]:
+    """The factors of the columns of a look if it is seen in a mirror across an axis."""
+    flip = np.array([-1.0 if other == axis else 1.0 for other in _AXES])
+    return np.concatenate([[1.0], flip, np.outer(flip, flip)[np.triu_indices(3)]])
 
 
 def _inertia(shape: Any) -> NDArray[np.float64]:

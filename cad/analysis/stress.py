@@ -20,7 +20,7 @@ import numpy as np
 
 from cad.analysis.elastic import Response, System, respond, stress
 from cad.analysis.kinds import Boundary, Kind
-from cad.analysis.mesh import Fineness, Near, make_grid
+from cad.analysis.mesh import Fineness, Near, make_grid, sharp_edges
 from cad.analysis.solid import FREE, HELD, LOADED, Solid
 from cad.errors import AnalysisError
 from cad.shaft import Material
@@ -105,9 +105,17 @@ def greatest_stress(
     """Refine where the stress is high until its greatest value settles, in at most five steps."""
     peaks: list[Peak] = []
     near: tuple[Near, ...] = ()
+    edges = sharp_edges(solid, START)
+
+    def places_on_mesh() -> Places:
+        """Those of the next mesh, which is given up on return, so that two are never held at once."""
+        grid = make_grid(solid, START, near, edges)
+        system = System(grid, ORDER, material, load, few_forces=True)
+        return _places_on(respond(system, boundary), measure)
+
     for step in range(STEPS):
         report(step)
-        places = _places_near(solid, material, load, boundary, near, measure)
+        places = places_on_mesh()
         peaks.append(places.peak)
         if Peaks(tuple(peaks)).converged:
             break
@@ -126,14 +134,6 @@ class Places:
     def high(self, share: float) -> tuple[Near, ...]:
         """Elements to be halved: those with more than a share of the greatest stress."""
         return tuple(_halved(one) for one in self.corners[self.values > share * self.peak.value])
-
-
-def _places_near(
-    solid: Solid, material: Material, load: Kind, boundary: Boundary, near: tuple[Near, ...], measure: Measure
-) -> Places:
-    """Those of one mesh, which is given up on return, so that two are never held at once."""
-    system = System(make_grid(solid, START, near), ORDER, material, load, few_forces=True)
-    return _places_on(respond(system, boundary), measure)
 
 
 def _places_on(response: Response, measure: Measure) -> Places:
