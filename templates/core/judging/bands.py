@@ -130,8 +130,10 @@ def band_relative_to(value: Value, error: Value, scale: Value) -> Bounds:
         return value - half, value + half
 
 
-def bounds_of(side: Relation, estimates: Mapping[str, Estimate], shifts: Sequence[Shift] = ()) -> Bounds:
-    """The band of a side of a comparison.
+def value_and_bounds(
+    side: Relation, estimates: Mapping[str, Estimate], shifts: Sequence[Shift] = ()
+) -> tuple[Value, Bounds]:
+    """The value of a side of a comparison, and its band.
 
     Each uncertain name is shifted to both ends of its band, the others kept, and the changes are added; so
     are those of `shifts`, by which values from which the names follow were shifted.
@@ -143,14 +145,14 @@ def bounds_of(side: Relation, estimates: Mapping[str, Estimate], shifts: Sequenc
     """
     name = side.only_name
     if name and not shifts:
-        return estimates[name].bounds()
+        return estimates[name].value, estimates[name].bounds()
     values = {name: estimates[name].value for name in side.names}
     middle = side.value(values)
     low, high = estimates[name].bounds() if name else (middle, middle)
     for shift in (*(() if name else _own_shifts(side, estimates, values)), *shifts):
         less, more = _changes(side, middle, *shift)
         low, high = low + less, high + more
-    return low, high
+    return middle, (low, high)
 
 
 def _own_shifts(

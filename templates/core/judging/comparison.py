@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.errors import FaultyText
-from templates.core.judging.bands import Bounds, Estimate, Shift, aligned, bounds_of, spread
+from templates.core.judging.bands import Bounds, Estimate, Shift, aligned, spread, value_and_bounds
 from templates.core.judging.criterion import Criterion, Sign
 from templates.core.units.relation import Relation
 from templates.core.units.units import Value
@@ -23,7 +23,7 @@ Codes = int | NDArray[np.int8]
 """Verdicts as places in `WORST_FIRST`: the least is the worst."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)  # frozen, each would cost four times as much
 class Compared:
     """Both sides of a criterion [SI] with their bands, and the verdict at every point and place."""
 
@@ -63,10 +63,9 @@ def compare(
     """
     axes = max(estimates[name].axes for name in criterion.names) if criterion.names else 0
     fitted = aligned(estimates, axes)
-    value, limit = side_of(criterion.value, fitted), side_of(criterion.limit, fitted)
     moved = [(_spread(low, estimates, axes), _spread(high, estimates, axes)) for low, high in shifts]
-    value_bounds = bounds_of(criterion.value, fitted, moved)
-    limit_bounds = bounds_of(criterion.limit, fitted, moved)
+    value, value_bounds = value_and_bounds(criterion.value, fitted, moved)
+    limit, limit_bounds = value_and_bounds(criterion.limit, fitted, moved)
     try:
         codes = verdicts(criterion.sign, value, limit, value_bounds, limit_bounds)
     except ValueError:

@@ -106,6 +106,24 @@ class Criterion:
         return tuple(sorted(self.names, key=self.limits_by_name.__contains__))
 
     @cached_property
+    def all_names(self) -> frozenset[str]:
+        """Its names."""
+        return frozenset(self.names)
+
+    @cached_property
+    def stated(self) -> Mapping[str, Any]:
+        """The members that every judgement of it has, by name."""
+        return {
+            "name": self.name,
+            "words": self.words,
+            "require": self.require,
+            "unit": self.unit,
+            "unverified": self.unverified,
+            "warning": self.warning,
+            "source": self.source,
+        }
+
+    @cached_property
     def scale(self) -> Unit:
         """The unit in which value and limit are shown."""
         return unit(self.unit)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from operator import attrgetter
 from typing import Any
 
@@ -103,7 +104,7 @@ def judge(
         What was judged where a side has no value.
     """
     shown = criterion if unit_name is None else replace(criterion, unit=unit_name)
-    if not estimates.keys() >= set(criterion.names):
+    if not estimates.keys() >= criterion.all_names:
         parts = _missing(shown, estimates, absent or {}) | (instead.parts() if instead else {})
     else:
         try:
@@ -114,15 +115,7 @@ def judge(
                 parts |= instead.parts() | {key: parts[key] for key in ("verdict", "rows")}
         except FaultyText as error:
             parts = {"verdict": "not_checked", "reason": str(error)}
-    return Judgement(
-        name=criterion.name,
-        words=criterion.words,
-        require=criterion.require,
-        unit=shown.unit,
-        unverified=criterion.unverified,
-        warning=criterion.warning,
-        **{"source": criterion.source, **(noted or {}), **parts},
-    )
+    return Judgement(**{**shown.stated, **(noted or {}), **parts})
 
 
 def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: Mapping[str, Absent]) -> Parts:
@@ -133,14 +126,16 @@ def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: Ma
             si = side_of(side, estimates)
             if (isinstance(si, float) or not np.ndim(si)) and math.isfinite(si):
                 parts[name] = float(criterion.scale.from_si(float(si)))
-    give, reasons = dict[str, None](), dict[str, None]()
-    for name in criterion.names:
-        if name in absent and name not in estimates:
-            why = absent[name]
-            give.update(dict.fromkeys(why.give))
-            reasons.update({why.reason: None} if why.reason else {})
-    is_stated = all(map(IS_STATED, estimates.values()))
-    return {**parts, "is_stated": is_stated, "give": tuple(give), "reason": "; ".join(reasons) or None}
+    why = tuple(absent[name] for name in criterion.names if name in absent and name not in estimates)
+    return {**parts, "is_stated": all(map(IS_STATED, estimates.values())), **_lack(why)}
+
+
+@lru_cache(maxsize=1024)
+def _lack(absent: tuple[Absent, ...]) -> Mapping[str, Any]:
+    """What to give and why, of names without a value."""
+    give = dict.fromkeys(name for one in absent for name in one.give)
+    reasons = dict.fromkeys(one.reason for one in absent if one.reason)
+    return {"give": tuple(give), "reason": "; ".join(reasons) or None}
 
 
 def _compared(

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from operator import attrgetter
+from functools import lru_cache
 
 from templates.core.judging.comparison import WORST_FIRST, Verdict
 from templates.core.judging.judgement import Judgement
@@ -45,15 +44,18 @@ def summarised(ordered: Sequence[Judgement]) -> Summary:
 
     Waived criteria are counted and listed as what they are, but no longer make the verdict worse than met.
     """
-    counts = Counter(map(attrgetter("verdict"), ordered))
+    verdicts = [judgement.verdict for judgement in ordered]
+    counts = {verdict: verdicts.count(verdict) for verdict in SHOWN}
     decisive = [judgement for judgement in ordered if judgement.waived is None]
     governing = next((j.name for j in ordered if j.verdict != "not_checked"), None)
     verdict = decisive[0].verdict if decisive else ordered[0].verdict if ordered else "not_checked"
     green = bool(ordered) and all(j.verdict == "met" and j.is_certain for j in ordered)
-    return Summary(verdict, {v: counts[v] for v in SHOWN}, governing, _headline(ordered, counts), green)
+    headline = _headline(tuple(counts.values()), len(ordered) - len(decisive))
+    return Summary(verdict, counts, governing, headline, green)
 
 
-def _headline(ordered: Sequence[Judgement], counts: Mapping[Verdict, int]) -> str:
-    parts = [f"{counts[v]} {v.replace('_', ' ')}" for v in SHOWN if counts.get(v)]
-    waived = sum(judgement.waived is not None for judgement in ordered)
+@lru_cache(maxsize=1024)
+def _headline(counts: tuple[int, ...], waived: int) -> str:
+    """The number of criteria of each verdict in `SHOWN`, in words."""
+    parts = [f"{n} {verdict.replace('_', ' ')}" for verdict, n in zip(SHOWN, counts, strict=True) if n]
     return ", ".join([*parts, *([f"{waived} waived"] if waived else [])]) or "no criteria"

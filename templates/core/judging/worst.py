@@ -12,7 +12,7 @@ from templates.core.judging.comparison import NOT_CHECKED, Compared
 from templates.core.judging.criterion import Criterion
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)  # frozen, each would cost four times as much
 class Worst:
     """Both sides [SI] and their bands at the worst place; `index` is empty for a single value."""
 

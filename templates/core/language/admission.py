@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -80,6 +81,8 @@ def outside_published(declaration: Declaration, value: Any, level: str = "") -> 
     """A warning that names the limit where a value leaves its published range; None where it does not."""
     meaning = declaration.meaning.at(level)
     if meaning.published_si is None:
+        return None
+    if isinstance(value, float) and (math.isnan(value) or meaning.published_si.admits(value)):
         return None
     outside = ~np.isnan(value) & ~np.asarray(meaning.published_si.admits(value))
     if not outside.any():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property, reduce
+from functools import cached_property, lru_cache, reduce
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -98,6 +98,7 @@ class Evaluated:
     shown_in: Mapping[str, Unit] = field(default_factory=dict)
     level: Any = None
     is_joined: bool = False
+    estimates: dict[str, Estimate | Absent] = field(default_factory=dict, init=False)  # those wanted so far
 
     @cached_property
     def computed(self) -> frozenset[str]:
@@ -206,9 +207,15 @@ def _with_those_of_limits(evaluated: Evaluated, criterion: Criterion) -> str | N
 
 def estimate_of(evaluated: Evaluated, name: str) -> Estimate | Absent:
     """The value of an input or output with its error, or why there is none."""
+    estimate = evaluated.estimates.get(name)
+    if estimate is None:
+        find = _estimate_of_output if name in evaluated.computed else _estimate_of_input
+        estimate = evaluated.estimates[name] = find(evaluated, name)
+    return estimate
+
+
+def _estimate_of_input(evaluated: Evaluated, name: str) -> Estimate | Absent:
     template = evaluated.template
-    if name in evaluated.computed:
-        return _estimate_of_output(evaluated, name)
     declared = template.inputs[name]
     si = vars(template).get(declared.attribute)
     if si is None:
@@ -225,7 +232,7 @@ def _limit(evaluated: Evaluated, limit: Limit, others: Mapping[str, Estimate]) -
     """A limit of the user: one for all, one for each point, or a curve beside a curve."""
     given = evaluated.limits.get(limit.name)
     if given is None:
-        return _default(evaluated, limit) if limit.default else Absent((limit.name,), limit.remedy)
+        return _default(evaluated, limit) if limit.default else _not_given(limit)
     shape, points = np.shape(given.value), evaluated.template.shape_of_points()
     if not shape or _fits(shape, points):
         return Estimate(given.value)
@@ -245,6 +252,11 @@ def _default(evaluated: Evaluated, limit: Limit) -> Estimate | Absent:
             si = getattr(evaluated.template, evaluated.template.inputs[name].attribute)
         if np.ndim(si):
             return Estimate({"min": np.min, "max": np.max}[function](si, axis=-1))
+    return _not_given(limit)
+
+
+@lru_cache(maxsize=1024)  # criteria of worksheets come and go
+def _not_given(limit: Limit) -> Absent:
     return Absent((limit.name,), limit.remedy)
 
 

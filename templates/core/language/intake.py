@@ -77,18 +77,14 @@ def admitted(cls: type[Template], typed: Mapping[str, Typed | str]) -> Intake:
     for name, declared in cls.inputs.items():
         source = typed.get(name) or (None if isinstance(declared, Derived) else declared.default)
         if isinstance(source, Typed):
-            value, remark = (
-                (np.float64(source.si), None)
-                if isinstance(source.si, float)
-                and source.tolerance is None
-                and not isinstance(declared, (Curve, Table))
-                and declared.meaning.interval[0] <= source.si <= declared.meaning.interval[1]
-                and not declared.meaning.integer
-                else _bounded(declared, source)  # most inputs are one number within its bounds
-            )
+            si, plain = source.si, declared.plain
+            if plain and isinstance(si, float) and source.tolerance is None and plain[0] <= si <= plain[1]:
+                value = np.float64(si)  # most inputs are one number within its bounds
+            else:
+                value, remark = _bounded(declared, source)
+                intake.faults.extend([remark] if isinstance(remark, Fault) else [])
+                intake.masks.extend([remark] if isinstance(remark, Mask) else [])
             intake.values[declared.attribute] = value
-            intake.faults.extend([remark] if isinstance(remark, Fault) else [])
-            intake.masks.extend([remark] if isinstance(remark, Mask) else [])
             if declared.meaning.published_si is not None and not isinstance(declared, Table):
                 warning = outside_published(declared, value)
                 intake.warnings.extend([warning] if warning else [])

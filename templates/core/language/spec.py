@@ -34,6 +34,11 @@ class Declaration:
     def __set_name__(self, owner: type, attribute: str) -> None:
         self.attribute = attribute
 
+    @cached_property
+    def plain(self) -> tuple[float, float] | None:
+        """From where to where a single number is admitted [SI]; None where more than that is to check."""
+        return None if self.meaning.integer else self.meaning.interval
+
 
 class Given(Declaration):
     """An input: a quantity that the user gives, its default, or NaN if it is optional and missing.
@@ -66,6 +71,7 @@ class Curve(Given):
     ) -> None:  # fmt: skip
         super().__init__(meaning, default, optional=optional, alternative=alternative)
         self.constant, self.along = constant, along
+        self.plain = None
 
 
 class Table(Given):
@@ -77,6 +83,7 @@ class Table(Given):
     def __init__(self, meaning: Meaning, columns: tuple[str, ...], most: int) -> None:
         super().__init__(meaning, alternative=True)
         self.columns, self.most = columns, most
+        self.plain = None
 
 
 class Choice(Declaration):

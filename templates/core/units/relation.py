@@ -113,6 +113,14 @@ class Relation:
         """
         if self.only_name:
             return values[self.only_name]
+        return self._calculated(values) if self.names else self._constant
+
+    @cached_property
+    def _constant(self) -> Value:
+        """The value of a relation without names: computed once."""
+        return self._calculated({})
+
+    def _calculated(self, values: Mapping[str, Value]) -> Value:
         all_values = self._with_items(values) if self.items else values
         try:
             with np.errstate(all="ignore"):

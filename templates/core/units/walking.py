@@ -9,7 +9,7 @@ import numpy as np
 
 from templates.core.errors import FaultyText
 from templates.core.units.lists import ITEM, LIST, OVER_LISTS
-from templates.core.units.nodes import Apply, Constant, Item, Name, Operation, Word
+from templates.core.units.nodes import Apply, Constant, Item, Name, Operation
 from templates.core.units.units import Value
 
 LISTWISE = frozenset({LIST, ITEM, *OVER_LISTS.values()})
@@ -24,19 +24,19 @@ def value_of(node: Any, values: Mapping[str, Value]) -> Value:
     FaultyText
         With code `shape`, where a single value stands in place of a list, or a list in place of one.
     """
+    if isinstance(node, Apply):
+        if node.operation in LISTWISE:
+            parts = [value_of(argument, values) for argument in node.arguments]
+            return listwise(node.operation, parts, [np.ndim(part) for part in parts])
+        return node.operation.calculate(*(value_of(argument, values) for argument in node.arguments))
     match node:
-        case Constant(value=value):
-            return value
         case Name(name=name):
             return values[name]
+        case Constant(value=value):
+            return value
         case Item():
             return values[node.text]
-        case Word(text=text):
-            return text  # type: ignore[return-value] # a word is compared with a word
-    if node.operation in LISTWISE:
-        parts = [value_of(argument, values) for argument in node.arguments]
-        return listwise(node.operation, parts, [np.ndim(part) for part in parts])
-    return node.operation.calculate(*(value_of(argument, values) for argument in node.arguments))
+    return node.text  # a word is compared with a word
 
 
 def listwise(operation: Operation, parts: list[Value], ranks: list[int]) -> Value:
