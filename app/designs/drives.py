@@ -4,17 +4,45 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
+from threading import Lock
 from typing import Literal
 
+from cachetools import LRUCache
+
+from app.catalogue.catalogues import Catalogues
+from app.catalogue.team import Snapshot
 from app.designs.analyses import measured_names, measured_unit
+from app.designs.graph import build_graph
 from app.designs.network import LIMITS, Block, Cell, Graph
+from app.designs.reading import read_document, resolved
+from app.plain import Raw
 from app.reference import Reference
 from app.schemas.networks import DesignNetwork, NetworkBlock, NetworkName, NetworkRelation
+from app.storage.tables import canonical_json
 from templates.core.language.spec import Choice, Declaration
 from templates.core.units.relation import is_relation
 from templates.core.units.units import dimension_of, unit
 
 Columns = Mapping[str, int]
+
+KEPT = 4 * 2**20  # bytes of networks
+_kept: LRUCache[str, tuple[Snapshot, bytes]] = LRUCache(KEPT, getsizeof=lambda kept: len(kept[1]))
+"""Networks as JSON, by document in its canonical form, each with the catalogue of which it was made."""
+_keeping = Lock()
+
+
+def network_json(document: Mapping[str, Raw], catalogues: Catalogues) -> bytes:
+    """The dependencies in a stored document, as JSON; made once for a document and a catalogue."""
+    text, snapshot = canonical_json(document), catalogues.snapshot
+    with _keeping:
+        of, network = _kept.get(text, (None, b""))
+    if of is not snapshot:
+        graph, _ = build_graph(resolved(read_document(document), catalogues), catalogues)
+        network = network_of(graph).model_dump_json().encode()
+        if len(network) <= KEPT:
+            with _keeping:
+                _kept[text] = snapshot, network
+    return network
 
 
 def network_of(graph: Graph) -> DesignNetwork:

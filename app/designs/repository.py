@@ -57,7 +57,12 @@ _DOCUMENT = Statement(
     "of",
     "at",
 )
-_LEAN = (defer(RevisionRow.results),)
+_LEAN = defer(RevisionRow.results)
+_LEAN_REVISION = (
+    select(RevisionRow)
+    .where(RevisionRow.design_id == bindparam("of"), RevisionRow.number == bindparam("at"))
+    .options(_LEAN)
+)
 
 
 @dataclass(frozen=True)
@@ -123,7 +128,7 @@ def lean(session: Session, id: str, number: int) -> RevisionRow:
     NotFound
         If there is none.
     """
-    row = session.get(RevisionRow, (id, number), options=_LEAN)
+    row = session.scalar(_LEAN_REVISION, {"of": id, "at": number})
     if row is None:
         raise _no_revision(id, number)
     return row
@@ -190,7 +195,7 @@ def designs(
 def revisions(session: Session, id: str, limit: int, before: int | None) -> list[RevisionRow]:
     """One page of a design's revisions, newest first, and one more if there are more."""
     query = select(RevisionRow).where(RevisionRow.design_id == id).order_by(RevisionRow.number.desc())
-    query = query.options(*_LEAN)
+    query = query.options(_LEAN)
     if before is not None:
         query = query.where(RevisionRow.number < before)
     return list(session.scalars(query.limit(limit + 1)))

@@ -18,6 +18,7 @@ from starlette.types import Message, Scope
 
 from app.api.gate.clients import TheClient, from_inside
 from app.schemas.problems import Problem
+from app.web.same_answers import Same, same
 
 Kind = TypeVar("Kind")
 Scalar = str | int | float | bool | None
@@ -66,6 +67,16 @@ class Api:
             If the interface refuses.
         """
         return read(await self.send("GET", path, params=query), kind)
+
+    async def same(self, path: str, kind: type[Kind], **query: Scalar) -> Same[Kind]:
+        """The answer of a GET as a model that is shared with earlier answers of equal bytes.
+
+        Raises
+        ------
+        Refused
+            If the interface refuses.
+        """
+        return same((await self.send("GET", path, params=query)).content, kind)
 
     async def find(self, path: str, kind: type[Kind], **query: Scalar) -> Kind | None:
         """The answer of a GET, or None where there is nothing."""

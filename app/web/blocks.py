@@ -121,6 +121,11 @@ def _with_places(step: PreviewedStep, names: Iterable[str]) -> PreviewedStep:
     return step.model_copy(update={"outputs": dict.fromkeys(names, waiting), "error": dict.fromkeys(names)})
 
 
+def with_result(block: StepBlock, written: PreviewedStep | None) -> StepBlock:
+    """A step with its formulas, if they are `written` out; one whose results are awaited has none."""
+    return block if written is None or written.pending else replace(block, result=written)
+
+
 def with_fields(
     block: StepBlock, design: Design, refusal: Refusal, tables: Sequence[LibraryTable]
 ) -> StepBlock:

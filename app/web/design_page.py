@@ -1,13 +1,13 @@
-"""The design page: worksheet and part, side by side; and the page of one of its revisions."""
+"""The design page: worksheet and part, side by side."""
 
 from __future__ import annotations
 
-import asyncio
 import json
 from collections.abc import Mapping
 from typing import NamedTuple
 
 from fastapi import Request, Response
+from markupsafe import Markup
 
 from app.api.gate.roles import routes_of
 from app.schemas.analyses import Analysis
@@ -38,20 +38,23 @@ from app.web.blocks import (
     steps_of,
     with_changes,
     with_fields,
+    with_result,
 )
 from app.web.chosen_variant import chosen_variant
 from app.web.declaring import analysis_lines, errors_of, iteration_lines, measures
-from app.web.differences import differences
+from app.web.design_answers import described_models, revision_of, same_revision, steps_of_design, templates_of
 from app.web.flow import drawing
 from app.web.forms import texts
 from app.web.limits import library
 from app.web.model_page import finished_analyses
 from app.web.names import names_json, values_of
 from app.web.rendering import show, units_of
+from app.web.same_answers import Same
 from app.web.sections import (
     MOST_IN_FULL,
     asked_step,
     banner_of,
+    fold_lines,
     sections,
     steps_in_full,
     variants_start,
@@ -59,7 +62,7 @@ from app.web.sections import (
 from app.web.study_page import studies_of
 from app.web.tolerances_page import toleranced
 from app.web.upgrades import upgrades_of
-from app.web.variants import RefusedTable, variants_table
+from app.web.variants import RefusedTable, places_of, variants_table
 from app.web.verdict import Banner, banner, opened, with_keys
 from cad.export import MEDIA_TYPES
 
@@ -83,16 +86,18 @@ async def design_page(
     status: int = 200,
 ) -> Response:
     """The newest revision in a form; or a form that was refused, with what was typed and what is wrong."""
-    design = await api.get(f"/designs/{id}", Design)
-    revision, preview, parameters, steps, parts, models, verdict, in_full = await _form(
-        request, api, design, refusal
+    answer = await api.same(f"/designs/{id}", Design)
+    design = answer.model
+    revision, preview, parameters, steps, folded, parts, models, verdict, in_full = await _form(
+        request, api, answer, refusal
     )
     faults, wrong = refusal.faults, errors_of(refusal.part, refusal.faults)
     measured = await api.get(
         f"/designs/{id}/measurements", dict[str, ModelMeasurements], units=units_of(request)
     )
-    network = await api.get(f"/designs/{id}/network", DesignNetwork)
-    variants = variants_table(design, await _variants(request, api, id), network, table)
+    network = await api.same(f"/designs/{id}/network", DesignNetwork)
+    places = network.once(places_of, design)
+    variants = variants_table(design, await _variants(request, api, id), places, table)
     return show(
         request,
         "design.html",
@@ -106,8 +111,8 @@ async def design_page(
             verdict,
             asked_step(request, design.steps)
             or (None if variants.count else opened(list(design.steps), verdict)),
-            base=f"/designs/{id}",
             in_full=in_full,
+            folded=folded,
         ),
         models=parts,
         measured=measured,
@@ -124,66 +129,74 @@ async def design_page(
         verdict=verdict,
         verdict_banner=banner_of(verdict, id),
         can_decide=_has_route(request, DECIDE),
-        toleranced=toleranced(design),
+        toleranced=answer.once(toleranced),
         base=f"/api/v1/designs/{id}",
         painted=painted(steps, parts),
-        was=json.dumps(texts(design)),
+        was=answer.once(_as_typed),
         choices=await _choices(api),
         analysis_lines=analysis_lines(design, parts, refusal),
         iteration_lines=iteration_lines(design, refusal),
         part={**NO_PART, **refusal.part},
         part_errors=wrong,
         measures=list(measures(design, parts)),
-        network=network,
-        picture=drawing(network),
+        network=network.model,
+        picture=network.once(drawing),
         upgrades=await upgrades_of(api, {step.name: step.template for step in steps}),
         variants=variants,
         variants_start="" if variants.count or variants.is_refused else variants_start(design, variants),
         approval=await approval_of(api, id, design.revision),
         comments=await comments_of(api, id, None, ON_DESIGN),
         chosen=await chosen_variant(request, api, design, steps),
-        names="" if in_full is not None else names_json(network, values_of(revision, preview, measured)),
+        names=""
+        if in_full is not None
+        else names_json(network.model, values_of(revision, preview, measured)),
     )
 
 
 class Form(NamedTuple):
     """A design as it is calculated, with the fields of its form; `models` are described by name.
 
-    `in_full` are the steps of a long design that have fields and formulas here; None where all have.
+    `in_full` are the steps of a long design that have fields and formulas here; None where all have. The fold
+    lines of its steps are `folded`.
     """
 
     revision: RevisionWorksheet
     preview: Preview | None
     parameters: list[sheet.Field]
     steps: list[StepBlock]
+    folded: Mapping[str, Markup]
     parts: list[ModelBlock]
     models: dict[str, Model]
     verdict: Banner
     in_full: set[str] | None
 
 
-async def _form(request: Request, api: Api, design: Design, refusal: Refusal) -> Form:
-    id, within = design.id, 0 if design.state == "regenerating" else QUICK
+async def _form(request: Request, api: Api, of: Same[Design], refusal: Refusal) -> Form:
+    design, id = of.model, of.model.id
+    within = 0 if design.state == "regenerating" else QUICK
     is_long = len(design.steps) > MOST_IN_FULL
-    revision = await _revision(request, api, id, design.revision, within=within, formulas=not is_long)
-    templates, models = await _templates(api, _steps_of_design(design)), await _models(api, design)
+    answer = await same_revision(request, api, design, within=within, formulas=not is_long)
+    templates, models = await templates_of(api, steps_of_design(design)), await described_models(api, design)
     has_parameters = bool(design.parameters)  # only with the worksheet a preview has their values
     query: dict[str, Scalar] = {"worksheet": has_parameters, "units": units_of(request), "within": within}
     has_values = has_parameters or bool(design.models)  # the page shows nothing else of a preview
     preview = await api.post(f"/designs/{id}/preview", Preview, {}, **query) if has_values else None
     before = await _before(request, api, design)
-    computed = {name: step.outputs for name, step in design.steps.items()}
     tables = await library(api) if templates else []
-    has_criteria = bool(design.criteria) or any(template.criteria for template in templates.values())
-    verdict = banner(revision, has_criteria=has_criteria)
+    verdict = answer.once(_verdict, design, templates)
+    bare = blocks = answer.once(_blocks, design, templates)
+    revision = answer.model
     in_full = steps_in_full(request, design.steps, refusal, verdict) if is_long else None
-    for name in in_full or ():
-        written = await _revision(request, api, id, design.revision, within=within, step=name)
-        revision.steps[name] = written.steps[name]
+    if in_full is not None:
+        written = [await same_revision(request, api, design, within=within, step=name) for name in in_full]
+        whole = {name: step for one in written for name, step in one.model.steps.items()}
+        revision = revision.model_copy(update={"steps": {**revision.steps, **whole}})
+        blocks = [with_result(block, whole.get(block.name)) for block in blocks]
     steps = [
         with_fields(block, design, refusal, tables) if in_full is None or block.name in in_full else block
-        for block in steps_of(revision, templates, computed)
+        for block in blocks
     ]
+    folded = {} if in_full is None else answer.once(_folded, bare, verdict, f"/designs/{id}")
     parts = [
         with_changes(block, design, refusal, before, preview.model_parameters if preview else {})
         for block in models_of(revision, models)
@@ -191,15 +204,37 @@ async def _form(request: Request, api: Api, design: Design, refusal: Refusal) ->
     typed, faults = refusal.typed, refusal.faults
     values = (preview.parameters if preview else None) or {}
     parameters = sheet.of_parameters(design.parameters, values, typed, faults)
-    steps = with_keys(steps, revision, design)
-    return Form(revision, preview, parameters, steps, parts, models, verdict, in_full)
+    return Form(revision, preview, parameters, steps, folded, parts, models, verdict, in_full)
+
+
+def _as_typed(design: Design) -> str:
+    return json.dumps(texts(design))
+
+
+def _verdict(revision: RevisionWorksheet, design: Design, templates: Mapping[str, Template]) -> Banner:
+    has_criteria = bool(design.criteria) or any(template.criteria for template in templates.values())
+    return banner(revision, has_criteria=has_criteria)
+
+
+def _blocks(
+    revision: RevisionWorksheet, design: Design, templates: Mapping[str, Template]
+) -> list[StepBlock]:
+    """The steps with their results and the outputs of their fold lines."""
+    computed = {name: step.outputs for name, step in design.steps.items()}
+    return with_keys(steps_of(revision, templates, computed), revision, design)
+
+
+def _folded(
+    revision: RevisionWorksheet, blocks: list[StepBlock], verdict: Banner, base: str
+) -> dict[str, Markup]:
+    return fold_lines(blocks, verdict, base)
 
 
 async def _before(request: Request, api: Api, design: Design) -> RevisionWorksheet | None:
     """The revision before the newest; of it the page shows parameters of models alone."""
     if design.revision == 1 or not design.models:
         return None
-    return await _revision(request, api, design.id, design.revision - 1, within=0, formulas=False)
+    return await revision_of(request, api, design.id, design.revision - 1, within=0, formulas=False)
 
 
 async def step_section(request: Request, api: Api, id: str, name: str) -> Response:
@@ -211,8 +246,8 @@ async def step_section(request: Request, api: Api, id: str, name: str) -> Respon
         If there is no such design, or no such step in it.
     """
     design = await api.get(f"/designs/{id}", Design)
-    revision = await _revision(request, api, id, design.revision, within=QUICK, step=name)
-    templates = await _templates(api, {name: _steps_of_design(design)[name]})
+    revision = await revision_of(request, api, id, design.revision, within=QUICK, step=name)
+    templates = await templates_of(api, {name: steps_of_design(design)[name]})
     blocks = steps_of(revision, templates, {name: design.steps[name].outputs})
     tables = await library(api)
     steps = with_keys([with_fields(block, design, NO_REFUSAL, tables) for block in blocks], revision, design)
@@ -220,79 +255,9 @@ async def step_section(request: Request, api: Api, id: str, name: str) -> Respon
     return show(request, "section.html", section=section)
 
 
-async def revision_page(
-    request: Request,
-    api: Api,
-    id: str,
-    number: int,
-    other: int | None,
-    *,
-    cursor: str = "",
-    notice: str | None = None,
-    status: int = 200,
-) -> Response:
-    """Show a stored revision, and how it differs from another: the one before, if none is named."""
-    design, revision = await asyncio.gather(
-        api.get(f"/designs/{id}", Design), _revision(request, api, id, number)
-    )
-    compared = other or (number - 1 if number > 1 else None)
-    against = await _revision(request, api, id, compared) if compared else None
-    templates = await _templates(api, _steps_of_revision(revision))
-    return show(
-        request,
-        "revision.html",
-        status=status,
-        notice=notice,
-        approval=await approval_of(api, id, number),
-        comments=await comments_of(api, id, number, 50, cursor),
-        design=design,
-        revision=revision,
-        steps=steps_of(revision, templates),
-        models=models_of(revision, await _models(api, revision)),
-        against=against,
-        differences=differences(against, revision) if against else [],
-        kinds=list(MEDIA_TYPES),
-        base=f"/api/v1/designs/{id}/revisions/{number}",
-    )
-
-
 def _has_route(request: Request, path: str) -> bool:
     """Return whether the interface has this path."""
     return any(getattr(route, "path", None) == path for route in routes_of(request.app))
-
-
-async def _revision(request: Request, api: Api, id: str, number: int, **options: Scalar) -> RevisionWorksheet:
-    path = f"/designs/{id}/revisions/{number}/worksheet"
-    return await api.get(path, RevisionWorksheet, units=units_of(request), **options)
-
-
-def _steps_of_design(design: Design) -> dict[str, tuple[str, int]]:
-    """Id and version of the template of every step."""
-    return {name: (step.template, step.version) for name, step in design.steps.items()}
-
-
-def _steps_of_revision(revision: RevisionWorksheet) -> dict[str, tuple[str, int]]:
-    """Id and version of the template of every step."""
-    return {name: (step.template.id, step.template.version) for name, step in revision.steps.items()}
-
-
-async def _templates(api: Api, steps: Mapping[str, tuple[str, int]]) -> dict[str, Template]:
-    """The template of every step; steps of one version share it."""
-    versions = {
-        (id, version): await api.get(f"/templates/{id}/versions/{version}", Template)
-        for id, version in dict.fromkeys(steps.values())
-    }
-    return {name: versions[place] for name, place in steps.items()}
-
-
-async def _models(api: Api, design: Design | RevisionWorksheet) -> dict[str, Model]:
-    """The description of every model; models of one version share it."""
-    places = {name: (model.id, model.version) for name, model in design.models.items()}
-    versions = {
-        (id, version): await api.get(f"/models/{id}/versions/{version}", Model)
-        for id, version in dict.fromkeys(places.values())
-    }
-    return {name: versions[place] for name, place in places.items()}
 
 
 async def _analyses(

@@ -17,11 +17,12 @@ from app.schemas.templates import TemplateList, TemplateVersions
 from app.web import plotly
 from app.web.api import Api, Refused, TheApi
 from app.web.compare_page import Asked, compare_page
-from app.web.design_page import design_page, revision_page, step_section
+from app.web.design_page import design_page, step_section
 from app.web.gallery import offered
 from app.web.model_page import model_page
 from app.web.new_step import beside, new_step, step_page
 from app.web.rendering import go, show, units_of
+from app.web.revision_page import revision_page
 from app.web.sensitivities import sensitivity_lines
 from app.web.stored_page import is_unusable, stored_page
 from app.web.template_page import template_page

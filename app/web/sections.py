@@ -5,8 +5,9 @@ A step takes a page some milliseconds, and a design may have sixty. After a chan
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from hashlib import sha256
+from types import MappingProxyType
 
 from cachetools import LRUCache
 from fastapi import Request
@@ -48,21 +49,23 @@ def sections(
     verdict: Banner,
     opened: str | None,
     *,
-    base: str = "",
     in_full: Collection[str] | None = None,
+    folded: Mapping[str, Markup] = MappingProxyType({}),
 ) -> Iterator[Markup]:
-    """The section of every step; that of `opened` is unfolded.
-
-    With `in_full` all others have their fold line and the address of the rest, below that of the design,
-    `base`.
-    """
+    """The section of every step; that of `opened` is unfolded. With `in_full` all others are `folded`."""
     worst = verdict.worst_by_step()
     for step in steps:
         if in_full is not None and step.name not in in_full:
-            yield _fold_line(step, worst.get(step.name), base)
+            yield folded[step.name]
         else:
             is_open = step.name == opened or step.has_faults
             yield _section(step, worst.get(step.name), is_open, len(steps) == 1 and in_full is None)
+
+
+def fold_lines(steps: Sequence[StepBlock], verdict: Banner, base: str) -> dict[str, Markup]:
+    """The fold line of every step, with the address of the rest below that of the design, `base`."""
+    worst = verdict.worst_by_step()
+    return {step.name: _fold_line(step, worst.get(step.name), base) for step in steps}
 
 
 def banner_of(verdict: Banner, design: str) -> Markup:

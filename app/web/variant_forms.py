@@ -43,7 +43,7 @@ async def save_cells(id: Id, request: Request, api: TheApi) -> Response:
     typed = await fields(request)
     design = await api.get(f"/designs/{id}", Design)
     network = await api.get(f"/designs/{id}/network", DesignNetwork)
-    units = {name: "" if unit == "1" else unit for name, unit in places_of(design, network).items()}
+    units = {name: "" if unit == "1" else unit for name, unit in places_of(network, design).items()}
     grid = with_units(grid_of_form(typed), units)
     file = csv_of(grid)
     return await _saved(request, api, id, _Upload(file.content, "csv", typed.get("revision", "")), grid, file)

@@ -121,9 +121,12 @@ class VariantsTable:
 
 
 def variants_table(
-    design: Design, out: VariantsOut, network: DesignNetwork, refused: RefusedTable | None = None
+    design: Design, out: VariantsOut, places: Mapping[str, str], refused: RefusedTable | None = None
 ) -> VariantsTable:
-    """The section of a design's variants; of a table that was refused, with its faults in place."""
+    """The section of a design's variants; of a table that was refused, with its faults in place.
+
+    `places` are those that a variant may override, with their units.
+    """
     grid = refused.grid if refused else _grid(out)
     faults = refused.faults if refused else {}
     shown = [at for at in range(1, grid.width + 1) if not grid.cell(0, at).lower().startswith(RESULTS)]
@@ -147,13 +150,13 @@ def variants_table(
         count=len(out.variants),
         governing=_governing(out),
         governing_name=governing.variant if governing else "",
-        places=places_of(design, network),
+        places=places,
         loose=[f"{name}: {detail}" for name, detail in faults.items() if name not in placed],
         is_refused=refused is not None,
     )
 
 
-def places_of(design: Design, network: DesignNetwork) -> dict[str, str]:
+def places_of(network: DesignNetwork, design: Design) -> dict[str, str]:
     """The places that a variant may override, with the unit of the design's value or of the declaration."""
     names = [name for name in network.names if name.role in ("parameter", "input")]
     return {name.name: _typed_unit(_own(design, name.name)) or name.unit for name in names}

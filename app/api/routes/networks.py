@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path
+from fastapi import APIRouter, Path, Response
 
 from app.api.dependencies import TheDesigns
 from app.api.reading import StrictRoute
 from app.designs import repository
-from app.designs.drives import network_of
-from app.designs.graph import build_graph
-from app.designs.reading import read_document, resolved
+from app.designs.drives import network_json
 from app.schemas.networks import DesignNetwork
 from app.schemas.problems import refusals
 
@@ -20,10 +18,9 @@ router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=Stric
 Id = Annotated[str, Path(max_length=64)]
 
 
-@router.get("/{id}/network", responses=refusals(404))
-def show_network(id: Id, designs: TheDesigns) -> DesignNetwork:
+@router.get("/{id}/network", response_model=DesignNetwork, responses=refusals(404))
+def show_network(id: Id, designs: TheDesigns) -> Response:
     """The dependencies of a design: its blocks in order of calculation, its relations, and names for them."""
     with designs.database.read() as session:
         _, document = repository.newest_document(session, id)
-    graph, _ = build_graph(resolved(read_document(document), designs.catalogues), designs.catalogues)
-    return network_of(graph)
+    return Response(network_json(document, designs.catalogues), media_type="application/json")

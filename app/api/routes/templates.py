@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Annotated, TypeVar
+from weakref import WeakKeyDictionary
 
 from fastapi import APIRouter, Path
 
@@ -46,7 +47,7 @@ def show_template(id: Id, number: Number, catalogues: TheCatalogues) -> Template
     cls = catalogues.templates.get(id, number)
     is_latest = cls is catalogues.templates.latest(id)
     return TemplateAnswer.model_validate(
-        {**describe(cls), "latest": is_latest, **marks(catalogues).get((cls.id, cls.version), {})}
+        {**_description(cls), "latest": is_latest, **marks(catalogues).get((cls.id, cls.version), {})}
     )
 
 
@@ -61,6 +62,23 @@ def show_accuracy(id: Id, number: Number, catalogues: TheCatalogues) -> Accuracy
 
 
 T = TypeVar("T", bound=Template)
+
+_described: WeakKeyDictionary[type[Template], dict[str, object]] = WeakKeyDictionary()
+_titles: WeakKeyDictionary[type[Template], dict[str, str]] = WeakKeyDictionary()
+
+
+def _description(cls: type[Template]) -> Mapping[str, object]:
+    """The description of a version, which nobody changes: it follows from the class alone."""
+    if (description := _described.get(cls)) is None:
+        description = _described[cls] = describe(cls)
+    return description
+
+
+def _words(cls: type[Template]) -> Mapping[str, str]:
+    """The title and the summary of a version."""
+    if (words := _titles.get(cls)) is None:
+        words = _titles[cls] = {"title": cls.title(), "summary": cls.summary()}
+    return words
 
 
 Marks = Mapping[Key, Mapping[str, SheetMark]]
@@ -106,8 +124,7 @@ def summary(cls: type[Template], catalogue: Catalogue[T], marked: Marks) -> Temp
     return TemplateSummary(
         id=cls.id,
         version=cls.version,
-        title=cls.title(),
-        summary=cls.summary(),
+        **_words(cls),
         status="withdrawn" if cls.withdrawn else "released",
         latest=cls is catalogue.latest(cls.id),
         **marked.get((cls.id, cls.version), {}),

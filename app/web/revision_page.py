@@ -1,0 +1,57 @@
+"""The page of one revision of a design."""
+
+from __future__ import annotations
+
+import asyncio
+
+from fastapi import Request, Response
+
+from app.schemas.designs import Design, RevisionWorksheet
+from app.web.api import Api
+from app.web.approvals import approval_of, comments_of
+from app.web.blocks import models_of, steps_of
+from app.web.design_answers import described_models, revision_of, templates_of
+from app.web.differences import differences
+from app.web.rendering import show
+from cad.export import MEDIA_TYPES
+
+
+async def revision_page(
+    request: Request,
+    api: Api,
+    id: str,
+    number: int,
+    other: int | None,
+    *,
+    cursor: str = "",
+    notice: str | None = None,
+    status: int = 200,
+) -> Response:
+    """Show a stored revision, and how it differs from another: the one before, if none is named."""
+    design, revision = await asyncio.gather(
+        api.get(f"/designs/{id}", Design), revision_of(request, api, id, number)
+    )
+    compared = other or (number - 1 if number > 1 else None)
+    against = await revision_of(request, api, id, compared) if compared else None
+    templates = await templates_of(api, _steps_of_revision(revision))
+    return show(
+        request,
+        "revision.html",
+        status=status,
+        notice=notice,
+        approval=await approval_of(api, id, number),
+        comments=await comments_of(api, id, number, 50, cursor),
+        design=design,
+        revision=revision,
+        steps=steps_of(revision, templates),
+        models=models_of(revision, await described_models(api, revision)),
+        against=against,
+        differences=differences(against, revision) if against else [],
+        kinds=list(MEDIA_TYPES),
+        base=f"/api/v1/designs/{id}/revisions/{number}",
+    )
+
+
+def _steps_of_revision(revision: RevisionWorksheet) -> dict[str, tuple[str, int]]:
+    """Id and version of the template of every step."""
+    return {name: (step.template.id, step.template.version) for name, step in revision.steps.items()}
