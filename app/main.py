@@ -192,8 +192,9 @@ def spared_by_collections() -> Iterator[None]:
 
     Half a million objects that live as long as the program make every collection a tenth of a second long.
     """
-    gc.collect()
-    gc.freeze()
+    if gc.isenabled():
+        gc.collect()
+    gc.freeze()  # what `serve` has imported without collections holds hardly any garbage
     gc.enable()  # `app.beginning` has switched it off
     try:
         yield

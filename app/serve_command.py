@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from app import server
+from app.forking import fork_ahead
 from app.hosts import is_loopback
 from app.key_commands import asks_for_keys
 from app.main import create_app
@@ -32,6 +33,7 @@ def serve_command(host: str | None, port: int | None, data: Path | None, insecur
     """Serve the REST interface; its documentation is at /docs."""
     given: JsonObject = {"data": data, "host": host, "port": port}
     settings = Settings(**{name: value for name, value in given.items() if value is not None})
+    fork_ahead(settings)
     try:
         require_answer(settings)
         _check_reach(settings, insecure)

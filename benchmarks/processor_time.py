@@ -50,6 +50,11 @@ def proportional_megabytes(pid: int) -> float:
     return sum(_proportional(one) for one in _family(pid, _processes())) / 1e6
 
 
+def anonymous_megabytes(pid: int) -> float:
+    """Memory of a process and its living descendants that holds no file [MB], shared parts divided."""
+    return sum(_proportional(one, "Pss_Anon:") for one in _family(pid, _processes())) / 1e6
+
+
 def _processes() -> dict[int, list[int]]:
     return {int(place.name): _fields(place) for place in Path("/proc").iterdir() if place.name.isdecimal()}
 
@@ -61,10 +66,10 @@ def _family(pid: int, processes: dict[int, list[int]]) -> set[int]:
     return family
 
 
-def _proportional(pid: int) -> float:
+def _proportional(pid: int, which: str = "Pss:") -> float:
     with suppress(OSError):
         for line in Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines():
-            if line.startswith("Pss:"):
+            if line.startswith(which):
                 return 1024.0 * int(line.split()[1])
     return 0.0
 

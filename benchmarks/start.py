@@ -5,13 +5,16 @@
     python -m benchmarks.start /tmp/earlier 12 /tmp/earlier-environment/bin/python
 
 The two programs take turns, each with a new data folder, so that other work of the machine meets both.
-Processor time counts, not the clock: of the server's own process at its first answer, and of it with all its
-processes once these are idle. It prints the medians, and the median of the ratios of pairs with the range in
-which it lies with 95 % confidence (order statistics). More pairs narrow it.
+Processor time counts, not the clock: of the server's own process at its first answer, of it with all its
+processes once these are idle, and of the first expensive calculation after that. Memory is that of all
+processes at rest which holds no file: the kernel's library is shared with whoever else uses it. It prints
+the medians, and the median of the ratios of pairs with the range in which it lies with 95 % confidence
+(order statistics). More pairs narrow it.
 """
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import signal
@@ -25,7 +28,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
-from benchmarks.processor_time import environment, used
+from app.calculations.schemas import OIL_FILM
+from benchmarks.processor_time import anonymous_megabytes, environment, used
 from benchmarks.service_process import free_port
 
 HERE = Path(__file__).parents[1]
@@ -34,20 +38,26 @@ LOOK = 0.05  # between two questions whether it answers [s]
 STILL = 2.0  # for so long a family that has come to rest uses no more than `REST` [s]
 REST = 0.03  # of processor time [s]
 LEVEL = 0.95
+EXPENSIVE = "api/v1/templates/oil_film/versions/3/evaluate"
+"""Calculated in a process of its own, by the level `mass_conserving`."""
 FEWEST = 6  # pairs: all of fewer lie on one side of the median with a probability above 5 %
 
 
 @dataclass(frozen=True)
 class Start:
-    """Processor time of one start [s]."""
+    """Processor time of one start [s], and its memory [MB]."""
 
     first_answer: float  # of the server's own process
     at_rest: float  # with all processes that it has started
+    expensive: float  # of all processes, for the first expensive calculation
+    memory: float
 
 
 FIGURES: dict[str, Callable[[Start], float]] = {
     "server, to its first answer": lambda start: start.first_answer,
     "all processes, to their rest": lambda start: start.at_rest,
+    "first expensive calculation": lambda start: start.expensive,
+    "memory at rest, without files": lambda start: start.memory,
 }
 
 
@@ -65,7 +75,9 @@ def measured(program: Path, python: str) -> Start:
             try:
                 _wait(server, port, Path(folder, "log"))
                 own = _own(server.pid)
-                return Start(own, _at_rest(server.pid))
+                rest = _at_rest(server.pid)
+                memory = anonymous_megabytes(server.pid)
+                return Start(own, rest, _calculated(server.pid, port), memory)
             finally:
                 server.send_signal(signal.SIGTERM)
                 server.wait(PATIENCE)
@@ -82,6 +94,21 @@ def _wait(server: subprocess.Popen[bytes], port: int, log: Path) -> None:
             if server.poll() is not None or time.monotonic() > end:
                 raise SystemExit(f"the server does not start:\n{log.read_text()[-2000:]}") from None
             time.sleep(LOOK)
+
+
+def _calculated(pid: int, port: int) -> float:
+    """Processor time of all processes until an expensive calculation is answered [s]."""
+    before = used(pid)
+    inputs = {**OIL_FILM, "journal_roughness": "0.2 um", "bearing_roughness": "0.4 um"}
+    request = urllib.request.Request(
+        f"http://127.0.0.1:{port}/{EXPENSIVE}",
+        json.dumps({"inputs": inputs, "level": "mass_conserving"}).encode(),
+        {"Content-Type": "application/json", "Prefer": f"wait={PATIENCE:.0f}"},
+    )
+    opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+    with opener.open(request, timeout=PATIENCE) as answer:
+        assert answer.status == 200
+    return used(pid) - before
 
 
 def _own(pid: int) -> float:
@@ -129,7 +156,7 @@ def main(earlier: Path, pairs: int, python: str) -> None:
             start = measured(folder, interpreter)
             if pair:  # the first compiles modules, and warms the disk
                 starts[name].append(start)
-    print(f"{pairs} pairs; processor time [s]\n")
+    print(f"{pairs} pairs; processor time [s], memory [MB]\n")
     print("| | this program | the earlier one | ratio | 95 % |\n|---|---|---|---|---|")
     for figure, of in FIGURES.items():
         now, then = ([of(start) for start in starts[name]] for name in programs)

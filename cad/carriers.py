@@ -14,10 +14,9 @@ from math import isclose
 from cadquery import Shape, Vector
 
 from cad.errors import GeometryError
-from cad.surfaces import FaceSeen, X, Y, Z, faces_of
+from cad.surfaces import AXES, FaceSeen, faces_of
 from cad.toleranced import REPEATED, Carried
 
-_AXES = {"x": X, "y": Y, "z": Z}
 _CLOSE = 1e-6  # [mm]: a face of this size is the parameter's
 ROUND = ("cylinders", "beside", "along", "askew", "spheres")
 """The sorts of faces whose size is their diameter."""
@@ -91,7 +90,7 @@ class Carriers:
         """
         one = self._declared[name]
         of = self._declared[one.others_named[0]]
-        levels = self._levels_along(one, _AXES[of.where])
+        levels = self._levels_along(one, AXES[of.where])
         pairs = tuple((levels.index(low), levels.index(high)) for low, high in self.spans(name))
         if not pairs:
             self._missing(one, self._sizes[name])
@@ -108,7 +107,7 @@ class Carriers:
         """Where a dimension that repeats along an axis begins and ends, each time [mm]."""
         one, size = self._declared[name], self._sizes[name]
         of = [self._declared[other] for other in one.others_named]
-        axis = _AXES[of[0].where]
+        axis = AXES[of[0].where]
         reaches = [face.surface.turned(axis).reach for other in of for face in self._of_size(other)]
         return [
             (low, high)
@@ -137,7 +136,7 @@ class Carriers:
         return [f for f in self._faces(one) if abs(f.surface.diameter - size) < _CLOSE and _is_meant(f, one)]
 
     def _levels(self, one: Carried, size: float, low: int, high: int) -> Place:
-        axis = _AXES[one.where]
+        axis = AXES[one.where]
         planes = [f for f in self._faces(one) if f.kind == "plane" and f.surface.along(axis)]
         levels = self._levels_along(one, axis)
         count = len(levels)
@@ -150,7 +149,7 @@ class Carriers:
         return Place(*sides)
 
     def _walls(self, one: Carried, size: float) -> Place:
-        axis = _AXES[one.where]
+        axis = AXES[one.where]
         round_ = [f for f in self._faces(one) if f.kind == "cylinder" and f.surface.about(axis)]
         diameters = sorted({round(f.surface.diameter, 6) for f in round_})
         if not diameters or not isclose((diameters[-1] - diameters[0]) / 2, size, abs_tol=2 * _CLOSE):
@@ -191,8 +190,8 @@ def _is_meant(face: FaceSeen, one: Carried) -> bool:
     if face.kind != "cylinder":
         return False
     if one.faces == "askew":
-        return not any(face.surface.along(axis) for axis in _AXES.values())
-    axis = _AXES[one.where]
+        return not any(face.surface.along(axis) for axis in AXES.values())
+    axis = AXES[one.where]
     if one.faces != "along" and face.surface.about(axis) != (one.faces == "cylinders"):
         return False
     return face.surface.along(axis)
@@ -200,7 +199,7 @@ def _is_meant(face: FaceSeen, one: Carried) -> bool:
 
 def _at_end(faces: list[FaceSeen], one: Carried) -> Iterator[FaceSeen]:
     """Of cylinders about an axis those that begin first, or end last, along it."""
-    axis: Vector = _AXES[one.where]
+    axis: Vector = AXES[one.where]
     reaches = {face.number: face.surface.turned(axis).reach for face in faces}
     if one.end == "low":
         last = min((low for low, _ in reaches.values()), default=0.0)

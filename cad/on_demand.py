@@ -10,6 +10,7 @@ Modules that need the kernel while they are imported say so by `constant` and `o
 
 from __future__ import annotations
 
+import os
 import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -63,10 +64,24 @@ def load() -> None:
         for name in [name for name, module in sys.modules.items() if isinstance(module, _Module)]:
             del sys.modules[name]
         import_module("cadquery")
-        for module in list(sys.modules.values()):
-            _complete(module)
+        for name in list(sys.modules):
+            if _may_hold(name):
+                _complete(sys.modules[name])
         while _following:
             _following.pop(0)()
+
+
+def _may_hold(name: str) -> bool:
+    """Return whether a module may hold stand-ins: not one of Python or of a package that has asked for none.
+
+    To look through a namespace writes the reference counts of all that is in it. A forked process would copy
+    the memory of everything that its server has imported.
+    """
+    if name in sys.builtin_module_names:
+        return False
+    place = getattr(sys.modules[name], "__file__", None) or ""
+    is_foreign = place.startswith(_PYTHON) or "site-packages" in place
+    return not is_foreign or name.partition(".")[0] in _asking
 
 
 def _complete(module: ModuleType) -> None:
@@ -131,6 +146,7 @@ class _Module(ModuleType):
     def __getattr__(self, name: str) -> object:
         if name.startswith("__"):
             raise AttributeError(name)
+        _asking.add(str(sys._getframe(1).f_globals.get("__name__", "")).partition(".")[0])
         place = self.__name__
         return StandIn(lambda: _imported(place, name))
 
@@ -159,6 +175,9 @@ class _Finder(MetaPathFinder, Loader):
         """Do nothing: there is nothing to run."""
 
 
+_PYTHON = os.path.dirname(os.__file__)
+_asking: set[str] = set()
+"""The packages of which a module has asked for something of the kernel."""
 _finder = _Finder()
 _loading = threading.RLock()
 _following: list[Callable[[], object]] = []

@@ -23,13 +23,12 @@ from cad.errors import GeometryError
 from cad.inspect import bounding_box
 from cad.model import Box, Part
 from cad.step import Body
-from cad.surfaces import X, Y, Z, look
+from cad.surfaces import AXES, X, Y, Z, look
 
 ORIGIN = "origin"
 _SIDE = re.compile(r"(low|high)_([xyz])")
 _AXIS = re.compile(r"axis_([1-9][0-9]{0,3})")
 _DIGITS = 6  # [mm], to which points of axes are compared
-_AXES = {"x": X, "y": Y, "z": Z}
 
 
 @dataclass(frozen=True)
@@ -72,7 +71,7 @@ def frame_of(name: str, datum: str, parts: Mapping[str, Part]) -> Location:
     if place == "centre":
         return Location(middle)
     if side := _SIDE.fullmatch(place):
-        axis = _AXES[side[2]]
+        axis = AXES[side[2]]
         corner = Vector(*(box.high if side[1] == "high" else box.low))
         on_side = middle + axis * (corner - middle).dot(axis)
         return _frame(on_side, axis if side[1] == "high" else -axis)

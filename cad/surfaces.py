@@ -17,6 +17,8 @@ from cad.on_demand import constant
 X = constant(lambda: Vector(1, 0, 0))
 Y = constant(lambda: Vector(0, 1, 0))
 Z = constant(lambda: Vector(0, 0, 1))
+AXES = constant(lambda: {"x": Vector(1, 0, 0), "y": Vector(0, 1, 0), "z": Vector(0, 0, 1)})
+"""The directions by their letters; one stand-in where the kernel is postponed, which loading it replaces."""
 
 _COINCIDENT = 1e-6  # [mm], and as the sine of an angle: ten times the kernel's own precision
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
 
 from app.calculations.jobs import CALCULATION, CalculationJobs
 from app.calculations.pool import CalculationPool
@@ -16,6 +17,7 @@ from app.observation import metrics
 from app.settings import Settings
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
+from app.workers import ahead
 from app.workers.base import Limits
 from app.workers.pool import WarmProcesses
 
@@ -57,9 +59,12 @@ def assemble_calculations(
     """
     size = settings.calculation_processes or len(os.sched_getaffinity(0))
     limits = Limits(settings.calculation_job_deadline, settings.calculation_memory_mb)
-    preload = (*PRELOAD, *sheets)
-    processes = CalculationProcesses(
-        lambda: WarmProcesses(preload, spares=size), lambda: WarmProcesses((*preload, *designs), spares=size)
+    light, network = (*PRELOAD, *sheets), (*PRELOAD, *sheets, *designs)
+    of_designs = partial(WarmProcesses, network, spares=size)
+    processes = (
+        CalculationProcesses(of_designs)
+        if ahead.is_forked(network)
+        else CalculationProcesses(partial(WarmProcesses, light, spares=size), of_designs)
     )
     stack.callback(processes.close)
     pool = CalculationPool(processes, size, settings.calculation_waiting, limits)

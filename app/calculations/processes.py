@@ -3,6 +3,8 @@
 The network imports the geometry kernel, which takes seconds and as much memory as all the rest. So functions
 of designs run in processes that are forked from one with these modules loaded. Each kind is started when the
 first function for it comes: a service whose clients evaluate quick templates only never has them.
+
+`crankwright serve` has the network without the kernel, and forks one kind ahead that has all of it.
 """
 
 from __future__ import annotations
@@ -29,11 +31,15 @@ class CalculationProcesses:
 
     Args:
         light: starts processes with the templates loaded.
-        designs: starts those with the network of designs.
+        designs: starts those with the network of designs; None if the light ones have it too.
     """
 
-    def __init__(self, light: Callable[[], WarmProcesses], designs: Callable[[], WarmProcesses]) -> None:
-        self._starts = {True: light, False: designs}  # by whether functions need no network of designs
+    def __init__(
+        self, light: Callable[[], WarmProcesses], designs: Callable[[], WarmProcesses] | None = None
+    ) -> None:
+        self._starts = {True: light}  # by whether functions need no network of designs
+        if designs is not None:
+            self._starts[False] = designs
         self._started: dict[bool, WarmProcesses] = {}
         self._starting = threading.Lock()
         self._closed = False
@@ -72,9 +78,10 @@ class CalculationProcesses:
         with self._starting:
             if self._closed:
                 raise JobCancelled
-            if light not in self._started:
-                self._started[light] = self._starts[light]()
-            return self._started[light]
+            kind = light or False not in self._starts
+            if kind not in self._started:
+                self._started[kind] = self._starts[kind]()
+            return self._started[kind]
 
 
 def is_light(module: str) -> bool:

@@ -1,25 +1,16 @@
-"""The module from which calculation processes are forked: it calculates every template's example once.
+"""The module from which calculation processes are forked: it has imported what they run.
 
-Tables are read and formulas compiled at first use; processes forked after that share them. Nothing else may
-import it.
+Tables are read and formulas compiled at first use, in each process; that takes 0.3 s at most. To calculate
+every example here would spare it, but the first calculation after a start would wait for all of them.
 """
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
-from pathlib import Path
 
-from pydantic_core import to_json
-
-import templates
 from app.calculations import operations  # noqa: F401 - what the processes run
-from app.calculations.rendering import evaluation
+from app.catalogue.finding import find_templates
 from app.workers.scheduling import give_way
-from templates.core.catalogue.finding import find
-from templates.core.errors import TemplateError
-from templates.core.language.evaluate import evaluate
-from templates.core.language.template import Template
 
 
 def rehearse(has_come: Callable[[], bool]) -> None:
@@ -27,12 +18,4 @@ def rehearse(has_come: Callable[[], bool]) -> None:
     give_way()
 
 
-def _calculate_examples() -> None:
-    for cls in find([Path(folder) for folder in templates.__path__], Template):
-        try:
-            to_json(evaluation(evaluate(cls, cls.example)))
-        except TemplateError as error:
-            logging.getLogger(__name__).warning("The example of %s %d: %s", cls.id, cls.version, error)
-
-
-_calculate_examples()
+find_templates(())

@@ -15,7 +15,7 @@ import pkgutil
 import selectors
 import signal
 import socket
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from multiprocessing.connection import Connection
 from types import ModuleType
@@ -28,8 +28,13 @@ from app.workers.scheduling import share_fairly
 Nursery = dict[int, Connection]  # process id of a living job -> where its exit code is sent
 
 
-def main(channel: int, lifeline: int, modules: Iterable[str]) -> NoReturn:
-    """Import the modules, then fork a job process for each pair of connections that the channel brings."""
+def main(
+    channel: int, lifeline: int, modules: Iterable[str], prepare: Callable[[], object] | None = None
+) -> NoReturn:
+    """Import the modules, then fork a job process for each pair of connections that the channel brings.
+
+    `prepare`, if there is one, is called before the imports.
+    """
     try:
         hang_on(lifeline)  # first of all: the imports take seconds, on a busy machine many
     except ProcessLookupError:  # the server ended before this process began
@@ -41,6 +46,8 @@ def main(channel: int, lifeline: int, modules: Iterable[str]) -> NoReturn:
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
     share_fairly()
     gc.disable()  # it would look through all that is imported again and again
+    if prepare is not None:
+        prepare()
     loaded = [load(module) for module in modules]
     rehearsals = [module.rehearse for module in loaded if module and hasattr(module, "rehearse")]
     gc.freeze()  # collections in the children shall not copy what is shared

@@ -8,12 +8,13 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from pathlib import Path
+from typing import Protocol
 
 from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed
@@ -132,9 +133,28 @@ class JobProcess:
             return None
 
 
-def launch(
-    preload: Sequence[str], channel: int, lifeline: int, environment: Mapping[str, str]
-) -> "subprocess.Popen[bytes]":
+class Process(Protocol):
+    """A child of the server, as `subprocess.Popen` has it."""
+
+    @property
+    def pid(self) -> int:
+        """Its process id."""
+
+    def poll(self) -> int | None:
+        """Return the exit code; None while it lives."""
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Return the exit code, or raise `subprocess.TimeoutExpired`."""
+
+    def kill(self) -> None:
+        """Kill it."""
+
+
+Launch = Callable[[Sequence[str], int, int, Mapping[str, str]], Process]
+"""Starts the process of a fork server: modules, channel, lifeline, environment."""
+
+
+def launch(preload: Sequence[str], channel: int, lifeline: int, environment: Mapping[str, str]) -> Process:
     """Start the process of a fork server, which takes what it is asked from the channel.
 
     What the operator has set in the server's own environment prevails over `environment`.
@@ -154,14 +174,20 @@ class ForkServer:
     """Starts the forkserver, starts it again if it has died, and asks it for processes.
 
     Its `environment` holds defaults: what the operator has set in the server's own environment prevails.
+    The first process begins as `begin` says, every other one by `launch`.
     """
 
-    def __init__(self, preload: Sequence[str], environment: Mapping[str, str] | None = None) -> None:
+    def __init__(
+        self,
+        preload: Sequence[str],
+        environment: Mapping[str, str] | None = None,
+        begin: Launch | None = None,
+    ) -> None:
         self._preload = preload
         self._environment = environment or {}
         self._lock = threading.Lock()
         self._closed = False
-        self._start()
+        self._start(begin or launch)
 
     def fork(self) -> JobProcess:
         """Ask for a process; it may come to life later, and takes its job even before.
@@ -204,14 +230,14 @@ class ForkServer:
                 if self._closed:
                     raise JobCancelled from None
                 self._end()
-                self._start()
+                self._start(launch)
                 socket.send_fds(self._channel, [b"."], descriptors)
 
-    def _start(self) -> None:
+    def _start(self, begin: Launch) -> None:
         self._lifeline = Lifeline()
         self._channel, theirs = socket.socketpair()
         with theirs:
-            self._process = launch(self._preload, theirs.fileno(), self._lifeline.reader, self._environment)
+            self._process = begin(self._preload, theirs.fileno(), self._lifeline.reader, self._environment)
         self._lifeline.close_reader()
 
     def _end(self) -> None:

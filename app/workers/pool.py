@@ -4,8 +4,9 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from typing import TypeVar, TypeVarTuple, cast
 
+from app.workers.ahead import fork_server
 from app.workers.base import Limits
-from app.workers.isolated import ForkServer, JobProcess
+from app.workers.isolated import JobProcess
 from app.workers.messages import Request
 from app.workers.threads import ONE_THREAD
 from templates.core.progress import Reporter
@@ -36,7 +37,7 @@ class WarmProcesses:
         reuse: int = REUSE,
         environment: Mapping[str, str] = ONE_THREAD,
     ) -> None:
-        self._forkserver = ForkServer(preload, environment)
+        self._forkserver = fork_server(preload, environment)
         self._spares, self._reuse = spares, reuse
         self._lock = threading.Lock()
         self._closed = False

@@ -64,3 +64,23 @@ def test_each_kind_of_processes_starts_when_it_is_needed(monkeypatch):
         processes.close()
     with pytest.raises(JobCancelled):
         processes.run(os.getppid)
+
+
+def test_processes_that_have_the_network_too_serve_both_kinds(monkeypatch):
+    module = type(sys)("app.designs.for_a_test")
+    module.of_designs = of_designs
+    monkeypatch.setitem(sys.modules, "app.designs.for_a_test", module)
+    started = []
+
+    def start():
+        started.append("one")
+        return WarmProcesses(())
+
+    processes = CalculationProcesses(start)
+    try:
+        assert processes.run(os.getppid) > 0
+        with pytest.raises(ModuleNotFoundError):
+            processes.run(of_designs, "json.tool")
+        assert started == ["one"]
+    finally:
+        processes.close()

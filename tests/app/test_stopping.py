@@ -170,11 +170,13 @@ MASS_CONSERVING = {"inputs": {**OIL_FILM, "speed": SPEEDS}, "level": "mass_conse
 )
 def test_calculations_of_stopped_processes_are_cut(server, stopped):
     """Some are calculated and some wait for a process, all of which ignore every signal but one."""
+    ask = partial(httpx.post, f"{server.url}{EVALUATE}", timeout=PATIENCE, trust_env=False)
+    first = ask(json={"inputs": OIL_FILM, "level": "mass_conserving"})  # now there are processes
+    assert first.status_code == 200, first.text
     forkserver = forkserver_of(server, "app.calculations.warm")
     if stopped == "fork server":
         until(lambda: len(descendants(forkserver)) > 0)
         os.kill(forkserver, signal.SIGSTOP)
-    ask = partial(httpx.post, f"{server.url}{EVALUATE}", timeout=PATIENCE, trust_env=False)
     with ThreadPoolExecutor(4) as pool:
         answers = [pool.submit(ask, json=MASS_CONSERVING) for _ in range(4)]
         until(lambda: "crankwright_requests_in_flight 5.0" in figures(server))
