@@ -101,11 +101,9 @@ def _at_level(
     wanted = {name: compute for name, compute in _ELASTIC.items() if name in outputs}
     values: dict[str, list[float]] = {name: [] for name in wanted}
     reasons: dict[str, str] = {}
-    system: System | None = None
     for order in (level.order - 1, level.order) if wanted else (level.order,):
         report(0.2 if order < level.order else 0.5, f"solving {grid.mesh.ne} elements of order {order}")
-        few = MODE not in wanted
-        system = System(grid, order, shaft.material, request.load, few_forces=few, coarser=system)
+        system = System(grid, order, shaft.material, request.load, few_forces=MODE not in wanted)
         response = respond(system, request.boundary)
         for name, compute in wanted.items():
             try:

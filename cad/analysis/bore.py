@@ -183,7 +183,7 @@ def compliance_on(
     curve(mesh, order)
     space = ng.VectorH1(mesh, order=order, dirichletx=HELD, dirichlety=HELD, dirichletz=f"{HELD}|{MIRROR}")
     u, v = space.TnT()
-    form = ng.BilinearForm(space, symmetric=True, condense=True)
+    form = ng.BilinearForm(space, symmetric=True, symmetric_storage=True, condense=True)
     form += ng.InnerProduct(stress(u, place.material), ng.Sym(ng.Grad(v))) * ng.dx
     if spring:
         form += spring * ng.InnerProduct(u, v) * ng.dx

@@ -48,19 +48,11 @@ class System:
     Elements are as much curved as their order allows. The mesh stays so until the next system is built on it.
     It is factorised, or solved for each force by itself where there are few and the order is above 2: by
     conjugate gradients, whose preconditioner solves in second order and adds what the other unknowns of each
-    edge and face alone answer. A system of less order on the same mesh, `coarser`, lends its factors of
-    second order, though its elements are less curved: steps become no more, and the solution stays the same.
+    edge and face alone answer (`_by_order`).
     """
 
     def __init__(
-        self,
-        grid: Grid,
-        order: int,
-        material: Material,
-        load: Kind,
-        *,
-        few_forces: bool = False,
-        coarser: System | None = None,
+        self, grid: Grid, order: int, material: Material, load: Kind, *, few_forces: bool = False
     ) -> None:
         self.grid, self.order, self.material, self.load = grid, order, material, load
         self.deformation = curve(grid.mesh, order)
@@ -73,21 +65,11 @@ class System:
         self.form = ng.BilinearForm(self.space, symmetric=True, symmetric_storage=True, condense=True)
         self.form += ng.InnerProduct(stress(u, material), ng.Grad(v)) * ng.dx  # a stress is symmetric
         self.form.Assemble()
-        free = self.space.FreeDofs(True)
-        self.second: Any = (
-            coarser.second if coarser else None
-        )  # the inverse in second order, numbered as there
         if few_forces and order > 2:
-            low = _second_order(self.space)
-            pick = ng.la.PermutationMatrix(self.space.ndof, low.tolist())
-            if self.second is None:
-                part = ng.BitArray(np.isin(np.arange(self.space.ndof), low).tolist())
-                self.second = pick @ self.form.mat.Inverse(part & free, inverse="sparsecholesky") @ pick.T
-            by_order = pick.T @ self.second @ pick + _by_edges_and_faces(self.form, self.space)
+            by_order = _by_order(self.form, self.space)
             self.inverse = CGSolver(self.form.mat, by_order, tol=_RESIDUAL, maxiter=_MOST_STEPS)
         else:
-            self.inverse = self.form.mat.Inverse(free, inverse="sparsecholesky")
-            self.second = self.inverse if order == 2 else self.second
+            self.inverse = self.form.mat.Inverse(self.space.FreeDofs(True), inverse="sparsecholesky")
 
     def solve(self, force: Any) -> Any:
         """The displacement under a force, both as vectors; the dofs inside elements are eliminated.
@@ -129,32 +111,26 @@ class System:
         return self.traction(unit), guides
 
 
-def _second_order(space: Any) -> Integers:
-    """The unknowns of second order, numbered as in a space of that order.
+def _by_order(form: Any, space: Any) -> Any:
+    """An approximate inverse of an assembled form: exact in second order; of the rest by edges and faces.
 
-    The basis is hierarchical: they are those of the vertices and the first of each edge.
+    The basis is hierarchical: the unknowns of second order are those of vertices and the first of each edge.
     """
-    scalar, mesh = space.components[0], space.mesh
-    edges = mesh.nv + (scalar.globalorder - 1) * np.arange(mesh.nedge)
-    return _of_components(np.concatenate([np.arange(mesh.nv), edges])[None], scalar.ndof).ravel()
-
-
-def _by_edges_and_faces(form: Any, space: Any) -> Any:
-    """The inverse of the unknowns above second order, each edge and each face by itself."""
     scalar, mesh, order = space.components[0], space.mesh, space.components[0].globalorder
-    per_edge, per_face = order - 1, (order - 1) * (order - 2) // 2
-    faces = mesh.nv + mesh.nedge * per_edge
+    edges = mesh.nv + np.arange(mesh.nedge * (order - 1)).reshape(mesh.nedge, order - 1)
+    per_face = (order - 1) * (order - 2) // 2
+    faces = mesh.nv + edges.size + np.arange(mesh.nface * per_face).reshape(mesh.nface, per_face)
     free = np.fromiter(space.FreeDofs(True), bool, space.ndof)
     blocks = []
-    for numbers in (
-        np.arange(mesh.nv, faces).reshape(mesh.nedge, per_edge)[:, 1:],
-        np.arange(faces, faces + mesh.nface * per_face).reshape(mesh.nface, per_face),
-    ):
+    for numbers in (edges[:, 1:], faces):
         unknowns = _of_components(numbers, scalar.ndof)
         whole = free[unknowns].all(axis=1)
         blocks += unknowns[whole].tolist()
         blocks += [block for row in unknowns[~whole] if (block := row[free[row]].tolist())]
-    return form.mat.CreateBlockSmoother(blocks)
+    low = np.zeros(space.ndof, bool)
+    low[_of_components(np.concatenate([np.arange(mesh.nv), edges[:, 0]])[None], scalar.ndof)] = True
+    second = form.mat.Inverse(ng.BitArray((low & free).tolist()), inverse="sparsecholesky")
+    return second + form.mat.CreateBlockSmoother(blocks)
 
 
 def _of_components(numbers: Integers, count: int) -> Integers:

@@ -74,14 +74,10 @@ def test_a_moment_bends_as_its_sign_says() -> None:
 def test_few_forces_are_answered_as_by_the_factorised_matrix(order: int, boundary: Boundary) -> None:
     """By conjugate gradients over second order: to their residual, which counts twice in a compliance."""
     grid = make_grid(shaft_of(Workplane().rect(40, 30).extrude(60), 60), LEVELS[0].fineness)
-    coarser = System(grid, order - 1, STEEL_MATERIAL, "bending", few_forces=True)
-    lent, own, whole = (
-        System(grid, order, STEEL_MATERIAL, "bending", few_forces=few, coarser=lender)
-        for few, lender in ((True, coarser), (True, None), (False, None))
-    )
-    compliances = [respond(system, boundary).compliance for system in (lent, own, whole)]
-    assert compliances == pytest.approx([compliances[-1]] * 3, rel=1e-8)
-    assert 1 < lent.inverse.iterations <= own.inverse.iterations + 2 < 100
+    systems = [System(grid, order, STEEL_MATERIAL, "bending", few_forces=few) for few in (True, False)]
+    iterated, factorised = (respond(system, boundary).compliance for system in systems)
+    assert iterated == pytest.approx(factorised, rel=1e-8)
+    assert 1 < systems[0].inverse.iterations < 100
 
 
 @pytest.mark.slow  # the threads wait in loops
