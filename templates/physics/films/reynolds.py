@@ -27,7 +27,7 @@ from templates.physics.numerics.arrays import require_film
 
 _COARSEST = 16, 4
 _CLOSE = 0.9999
-"""Eccentricity above which rounding decides about nodes (1e-7 of a load): there the start is kept [-]."""
+"""Eccentricity above which rounding and the start decide about single nodes, by 1e-7 of a load [-]."""
 _CENTRED = 1e-9
 """Eccentricity at which a centred journal's attitude and places are taken: their limits."""
 
