@@ -10,18 +10,29 @@ import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from sqlalchemy import BigInteger, Select, cast, func, select
+from sqlalchemy import BigInteger, Select, bindparam, cast, func, select, update
 from sqlalchemy.exc import DBAPIError
 from sqlalchemy.orm import Session
 
 from app.storage.errors import DatabaseDamaged
-from app.storage.tables import AuditRow, canonical_json
+from app.storage.statements import Statement, Values
+from app.storage.tables import AuditRow, Base, canonical_json
 
 AT_ONCE = 1000  # rows that are read together
-SOME = 500  # rows that one unit seals: others' writes wait a few milliseconds for it
+SOME = 100  # rows that one unit seals: others' writes wait a few milliseconds for it
 NO_NUMBER = 2**62  # no sealer comes so far: whoever writes such a number leaves room for those that follow
 _TEXTS = ("id", "at", "principal", "name", "action", "object", "digest", "previous", "hash")
 _DAMAGED = (DBAPIError, DatabaseDamaged)  # when SQLite reads a text that is none
+_ROWS = Base.metadata.tables[AuditRow.__tablename__]
+_SEALED = Statement(
+    update(_ROWS)
+    .where(_ROWS.c.id == bindparam("row"))
+    .values(seq=bindparam("number"), previous=bindparam("before"), hash=bindparam("own")),
+    "row",
+    "number",
+    "before",
+    "own",
+)
 
 
 @dataclass(frozen=True)
@@ -161,9 +172,10 @@ def _readable(session: Session, query: Select[AuditRow]) -> list[AuditRow]:
 
 def seal(session: Session) -> int:
     """Number and chain rows that wait, in a unit of work; return how many."""
-    last, count = head(session), 0
+    last, sealed = head(session), list[Values]()
     for row in waiting(session):
-        row.seq, row.previous = last.seq + 1, last.hash
-        row.hash = hash_of(row, row.seq, row.previous)
-        last, count = Link(row.seq, row.hash), count + 1
-    return count
+        before, last = last, Link(last.seq + 1, hash_of(row, last.seq + 1, last.hash))
+        sealed.append({"row": row.id, "number": last.seq, "before": before.hash, "own": last.hash})
+    if sealed:
+        _SEALED.run_many(session, sealed)
+    return len(sealed)

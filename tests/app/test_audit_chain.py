@@ -70,6 +70,14 @@ def test_sealing_goes_on_where_it_ended_and_writes_nothing_without_rows(database
     assert (result.head.seq, result.unsealed, result.fault) == (5, 0, "")
 
 
+def test_one_unit_seals_a_bounded_number_of_rows_and_the_next_goes_on(database, monkeypatch):
+    monkeypatch.setattr(chain, "SOME", 3)
+    recorded(database, 8)
+    assert [database.write(chain.seal) for _ in range(4)] == [3, 3, 2, 0]
+    result = verified(database)
+    assert (result.head.seq, result.unsealed, result.fault) == (8, 0, "")
+
+
 def test_unsealed_rows_are_counted_and_sealed_when_the_service_stops(database):
     recorded(database, 2)
     assert verified(database).unsealed == 2
