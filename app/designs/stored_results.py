@@ -72,6 +72,8 @@ def results_of(session: Session, row: RevisionRow) -> Results:
 
 def _read(text: str) -> Results:
     plain = _JSON.process_result_value(text)
+    if not plain:
+        return Results(text, {}, {}, [], {})
     return Results(
         text=text,
         steps={

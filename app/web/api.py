@@ -156,8 +156,7 @@ class Inside(httpx.AsyncBaseTransport):
 class _Exchange:
     """A request's body and the answer to it, as ASGI passes them.
 
-    httpx has a transport for this, which looks for a package of another event loop at each request: a third
-    of what such a call costs.
+    httpx has a transport for this, which looks for a package of another event loop at each request.
     """
 
     def __init__(self, body: bytes) -> None:
