@@ -58,6 +58,7 @@ from app.studies.assembly import assemble_studies
 from app.studies.running import LANES, Parts
 from app.studies.solid_making import SolidMaking
 from app.tolerances.process import analysed
+from app.workers import ahead
 from app.workers.base import Limits, Worker
 from app.workers.light import CHECKS
 from app.workers.local import LocalProcesses
@@ -98,6 +99,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     retention = Retention(database, store, settings)
     retention.start()
     stack.callback(retention.stop)
+    stack.callback(ahead.close)
     workers = started_workers(settings, stack)
     catalogues = find_catalogues(settings, workers.here)
     stack.callback(catalogues.close)

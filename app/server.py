@@ -18,6 +18,7 @@ import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
+from queue import Empty, SimpleQueue
 from types import FrameType
 from typing import NoReturn
 
@@ -85,32 +86,37 @@ class Server(uvicorn.Server):
     def __init__(self, config: uvicorn.Config, drain_seconds: float, flush: Callable[[], object]) -> None:
         super().__init__(config)
         self.drain_seconds, self.flush = drain_seconds, flush
-        self._first, self._second = threading.Event(), threading.Event()
+        self._is_signalled = False
+        # An `Event` would not do: a second signal may come while the handler of the first holds its lock.
+        self._signals: SimpleQueue[int] = SimpleQueue()
         # Made now, because a signal may come while the main thread holds the lock with which threads start.
         threading.Thread(target=self._guard, name="end", daemon=True).start()
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
         """Begin the end, or hurry it."""
-        if self._first.is_set():
-            self._second.set()
-        self._first.set()
+        self._is_signalled = True
+        self._signals.put(sig)
         self.should_exit = True
         faulthandler.dump_traceback_later(self.drain_seconds + 1, exit=True)
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Answer what is in flight, run the end of the lifespan, and leave if a signal was the cause."""
         await super().shutdown(sockets)
-        if self._first.is_set():
+        if self._is_signalled:
             if running := what_runs():
                 logger.warning("stopped in order, but cut: %s", "; ".join(running))
             self._leave(0)
 
     def _guard(self) -> None:
         """Wait for a signal, then for the drain time or a second one, and end what is left."""
-        self._first.wait()
+        self._signals.get()
         start = time.monotonic()
         logger.info("stopping: requests in flight are answered within %g s", self.drain_seconds)
-        hurried = self._second.wait(self.drain_seconds)
+        hurried = True
+        try:
+            self._signals.get(timeout=self.drain_seconds)
+        except Empty:
+            hurried = False
         why = "ended at once by a second signal" if hurried else "did not stop in time, ended hard"
         running = "; ".join(what_runs()) or "nothing that is known"
         logger.error("%s after %.1f s; still ran: %s", why, time.monotonic() - start, running)

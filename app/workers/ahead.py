@@ -58,6 +58,12 @@ def fork_server(preload: Sequence[str], environment: Mapping[str, str]) -> ForkS
     return _started.pop(tuple(preload), None) or ForkServer(preload, environment)
 
 
+def close() -> None:
+    """End those that nobody has taken."""
+    while _started:
+        _started.popitem()[1].close()
+
+
 class Forked:
     """A child of this process; behaves as a `subprocess.Popen`."""
 

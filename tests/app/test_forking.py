@@ -27,6 +27,11 @@ def forked(preload):
     return worker
 
 workers = [forked(("victims", name)) for name in ("json", "csv")]
+ahead.fork(("victims", "abc"))
+unused = ahead._started["victims", "abc"]._process
+assert unused.poll() is None
+ahead.close()
+assert unused.poll() is not None and not ahead.is_forked(("victims", "abc"))
 pids = [worker._forkserver._process.pid for worker in workers]
 """
 RUNS = """

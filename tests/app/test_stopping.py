@@ -5,6 +5,8 @@ import re
 import signal
 import socket
 import sqlite3
+import subprocess
+import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -256,3 +258,28 @@ def test_a_second_signal_ends_at_once(tmp_path):
                 assert server.process.wait(PATIENCE) == 1
         until(lambda: not any(alive(pid) for pid in family))
         assert "ended at once by a second signal" in server.log.read_text()
+
+
+SIGNALS = """
+import os, signal, threading, time
+from app.server import Server
+import uvicorn
+
+server = Server(uvicorn.Config(None), 30.0, lambda: None)
+signal.signal(signal.SIGTERM, server.handle_exit)
+
+def send():
+    for _ in range(2000):
+        os.kill(os.getpid(), signal.SIGTERM)
+
+threading.Thread(target=send, daemon=True).start()
+while True:
+    time.sleep(0.01)
+"""
+
+
+@pytest.mark.slow
+def test_signals_that_meet_in_the_handler_end_the_server():
+    """The handler of one signal is interrupted by the next, wherever it is."""
+    done = subprocess.run([sys.executable, "-c", SIGNALS], stderr=subprocess.DEVNULL, timeout=PATIENCE)
+    assert done.returncode == 1  # by the second signal, at once
