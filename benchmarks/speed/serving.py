@@ -169,11 +169,13 @@ def pages(server: Server, folder: Path) -> list[Figure]:
     ) as http:
         made = http.post("/api/v1/designs", json={"name": "sixty films", "steps": steps}).raise_for_status()
         place = f"/designs/{made.json()['id']}"
+        time.sleep(2 * SETTLING)
         page = [_spent(server, lambda: http.get(place).raise_for_status()) for _ in range(ROUNDS)]
         changed = []
         for turn in range(ROUNDS):
             change = {"steps": {"film_3": {"inputs": {"radial_load": f"{40 + turn / 7} kN"}}}}
             http.patch(f"/api/v1{place}", json=change, headers={"If-Match": "*"}).raise_for_status()
+            time.sleep(SETTLING)
             changed.append(_spent(server, lambda: http.get(place).raise_for_status()))
         report = _spent(server, lambda: _whole(http, f"/api/v1{place}/report.pdf"))
     return [
