@@ -1,4 +1,4 @@
-"""The criteria of a template: checked when its class is made, judged when it is evaluated."""
+"""The criteria of a template, judged when it is evaluated."""
 
 from __future__ import annotations
 
@@ -10,17 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from templates.core.errors import FaultyText
 from templates.core.judging.bands import Estimate
-from templates.core.judging.criterion import Criterion, Described, Limit, Missing, is_angle, read_criterion
+from templates.core.judging.criterion import Criterion, Limit, Missing, is_angle
 from templates.core.judging.judgement import Judgement, not_judged, sentence
 from templates.core.judging.judging import Absent, Along, Instead, judge
 from templates.core.judging.limits import GivenLimit
 from templates.core.judging.summary import worst_first
 from templates.core.language.admission import absence
-from templates.core.language.intake import Input
 from templates.core.language.ledger import Notice
-from templates.core.language.spec import Choice, Curve, Declaration, Formula, Profile, Table, Text
+from templates.core.language.spec import Curve, Declaration, Formula, Profile
 from templates.core.units.units import Unit, Value
 
 if TYPE_CHECKING:
@@ -30,48 +28,6 @@ if TYPE_CHECKING:
 
 NOT_JUDGED = "check_not_judged"
 RIGHT_ANGLE = math.pi / 2  # to which the errors of angles are relative [rad]
-
-
-def declared_criteria(
-    name: str, raw: Any, inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]
-) -> tuple[Criterion, ...]:
-    """The criteria that a class declares.
-
-    Raises
-    ------
-    TypeError
-        Naming the class and the criterion that is wrong.
-    """
-    if not raw:
-        return ()
-    if not isinstance(raw, Mapping):
-        raise TypeError(f"{name}: criteria is a dict by name")
-    meanings = meanings_of(inputs, formulas)
-    criteria = []
-    for called, text in raw.items():
-        try:
-            criteria.append(read_criterion(called, text, meanings))
-            _check_defaults(criteria[-1], inputs)
-        except FaultyText as error:
-            raise TypeError(f"{name}: criterion {called!r}: {error}") from None
-    return tuple(criteria)
-
-
-def _check_defaults(criterion: Criterion, inputs: Mapping[str, Input]) -> None:
-    """A limit that nobody gives follows from an input that is a list, not from a result."""
-    for limit in criterion.limits:
-        if limit.default is not None and not isinstance(inputs.get(limit.default[1]), Curve):
-            raise FaultyText("syntax", f"the default of {limit.name} is of an input that is a list")
-
-
-def meanings_of(inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]) -> dict[str, Described]:
-    """Unit and words of the names that a criterion may use: neither words nor tables."""
-    declared = {**inputs, **formulas}
-    return {
-        name: Described(one.meaning.unit, one.meaning.words)
-        for name, one in declared.items()
-        if not isinstance(one, (Choice, Table, Text))
-    }
 
 
 @dataclass(frozen=True)

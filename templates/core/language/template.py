@@ -20,7 +20,6 @@ from templates.core.errors import InvalidInputs
 from templates.core.judging.criterion import Criterion
 from templates.core.language.admission import absence, masked, outside_published, refusal, whole
 from templates.core.language.causes import by_cause
-from templates.core.language.criteria import declared_criteria
 from templates.core.language.declare import (
     by_name,
     choice,
@@ -35,6 +34,7 @@ from templates.core.language.declare import (
     text,
     units,
 )
+from templates.core.language.declared_criteria import declared_criteria
 from templates.core.language.intake import (
     Input,
     admitted,

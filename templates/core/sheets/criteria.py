@@ -7,7 +7,7 @@ from typing import Any
 
 from templates.core.errors import FaultyText
 from templates.core.judging.criterion import read_criterion
-from templates.core.language.criteria import meanings_of
+from templates.core.language.declared_criteria import meanings_of
 from templates.core.language.meaning import api_name
 from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given
 from templates.core.sheets.clauses import Said

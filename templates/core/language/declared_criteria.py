@@ -1,0 +1,53 @@
+"""The criteria that a template declares, checked when its class is made."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from templates.core.errors import FaultyText
+from templates.core.judging.criterion import Criterion, Described, read_criterion
+from templates.core.language.intake import Input
+from templates.core.language.spec import Choice, Curve, Formula, Table, Text
+
+
+def declared_criteria(
+    name: str, raw: Any, inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]
+) -> tuple[Criterion, ...]:
+    """The criteria that a class declares.
+
+    Raises
+    ------
+    TypeError
+        Naming the class and the criterion that is wrong.
+    """
+    if not raw:
+        return ()
+    if not isinstance(raw, Mapping):
+        raise TypeError(f"{name}: criteria is a dict by name")
+    meanings = meanings_of(inputs, formulas)
+    criteria = []
+    for called, text in raw.items():
+        try:
+            criteria.append(read_criterion(called, text, meanings))
+            _check_defaults(criteria[-1], inputs)
+        except FaultyText as error:
+            raise TypeError(f"{name}: criterion {called!r}: {error}") from None
+    return tuple(criteria)
+
+
+def _check_defaults(criterion: Criterion, inputs: Mapping[str, Input]) -> None:
+    """A limit that nobody gives follows from an input that is a list, not from a result."""
+    for limit in criterion.limits:
+        if limit.default is not None and not isinstance(inputs.get(limit.default[1]), Curve):
+            raise FaultyText("syntax", f"the default of {limit.name} is of an input that is a list")
+
+
+def meanings_of(inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]) -> dict[str, Described]:
+    """Unit and words of the names that a criterion may use: neither words nor tables."""
+    declared = {**inputs, **formulas}
+    return {
+        name: Described(one.meaning.unit, one.meaning.words)
+        for name, one in declared.items()
+        if not isinstance(one, (Choice, Table, Text))
+    }
