@@ -184,8 +184,8 @@ class _Spans:
         if size < _POINT:
             return
         a, b = (u - x) / size, (v - y) / size
-        if a < 1e-9:  # upright
-            a, b = 0.0, 1.0
+        if a < 1e-9:  # upright, whichever end rounding has put farther left
+            a, b, y = 0.0, 1.0, min(y, v)
         away = x * -b + y * a
         start = x * a + y * b
         self._add(

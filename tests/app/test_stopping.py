@@ -28,10 +28,13 @@ from serving import (
 )
 
 from app.calculations.schemas import OIL_FILM
+from templates.oil_film.cycle_heat_balance_v2 import CycleHeatBalance
 
 DESIGNS = f"{API}/designs"
 CPU = re.compile("(process_cpu_seconds_total|crankwright_children_cpu_seconds) ")
 EVALUATE = f"{API}/templates/oil_film/versions/2/evaluate"
+CYCLE = f"{API}/templates/cycle_heat_balance/versions/2/evaluate"
+MARCHED = {"inputs": CycleHeatBalance.example, "level": "supplied"}  # takes longer than a server drains
 
 
 def until(condition, seconds=PATIENCE):
@@ -133,11 +136,9 @@ def test_a_stopped_forkserver_and_a_job_that_waits_for_it(server):
 
 @pytest.mark.slow
 def test_a_long_calculation_is_cut(server):
-    speeds = {"value": [3000.0 + number for number in range(20)], "unit": "rpm"}
-    body = {"inputs": {**OIL_FILM, "speed": speeds}, "level": "mass_conserving"}
     with ThreadPoolExecutor(1) as pool:
         calculation = pool.submit(
-            httpx.post, f"{server.url}{EVALUATE}", json=body, timeout=PATIENCE, trust_env=False
+            httpx.post, f"{server.url}{CYCLE}", json=MARCHED, timeout=PATIENCE, trust_env=False
         )
         until(lambda: calculates(server) or calculation.done())
         assert not calculation.done(), calculation.result().text[:500]
@@ -162,25 +163,22 @@ def calculates(server, seconds: float = 0.5) -> bool:
     return "crankwright_requests_in_flight 2.0" in text and used > server.idle + seconds
 
 
-SPEEDS = {"value": [3000.0 + number for number in range(20)], "unit": "rpm"}
-MASS_CONSERVING = {"inputs": {**OIL_FILM, "speed": SPEEDS}, "level": "mass_conserving"}
-
-
 @pytest.mark.parametrize(
     "stopped",
     [pytest.param(one, marks=pytest.mark.slow) for one in ("fork server", "its children", "all")],
 )
 def test_calculations_of_stopped_processes_are_cut(server, stopped):
     """Some are calculated and some wait for a process, all of which ignore every signal but one."""
-    ask = partial(httpx.post, f"{server.url}{EVALUATE}", timeout=PATIENCE, trust_env=False)
-    first = ask(json={"inputs": OIL_FILM, "level": "mass_conserving"})  # now there are processes
+    ask = partial(httpx.post, timeout=PATIENCE, trust_env=False)
+    mass_conserving = {"inputs": OIL_FILM, "level": "mass_conserving"}
+    first = ask(f"{server.url}{EVALUATE}", json=mass_conserving)  # now there are processes
     assert first.status_code == 200, first.text
     forkserver = forkserver_of(server, "app.calculations.warm")
     if stopped == "fork server":
         until(lambda: len(descendants(forkserver)) > 0)
         os.kill(forkserver, signal.SIGSTOP)
     with ThreadPoolExecutor(4) as pool:
-        answers = [pool.submit(ask, json=MASS_CONSERVING) for _ in range(4)]
+        answers = [pool.submit(ask, f"{server.url}{CYCLE}", json=MARCHED) for _ in range(4)]
         until(lambda: "crankwright_requests_in_flight 5.0" in figures(server))
         if stopped != "fork server":
             until(lambda: len(descendants(forkserver)) > 0)

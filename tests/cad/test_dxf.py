@@ -30,7 +30,7 @@ SHEETS = {
     "A0": ("1189mm", "841mm"),
 }  # ISO 216
 SHOWN = 0.9  # of the lengths and angles of an example
-NOT_DRAWN = {"free_spread"}  # of a shell that its housing holds
+NOT_DRAWN = {"free_spread", "pin_split"}  # of a shell that its housing holds; in the table, as pin angles are
 QUICK_MODELS = DRAWN
 
 

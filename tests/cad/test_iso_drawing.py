@@ -442,6 +442,9 @@ def test_curves_join_and_give_way() -> None:
         [(0.0, 0.0), (2.0, 0.0)],
         [(5.0, 0.0), (10.0, 0.0)],
     ]
+    for x in (0.0, -1e-14, 1e-14):  # upright but for rounding, to either side
+        (upright,) = joined([Curve([(3.0, -40.0), (3.0 + x, 40.0)])])
+        assert sorted(y for _, y in upright.points) == pytest.approx([-40.0, 40.0])
     points: Sequence[tuple[float, float]] = [(cos(t / 10), sin(t / 10)) for t in range(12)]
     arc = recognised([*points]).arc
     assert arc is not None

@@ -9,10 +9,10 @@ from test_torsion_analytic import mirrored
 
 from cad.analysis.analyse import AnalysisRequest, analyse
 from cad.analysis.elastic import System, respond
-from cad.analysis.kinds import KINDS, Kind
+from cad.analysis.kinds import Kind
 from cad.analysis.mesh import Fineness, Grid, make_grid
 from cad.analysis.solid import Solid, read_solid
-from cad.analysis.surface import MOST_TRIANGLES, Surface, surface
+from cad.analysis.surface import LOADS, MOST_TRIANGLES, Surface, surface
 from cad.header import Header
 from cad.model import Part
 from cad.shaft import STEEL_MATERIAL, Shaft
@@ -94,7 +94,7 @@ def test_the_surface_is_round_and_closed(coulomb: Surface) -> None:
     assert 1000 < len(coulomb.triangles) <= MOST_TRIANGLES
 
 
-IMAGES = [(load, mirrors) for load in KINDS for mirrors in (("y",), ("x",))]
+IMAGES = [(load, mirrors) for load in LOADS for mirrors in (("y",), ("x",))]
 
 
 @pytest.mark.slow  # the next test asks the same of one load, on the same mesh

@@ -52,4 +52,4 @@ def test_two_runs_tell_the_same() -> None:
     one, other = (analyse(step, shaft, asked, ["stiffness"], lambda done, what: None) for _ in range(2))
     first, second = one.outputs["stiffness"], other.outputs["stiffness"]
     assert first["mesh"] == second["mesh"]
-    assert first["value"] == pytest.approx(second["value"], rel=1e-10)  # but for rounding
+    assert first["value"] == pytest.approx(second["value"], rel=1e-9)  # but for the residual of the solver
