@@ -95,6 +95,12 @@ class TestLimits:
         )
         np.testing.assert_allclose(plain[0], lobed[0], rtol=1e-6)
 
+    def test_property_lobes_and_mouths_are_not_plain(self):
+        assert Bore().is_plain
+        assert Bore(mouth=0.5).is_plain  # a mouth without length
+        assert not Bore(mouth=0.5, mouth_length=0.2).is_plain
+        assert not Bore(3, 0.4).is_plain
+
     def test_property_small_preload_tends_to_plain(self):
         plain = placed(Loaded(1.0, 0.5, Bore(), ALIGNED, SPLIT, False))[0]
         away = [

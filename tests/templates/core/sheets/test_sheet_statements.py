@@ -189,6 +189,10 @@ class TestTests:
 
 
 class TestText:
+    def test_it_is_of_version_1_of_the_language(self):
+        """As are all released texts, which are read by it for ever."""
+        assert read(BEARING).language == 1
+
     def test_layout_and_prose_do_not_change_the_digest(self):
         changed = (
             BEARING.replace("Steady load", "Any load")
