@@ -206,7 +206,9 @@ def test_the_front_of_two_objectives(http, held):
     result = done(http, held, **search)["result"]
     front, (trade,) = result["front"], result["trade"]
     assert len(front) > 5
-    assert [place["promise"] for place in trade["front"]] == [best["outputs"] for best in front]
+    for place, best in zip(trade["front"], front, strict=True):  # promises are of criteria too
+        assert place["promise"].keys() == {*best["outputs"], "long_enough"}
+        assert {name: place["promise"][name] for name in best["outputs"]} == best["outputs"]
     for best in front:
         assert best["outputs"][OUT]["value"] + best["outputs"][other]["value"] == pytest.approx(20)
         assert best["verdicts"] == {"long_enough": "met"}
