@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
+from hashlib import sha256
 from threading import Lock
 from typing import Literal
 
@@ -26,22 +27,22 @@ from templates.core.units.units import dimension_of, unit
 Columns = Mapping[str, int]
 
 KEPT = 4 * 2**20  # bytes of networks
-_kept: LRUCache[str, tuple[Snapshot, bytes]] = LRUCache(KEPT, getsizeof=lambda kept: len(kept[1]))
-"""Networks as JSON, by document in its canonical form, each with the catalogue of which it was made."""
+_kept: LRUCache[bytes, tuple[Snapshot, bytes]] = LRUCache(KEPT, getsizeof=lambda kept: len(kept[1]))
+"""Networks as JSON, by the digest of their document, each with the catalogue of which it was made."""
 _keeping = Lock()
 
 
 def network_json(document: Mapping[str, Raw], catalogues: Catalogues) -> bytes:
     """The dependencies in a stored document, as JSON; made once for a document and a catalogue."""
-    text, snapshot = canonical_json(document), catalogues.snapshot
+    digest, snapshot = sha256(canonical_json(document).encode()).digest(), catalogues.snapshot
     with _keeping:
-        of, network = _kept.get(text, (None, b""))
+        of, network = _kept.get(digest, (None, b""))
     if of is not snapshot:
         graph, _ = build_graph(resolved(read_document(document), catalogues), catalogues)
         network = network_of(graph).model_dump_json().encode()
         if len(network) <= KEPT:
             with _keeping:
-                _kept[text] = snapshot, network
+                _kept[digest] = snapshot, network
     return network
 
 

@@ -74,10 +74,12 @@ class Forked:
     def poll(self) -> int | None:
         """Return the exit code; None while the process lives."""
         if self._code is None:
-            with suppress(ChildProcessError):
+            try:
                 ended, status = os.waitpid(self.pid, os.WNOHANG)
-                if ended:
-                    self._code = os.waitstatus_to_exitcode(status)
+            except ChildProcessError:  # somebody else has asked: its code is lost, as with `Popen`
+                self._code = 0
+            else:
+                self._code = os.waitstatus_to_exitcode(status) if ended else None
         return self._code
 
     def wait(self, timeout: float | None = None) -> int:
