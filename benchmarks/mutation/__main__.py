@@ -22,7 +22,7 @@ from benchmarks.mutation import ROOT
 from benchmarks.mutation.named import named
 from benchmarks.mutation.places import Mutant, sample
 from benchmarks.mutation.related import NEAREST, related
-from benchmarks.mutation.trial import Copies, Copy, fingerprint, row
+from benchmarks.mutation.trial import Copies, Copy, Reach, fingerprint, row
 from benchmarks.mutation.verdict import REASONS, UNDECIDED, reasons, report, summary, verdict
 
 
@@ -115,22 +115,23 @@ def results(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[
     with TemporaryDirectory(prefix="mutants-") as folder, ThreadPoolExecutor(options.jobs) as threads:
         kept = options.record and options.record.resolve().with_name("observations")
         copies = Copies(Path(folder), options.limit, options.nearest, kept, tuple(options.tests or ()))
-        passes = (True,) if options.tests or options.quick else (True, False)
-        for at_once in passes:  # the nearest tests kill most: they come first
-            attempt = partial(tried, copies, options.record, lock, at_once)
-            skipped = rows.keys() | left_over if at_once and len(passes) > 1 else rows.keys()
+        passes = (Reach.NEAREST,) if options.tests or options.quick else tuple(Reach)
+        for reach in passes:  # the nearest tests kill most: they come first
+            attempt = partial(tried, copies, options.record, lock, reach)
+            is_done = reach is Reach.NEAREST and len(passes) > 1
+            skipped = rows.keys() | left_over if is_done else rows.keys()
             results = filter(None, threads.map(attempt, [one for one in ahead if one.key not in skipped]))
             rows |= {str(result["key"]): result for result in results}
     return [rows[mutant.key] for mutant in chosen if mutant.key in rows]
 
 
 def tried(
-    copies: Copies, record: Path | None, lock: Lock, at_once: bool, mutant: Mutant
+    copies: Copies, record: Path | None, lock: Lock, reach: Reach, mutant: Mutant
 ) -> dict[str, Any] | None:
     """Try a mutant, and record the result at once if there is one."""
 
     def work(copy: Copy) -> dict[str, object] | None:
-        return copy.try_out(mutant, at_once=at_once)
+        return copy.try_out(mutant, reach)
 
     result = copies.using(work)
     if result is None:

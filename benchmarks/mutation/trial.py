@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from enum import Enum, auto
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
@@ -35,6 +36,18 @@ STARTING = patient(60.0)  # of the time for single tests, what pytest itself may
 SLOWER = 10.0  # times as slow as when they were observed
 NOTHING_FAILED = (0, 5)  # exit codes of pytest: all passed; all are slow tests, which are left out
 _FAILED = re.compile(r"^(?:FAILED|ERROR) ((tests/[\w/]+\.py).*)", re.MULTILINE)
+
+
+Part = tuple[tuple[str, ...], float]
+"""Tests of one run, and its limit [s]."""
+
+
+class Reach(Enum):
+    """Which of the related tests run: a pass over all mutants with few of them comes before one with more."""
+
+    NEAREST = auto()  # the nearest file
+    NEAR = auto()  # single tests of near files that run the line
+    ALL = auto()
 
 
 @dataclass(frozen=True)
@@ -65,25 +78,35 @@ class Copy:
         self._list.write_text("\n".join(targets()), encoding="utf-8")
         self.observations = Observations(kept, self._observe)
 
-    def try_out(self, mutant: Mutant, *, at_once: bool = False) -> dict[str, object] | None:
+    def try_out(self, mutant: Mutant, reach: Reach = Reach.ALL) -> dict[str, object] | None:
         """Return what became of a mutant, as a row of the record.
 
-        With `at_once`, only the nearest tests run and not for long; None if they do not kill it.
+        If fewer tests than all related ones run, None if they do not kill it.
         """
         begin, tests = time.monotonic(), related(mutant.file, self.nearest)
         run = Run("passed")
-        for part, limit in self._nearest(mutant, tests) if at_once else self._parts(mutant, tests):
+        for part, limit in self._within(reach, mutant, tests):
             run = self._with(mutant, part, limit)
             if run.outcome != "passed":
                 break
-        if at_once and run.outcome != "failed":
+        if reach is not Reach.ALL and run.outcome != "failed":
             return None
         outcome, seconds = self._judged(run), round(time.monotonic() - begin, 1)
-        if at_once and outcome != "killed":
+        if reach is not Reach.ALL and outcome != "killed":
             return None
         return {**row(mutant, tests), "outcome": outcome, "by": run.by or run.outcome, "seconds": seconds}
 
-    def _nearest(self, mutant: Mutant, tests: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], float]]:
+    def _within(self, reach: Reach, mutant: Mutant, tests: tuple[str, ...]) -> Iterator[Part]:
+        """Yield what to run in one pass over the mutants."""
+        match reach:
+            case Reach.NEAREST:
+                yield from self._nearest(mutant, tests)
+            case Reach.NEAR:
+                yield from self._single(mutant, tests[:NEAR])
+            case Reach.ALL:
+                yield from self._parts(mutant, tests)
+
+    def _nearest(self, mutant: Mutant, tests: tuple[str, ...]) -> Iterator[Part]:
         """Yield the nearest file, or its single tests that run the line if it was observed."""
         if self.instead:
             yield self.instead, self.limit
@@ -92,16 +115,20 @@ class Copy:
         elif single := tuple(self.observations.quickest(mutant.file, mutant.line, tests[:1])):
             yield single, STARTING
 
-    def _parts(self, mutant: Mutant, tests: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], float]]:
+    def _parts(self, mutant: Mutant, tests: tuple[str, ...]) -> Iterator[Part]:
         """Yield what to run: single tests that run the line, of near files first; then all that may."""
         done: set[str] = set()
-        place = mutant.file, mutant.line
         for some in (tests[:NEAR], tests[NEAR:]):
-            if single := tuple(self.observations.quickest(*place, some)):
-                usual = self.observations.seconds(mutant.file, single)
-                yield single, min(self.limit, STARTING + SLOWER * usual)
+            for single, limit in self._single(mutant, some):
+                yield single, limit
                 done.update(single)
-        yield tuple(self.observations.others(*place, tests, done)), self.limit
+        yield tuple(self.observations.others(mutant.file, mutant.line, tests, done)), self.limit
+
+    def _single(self, mutant: Mutant, tests: tuple[str, ...]) -> Iterator[Part]:
+        """Yield single tests of some files that run the line, if there are any."""
+        if single := tuple(self.observations.quickest(mutant.file, mutant.line, tests)):
+            usual = self.observations.seconds(mutant.file, single)
+            yield single, min(self.limit, STARTING + SLOWER * usual)
 
     def _with(self, mutant: Mutant, tests: tuple[str, ...], limit: float) -> Run:
         self._write(mutant.file, mutant.source)
