@@ -161,17 +161,18 @@ class TestPlaces:
 class TestObservations:
     """Which tests run a line, from what a run of each file wrote."""
 
-    FILE, TEST = "app/jobs/turns.py", "tests/app/test_turns.py"
+    FILE, OTHER, TEST = "app/jobs/turns.py", "app/jobs/leases.py", "tests/app/test_turns.py"
 
     @pytest.fixture
     def source(self, tmp_path, monkeypatch):
-        """A repository of one file and one test."""
-        for name in (self.FILE, self.TEST):
+        """A repository of two files and one test, which runs one of them."""
+        for name in (self.FILE, self.OTHER, self.TEST):
             (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
             (tmp_path / name).write_text(
                 "A = (\n    1,\n)\n\n@cache\ndef f(x):\n    if x:\n        return A\n    return 0\n"
             )
         monkeypatch.setattr(observations, "ROOT", tmp_path)
+        monkeypatch.setattr(observations, "targets", lambda: [self.FILE, self.OTHER])
         for function in (observations.dependent, observations._tree, observations.digest):
             function.cache_clear()
         yield tmp_path
@@ -230,6 +231,16 @@ class TestObservations:
         kept, _ = self.observed(source, None)
         assert kept.quickest(self.FILE, 8, [self.TEST]) == []
         assert kept.others(self.FILE, 8, [self.TEST], ()) == [self.TEST]
+
+    def test_a_file_that_was_not_run_is_looked_for_again_once_it_has_changed(self, source):
+        kept, runs = self.observed(source, self.seen())
+        assert kept.of(self.TEST, self.OTHER).tests(self.OTHER, [7]) == set()
+        assert kept.has(self.TEST, self.OTHER)
+        (source / self.OTHER).write_text("def g():\n    return 1\n")
+        observations.digest.cache_clear()
+        assert not kept.has(self.TEST, self.OTHER)
+        kept.of(self.TEST, self.OTHER)
+        assert len(runs) == 2
 
     def test_an_observation_is_kept_until_the_file_or_the_test_changes(self, source):
         for changed_file, expected in ((None, 1), (self.FILE, 1), (self.TEST, 1)):

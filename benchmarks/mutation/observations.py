@@ -1,7 +1,7 @@
 """Which tests run a line, by one run of each test file under coverage, kept from night to night.
 
-An observation holds for a test file and the files that it ran, as long as neither changes. Lines that run
-in other processes are not seen; a test file that starts some may run a line all the same.
+An observation of a test file holds for a file as long as neither changes, whether the test ran the file or
+not. Lines that run in other processes are not seen; a test file that starts some may run a line all the same.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from threading import Lock
 from typing import Any
 
 from benchmarks.mutation import ROOT
+from benchmarks.mutation.places import targets
 
 MOST_TESTS = 60
 """Single tests of a line that are tried before whole files."""
@@ -40,7 +41,7 @@ class Observation:
 
     seconds: dict[str, float]  # of each test
     lines: dict[str, dict[int, list[str]]]  # of each file: the tests that ran a line
-    code: dict[str, str]  # of each file: its digest then
+    code: dict[str, str]  # of each file that may be changed: its digest then
     has_programs: bool  # it started servers or other programs, which may run all of our code
     has_processes: bool  # it started processes, which may have run templates and solids
 
@@ -56,7 +57,7 @@ class Observation:
 
     def holds_for(self, file: str) -> bool:
         """Return whether the file is the one that was observed."""
-        return self.code.get(file, digest(file)) == digest(file)
+        return self.code.get(file) == digest(file)
 
 
 class Observations:
@@ -90,10 +91,8 @@ class Observations:
             target.write_text(json.dumps(with_digests(json.loads(raw.read_text()))), encoding="utf-8")
             raw.unlink()
         else:
-            target.write_text(
-                json.dumps({"seconds": {}, "lines": {}, "programs": True, "processes": True}),
-                encoding="utf-8",
-            )
+            nothing = {"seconds": {}, "lines": {}, "programs": True, "processes": True}
+            target.write_text(json.dumps(with_digests(nothing)), encoding="utf-8")
         observation = self._read(target)
         assert observation is not None
         return observation
@@ -144,8 +143,8 @@ def by_function(seen: Observation, tests: Iterable[str]) -> list[list[Case]]:
 
 
 def with_digests(raw: dict[str, Any]) -> dict[str, Any]:
-    """Return an observation with the digests of the files that it is about."""
-    return {**raw, "code": {file: digest(file) for file in raw["lines"]}}
+    """Return an observation with the digests of all files that a test may run: some it ran, others not."""
+    return {**raw, "code": {file: digest(file) for file in targets()}}
 
 
 @cache
