@@ -10,9 +10,9 @@ from cad.regenerate import regenerate
 
 
 def wrapped(text):
-    """A usage as the kernel's writer would break it: tokens into lines of at most 72 characters."""
+    """A usage as the kernel's writer breaks it: tokens, commas among them, into lines of 72 characters."""
     lines = [""]
-    for token in re.findall(r"#\d+ = \w+\(|'[^']*',|[^',)]+,?|\);", text):
+    for token in re.findall(r"#\d+ = \w+\(|'[^']*'|[^',)]+|,|\);", text):
         if len(lines[-1]) + len(token) > 72:
             lines.append("  ")
         lines[-1] += token

@@ -6,6 +6,7 @@ import subprocess
 from math import hypot
 
 import pytest
+from browsing import created as created_by_http
 from playwright.sync_api import expect
 from serving import moody
 
@@ -169,6 +170,37 @@ def test_the_pressure_is_painted_on_the_bore(watched):
     x, y = (page.evaluate(f"{PART}.data.at(-1).{axis}[8].find((value) => value !== null)") for axis in "xy")
     assert abs(hypot(x, y) - radius) < 0.1
     assert watched.faults() == []
+
+
+@pytest.mark.slow
+def test_the_pressure_is_painted_although_its_switch_was_pressed_before_its_script_came(watched, http):
+    """A second press after the script came takes the pressure away again."""
+    page, held = watched.page, []
+    place = created_by_http(http, "shell")
+    page.route("**/static/design.js", lambda route: held.append(route))
+    with page.expect_request("**/static/design.js"):
+        watched.open(place, wait_until="commit")
+    switch = page.get_by_label("show the film pressure")
+    switch.check()
+    assert len(held) == 1
+    for route in held:
+        route.continue_()
+    expect(page.locator(".solid .colours")).to_contain_text("MPa", timeout=PATIENCE)
+    assert page.evaluate(f"{PART}.data.map((trace) => trace.name)").count("film pressure") == 1
+    switch.uncheck()
+    expect(page.locator(".solid .colours")).to_have_count(0)
+    assert "film pressure" not in page.evaluate(f"{PART}.data.map((trace) => trace.name)")
+    assert watched.faults() == []
+
+
+@pytest.mark.slow
+def test_a_pressure_that_cannot_be_shown_says_why(watched, http):
+    page = watched.page
+    watched.open(created_by_http(http, "shell"))
+    expect(page.locator(".solid .js-plotly-plot")).to_be_visible(timeout=PATIENCE)
+    page.route("**/film-pressure*", lambda route: route.fulfill(status=503, json={"detail": "no answer today"}))
+    page.get_by_label("show the film pressure").check()
+    expect(page.locator("[data-said]")).to_have_text("The film pressure cannot be shown: no answer today")
 
 
 @pytest.mark.slow

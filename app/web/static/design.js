@@ -242,8 +242,13 @@ async function start() {
   if (from !== null && from !== revision) tell(`Revision ${revision} was saved since you typed these changes; look at them once more.`);
   const running = progress.dataset.job;
   if (running) regenerated(`/api/v1/jobs/${running}`).then(() => location.reload());
-  startSolids(() => steps);
+  const first = showFirst(from);
+  startSolids(() => first.then(() => steps));
   if (form.querySelector("[data-elements]")) import("./elements.js").then(({ startElements }) => startElements());
+}
+
+// Preview the page as it is opened, its draft restored.
+async function showFirst(from) {
   try {
     const isPainted = designState === "current" && document.querySelector("[data-painted]"); // with results of a step
     const { payload } = await previewed(undefined, isFollowing || (from === null && !isPainted));

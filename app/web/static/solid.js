@@ -63,6 +63,7 @@ function tellSize(place) {
 export async function paint(place, picture, values, wanted) {
   const Plotly = await plotly();
   const figure = place.querySelector(".js-plotly-plot");
+  if (!figure) throw new Error("the part is not drawn");
   const painted = figure.data.findIndex((trace) => trace.name === "film pressure");
   if (painted >= 0) await Plotly.deleteTraces(figure, painted);
   showColours(place);

@@ -9,30 +9,34 @@ export function startSolids(stepsNow) {
       await showSolid(place);
       done();
     }));
-    const choice = place.closest("section").querySelector("[data-field]");
-    choice?.addEventListener("change", async () => {
-      await shown;
+    const section = place.closest("section");
+    obey(section.querySelector("[data-field]"), shown, "The colours cannot be shown", async (choice) => {
       const { colourBy } = await import("./solid.js");
-      try {
-        await colourBy(place, choice.selectedOptions[0]);
-        tell(choice, "");
-      } catch (error) {
-        tell(choice, `The colours cannot be shown: ${error.message}`);
-      }
+      await colourBy(place, choice.selectedOptions[0]);
     });
-    const box = place.closest("section").querySelector("[data-paint]");
-    box?.addEventListener("change", async () => {
-      await shown;
+    obey(section.querySelector("[data-paint]"), shown, "The film pressure cannot be shown", async (box) => {
       const { paint } = await import("./solid.js");
-      const picture = JSON.parse(place.dataset.painted), step = stepsNow()[picture.scope];
+      const picture = JSON.parse(place.dataset.painted), step = (await stepsNow())[picture.scope];
+      if (!step?.outputs) throw new Error(`step ${picture.scope} has no results`);
       await paint(place, picture, { ...step.inputs, ...step.outputs }, box.checked);
     });
   }
 }
 
-// What went wrong, below a choice.
-function tell(choice, words) {
-  const line = choice.closest("p"), said = line.querySelector("[data-said]") ?? line.appendChild(Object.assign(document.createElement("span"), { role: "alert" }));
+// Act on each change of a control, one after the other, once the part is shown; also if it was used before this script came.
+function obey(control, shown, trouble, act) {
+  if (!control) return;
+  let last = shown;
+  const next = () => {
+    last = last.then(() => act(control)).then(() => tell(control, ""), (error) => tell(control, `${trouble}: ${error.message}`));
+  };
+  control.addEventListener("change", next);
+  if (control.checked || control.selectedIndex > 0) next();
+}
+
+// Say what went wrong, below a control.
+function tell(control, words) {
+  const line = control.closest("p"), said = line.querySelector("[data-said]") ?? line.appendChild(Object.assign(document.createElement("span"), { role: "alert" }));
   said.dataset.said = "";
   said.replaceChildren(...(words ? [" ", isolated(words)] : []));
 }
