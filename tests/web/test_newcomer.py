@@ -198,7 +198,8 @@ def test_a_pressure_that_cannot_be_shown_says_why(watched, http):
     page = watched.page
     watched.open(created_by_http(http, "shell"))
     expect(page.locator(".solid .js-plotly-plot")).to_be_visible(timeout=PATIENCE)
-    page.route("**/film-pressure*", lambda route: route.fulfill(status=503, json={"detail": "no answer today"}))
+    refusal = {"detail": "no answer today"}
+    page.route("**/film-pressure*", lambda route: route.fulfill(status=503, json=refusal))
     page.get_by_label("show the film pressure").check()
     expect(page.locator("[data-said]")).to_have_text("The film pressure cannot be shown: no answer today")
 
