@@ -71,6 +71,13 @@ def test_a_missing_value_is_a_fault_of_the_program(database):
         database.write(lambda session: NEW.run(session, {"id": "a", "name": "a", "created": now()}))
 
 
+@pytest.mark.skipif(ON_POSTGRESQL, reason="there SQLAlchemy executes it")
+def test_a_statement_that_is_completed_at_every_execution_is_refused(database):
+    several = select(DESIGNS.c.id).where(DESIGNS.c.id.in_(bindparam("some", expanding=True)))
+    with pytest.raises(AssertionError, match="at every execution"):
+        database.write(lambda session: Statement(several, "some").run(session, {"some": ["a", "b"]}))
+
+
 def test_a_unit_that_mixes_both_is_undone_whole(database):
     def mixed(session):
         NEW.run(session, row("a"))

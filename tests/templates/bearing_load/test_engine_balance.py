@@ -176,6 +176,11 @@ class TestOrders:
             assert out["order_force_forward"][k] == pytest.approx(expected, rel=1e-9, abs=1e-9)
         assert 0.8 * SPEED**2 * 0.05 * lam**3 / 8 == pytest.approx(out["order_force_forward"][3], rel=lam**2)
 
+    def test_orders_are_one_list(self):
+        raw = {**sizes(self.ROW), "firing_order": [1], "orders": [[1, 2], [4, 6]]}
+        with pytest.raises(InvalidInputs, match="The orders are one list"):
+            values(raw, ["order_force_forward"])
+
     def test_analytic_offset_makes_odd_orders(self):
         raw = {**sizes(self.ROW), "firing_order": [1], "orders": [1, 2, 3], "cylinder_offset": "8 mm"}
         assert values(raw)["order_force_forward"][2] > 1

@@ -63,6 +63,14 @@ class TestLimits:
         for name in CHANGED:
             assert found[name] == pytest.approx(rigid[name], rel=1e-6), name
 
+    def test_limit_without_a_load_nothing_is_deformed(self):
+        found = outputs({**rows(RING), "radial_load": "0 N"}, level="elastic")
+        assert found["largest_deformation"] == 0
+        assert (
+            found["minimum_film_thickness"]
+            == outputs({"radial_load": "0 N"}, level="rigid")["minimum_film_thickness"]
+        )
+
     def test_limit_a_ring_is_level_housing(self):
         """Besides harmonics 10 to 40, here of a half plane: within 0.1 %, whatever the angle."""
         ring, found = (

@@ -176,3 +176,15 @@ def test_a_slip_of_the_pen_is_met_with_what_would_be_right(text, column, remedy)
     fault = faults(SHEET + text)[0]
     assert (fault.code, fault.column) == ("syntax", column)
     assert fault.remedy.startswith(remedy)
+
+
+@pytest.mark.parametrize(
+    ("text", "part"),
+    [
+        ('choice other = a "of two" (a | a)', "a | a"),
+        ('curve mu(T [degC]) [mPa*s] "v" (held): 40 -> 80 30 -> 9', "30 -> 9"),
+        ('given y [mm] "y" (>= 0; >= 1 mm)', ">= 1 mm"),
+    ],
+)
+def test_a_fault_of_meaning_has_the_column_of_its_part(text, part):
+    assert faults(SHEET + text)[0].column == text.index(part) + 1
