@@ -17,7 +17,7 @@ import numpy as np
 from app import pint_alone  # noqa: F401  # before all that imports Pint
 from app.calculations.arguments import argument
 from app.catalogue.finding import find_templates
-from app.plain import Json, Raw
+from app.plain import Raw
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
 from templates.core.language.evaluate import Answer
@@ -130,7 +130,7 @@ def show_template(id: str, version: int | None) -> None:
         click.echo(f"\n{title.capitalize()}\n" + "\n".join(f"  {line}" for line in lines))
 
 
-def _shown(default: Json) -> str:
+def _shown(default: object) -> str:
     return f"{default['value']} {default['unit']}" if isinstance(default, dict) else str(default)
 
 

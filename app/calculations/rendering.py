@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.calculations import criteria
-from app.plain import Json, JsonObject
+from app.plain import JsonObject
 from templates.core.catalogue.digests import content_digest, digest
 from templates.core.language.evaluate import Answer, Echo, Evaluation
 from templates.core.language.ledger import Notice
@@ -18,21 +18,35 @@ from templates.core.language.template import Template
 if TYPE_CHECKING:
     from templates.core.language.solve import Jump, Root, Solution, TracedCurve
 
-_identities: dict[type[Template], JsonObject] = {}
+
+class Identity(TypedDict):
+    """A version of a template, with both digests of its code."""
+
+    id: str
+    version: int
+    digest: str
+    content_digest: str
 
 
-def identity(cls: type[Template]) -> JsonObject:
+_identities: dict[type[Template], Identity] = {}
+
+
+def identity(cls: type[Template]) -> Identity:
     """Which version calculated: id, version and both digests of its code."""
     if cls not in _identities:
-        codes = {"digest": digest(cls), "content_digest": content_digest(cls)}
-        identified: JsonObject = {"id": cls.id, "version": cls.version, **codes}
+        identified: Identity = {
+            "id": cls.id,
+            "version": cls.version,
+            "digest": digest(cls),
+            "content_digest": content_digest(cls),
+        }
         if cls.sheet:
             return identified  # worksheets come and go, and know their digest
         _identities[cls] = identified
-    return dict(_identities[cls])
+    return {**_identities[cls]}
 
 
-def quantity(value: Json, unit: str | None) -> JsonObject:
+def quantity(value: object, unit: str | None) -> dict[str, object]:
     """A value with its unit; a text has none."""
     return {"value": value} if unit is None else {"value": value, "unit": unit}
 
@@ -70,7 +84,7 @@ def _with_holes(value: NDArray[np.float64], reasons: NDArray[np.object_]) -> NDA
     return rows
 
 
-def _plain(value: Json) -> Json:
+def _plain(value: object) -> object:
     """A single value or an array as JSON; what was not measured is null."""
     if not isinstance(value, np.ndarray):
         return None if value != value else value  # NaN
@@ -79,7 +93,7 @@ def _plain(value: Json) -> Json:
     return [_plain(row) for row in value]
 
 
-def _errors(errors: Mapping[str, Json]) -> dict[str, object]:
+def _errors(errors: Mapping[str, object]) -> dict[str, object]:
     """The error of each output as JSON."""
     return {
         name: _plain(error) if isinstance(error, np.ndarray) else None if error != error else error

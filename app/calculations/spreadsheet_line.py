@@ -9,7 +9,7 @@ from itertools import zip_longest
 
 from app.calculations.rendering import evaluation
 from app.calculations.sources import Source, loaded
-from app.plain import Json, Raw
+from app.plain import Raw
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.language.evaluate import evaluate
 
@@ -55,11 +55,11 @@ def _depth(value: object) -> int:
     return 1 + _depth(value[0]) if isinstance(value, list) and value else 0
 
 
-def _column(value: Json) -> list[Json]:
+def _column(value: object) -> list[object]:
     return value if isinstance(value, list) else [value]
 
 
-def _cell(value: Json) -> Json:
+def _cell(value: object) -> object:
     """A value that no spreadsheet takes for a formula; empty where there is none."""
     if isinstance(value, str) and value.startswith(_DANGEROUS):
         return f"'{value}"

@@ -10,8 +10,8 @@ import numpy as np
 
 from app.designs.analyses import is_table, measured_unit
 from app.designs.network import Graph, Node, SolidAnalysis
-from app.plain import Json
 from app.reference import Reference
+from app.solids.outputs import Outputs as Outputs
 from app.solids.questions import Question
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText
@@ -22,7 +22,6 @@ from templates.core.units.units import Value, unit
 
 Measures = Mapping[str, float]  # in the units of MEASURES
 Measured = Callable[[CadModel], Measures | None]
-Outputs = Mapping[str, Mapping[str, Json]]  # outputs of an analysis
 Analysed = Callable[[CadModel, Question, tuple[str, ...]], Outputs | None]
 NOT_MEASURED = "this build was measured by an older program, or nothing else is there: change the design"
 DEFERRED: Literal["deferred"] = "deferred"
@@ -86,13 +85,14 @@ class Calculation:
         computed = self._computed(reference, reference.analysis)
         if is_table(reference):
             return np.asarray(scale.to_si(np.asarray(computed, dtype=float)))
+        assert isinstance(computed, int | float), "no table"
         return float(scale.to_si(float(computed)))
 
     def outputs(self, model: str, kind: str) -> Outputs:
         """The outputs of an analysis that are used and calculated; empty while it is pending."""
         return self.analyses.get(model, {}).get(kind, {})
 
-    def _computed(self, reference: Reference, kind: str) -> Json:
+    def _computed(self, reference: Reference, kind: str) -> object:
         result = self.analyses[reference.block][kind][reference.output or ""]
         if result["value"] is None:
             raise FaultyText("no_value", f"{reference} has no value: {result['reason']}")

@@ -5,9 +5,10 @@ They are looked up when asked for: a step may take minutes, and no connection is
 
 from __future__ import annotations
 
-from app.designs.calculate import Analysed, Measured, Measures, Outputs
+from app.designs.calculate import Analysed, Measured, Measures
 from app.solids import analysis_rows as analyses
 from app.solids import rows
+from app.solids.outputs import Outputs
 from app.solids.questions import Question, under_load
 from app.storage.database import Database
 from cad.model import CadModel

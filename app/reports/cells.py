@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from functools import lru_cache
 
-from app.plain import Json, Raw
+from app.plain import Raw
 from app.presentation import numbers
 from app.presentation.numbers import in_line
 from app.presentation.typed import text_of
@@ -54,16 +54,16 @@ def _in_words(quantity: Valued) -> str:
     fields = {name: getattr(quantity, name) for name in WRITTEN if name in quantity.model_fields_set}
     if not isinstance(quantity, Output) or not quantity.reasons:
         return in_line(fields)
-    reasons = dict.fromkeys(reason for reason in flat(quantity.reasons) if reason)
+    reasons = dict.fromkeys(str(reason) for reason in flat(quantity.reasons) if reason)
     return f"{in_line({**fields, 'value': _dashed(quantity.value)})} (–: {'; '.join(reasons)})"
 
 
-def flat(value: Json) -> list[Json]:
+def flat(value: object) -> list[object]:
     """All items of a list of any depth; of a single value, the value."""
     return [item for part in value for item in flat(part)] if isinstance(value, list) else [value]
 
 
-def _dashed(value: Json) -> Json:
+def _dashed(value: object) -> object:
     return [_dashed(item) for item in value] if isinstance(value, list) else "–" if value is None else value
 
 

@@ -9,7 +9,6 @@ from sqlalchemy.orm import Session
 
 from app.designs import repository
 from app.designs.solid_fields import SolidField
-from app.plain import JsonObject
 from app.presentation import numbers
 from app.presentation.numbers import in_line
 from app.presentation.units import System
@@ -81,7 +80,7 @@ def _warnings(analyses: Mapping[str, ModelAnalysis]) -> list[Warned]:
 
 def _parameters(
     model: RevisionModel,
-    before: JsonObject,
+    before: Mapping[str, object],
     measured: Measurements | None,
     cls: type[CadModel] | None,
     system: System,

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import hashlib
 from collections import OrderedDict
-from collections.abc import Mapping
+from dataclasses import asdict
 from threading import BoundedSemaphore, Lock
+from typing import cast
 
-from app.plain import Json
+from app.reports.content import Report
 from app.reports.errors import Unprintable
-from app.reports.typesetting import Pictures, typeset
+from app.reports.typesetting import Pictures, ReportAsData, typeset
 from app.workers.base import Limits, Worker
 from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
 from cad.drafting.paper import as_pdf
@@ -26,7 +27,7 @@ class Press:
         self._drawn: OrderedDict[bytes, bytes] = OrderedDict()
         self._lock = Lock()
 
-    def print(self, report: Mapping[str, Json], pictures: Pictures) -> bytes:
+    def print(self, report: Report, pictures: Pictures) -> bytes:
         """A report as PDF; equal reports give equal bytes. It waits, so call it in a thread.
 
         Raises
@@ -34,11 +35,12 @@ class Press:
         Unprintable
             If the typesetter had to be stopped, or stopped for want of memory.
         """
+        data = cast(ReportAsData, asdict(report))
         with self._free:
             try:
-                return self._worker.run(typeset, report, pictures, limits=self._limits)
+                return self._worker.run(typeset, data, pictures, limits=self._limits)
             except (DeadlineExceeded, MemoryExceeded, JobCrashed) as error:
-                formulas = sum(len(step["formulas"]) for step in report["steps"])
+                formulas = sum(len(step.formulas) for step in report.steps)
                 reason = f"with {formulas} formulas it takes more time or memory than a job may have"
                 raise Unprintable(f"this report is too long for paper: {reason} ({error})") from error
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from math import cos, pi, sin
 from types import SimpleNamespace
+from typing import NotRequired, TypedDict
 
-from app.plain import Json
 from app.presentation import numbers
 from app.reports.charts import Chart, Series, svg
 from app.reports.content import Plot
@@ -136,12 +136,24 @@ STAR = "star"
 DRAWN = frozenset({*KINDS, STAR})
 
 
+class _Cost(TypedDict, total=False):
+    single: float | None  # s of one point
+
+
+class _Level(TypedDict):
+    """The measured errors of one level: a number or a table of numbers for each output."""
+
+    cost: NotRequired[_Cost | None]
+    errors: dict[str, object]
+
+
 def _accuracy(cls: type[Template]) -> Iterator[Plot]:
     """The measured median error of every level over its cost, of the first outputs."""
     measured = accuracy(cls)
     if measured is None:
         return
-    levels = {name: level for name, level in measured.content["levels"].items() if _milliseconds(level)}
+    every: dict[str, _Level] = measured.content["levels"]
+    levels = {name: level for name, level in every.items() if _milliseconds(level)}
     outputs = list(dict.fromkeys(output for level in levels.values() for output in level["errors"]))[:SHOWN]
     series = [
         Series(output.replace("_", " "), [x for x, _ in points], [y for _, y in points], marked=True)
@@ -153,18 +165,18 @@ def _accuracy(cls: type[Template]) -> Iterator[Plot]:
         yield Plot(title, svg(Chart("time of one point [ms]", "relative error", series, logarithmic=True)))
 
 
-def _points(levels: Mapping[str, Json], output: str) -> Iterator[tuple[float, float]]:
+def _points(levels: Mapping[str, _Level], output: str) -> Iterator[tuple[float, float]]:
     for level in levels.values():
         errors = sorted(error for error in _flat(level["errors"].get(output)) if error > 0)
         if errors:
             yield _milliseconds(level), errors[len(errors) // 2]
 
 
-def _milliseconds(level: Json) -> float:
-    return 1000 * float((level.get("cost") or {}).get("single") or 0.0)
+def _milliseconds(level: _Level) -> float:
+    return 1000 * ((level.get("cost") or {}).get("single") or 0.0)
 
 
-def _flat(cells: Json) -> Iterator[float]:
+def _flat(cells: object) -> Iterator[float]:
     if isinstance(cells, list):
         for cell in cells:
             yield from _flat(cell)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import TypeVar
+from typing import NotRequired, TypedDict, TypeVar
 
 from app.calculations.rendering import identity
 from app.catalogue.catalogues import Catalogues
 from app.catalogue.sheets import ReleasedSheet
 from app.designs.worksheet import checked
-from app.plain import Json, JsonObject, Raw
+from app.plain import Raw
 from app.presentation import numbers
 from app.reports.cells import Cell, cell, flat, in_si, typed
 from app.reports.content import Formula, Identity, Line, Rule, Step, Warned
@@ -40,7 +40,14 @@ Class = type[Template] | None
 """The class of a version; None if its file was taken away."""
 
 
-def step_of(name: str, step: PreviewedStep, document: JsonObject, catalogues: Catalogues) -> Step:
+class StepAsTyped(TypedDict):
+    """The part of a step's document that a report shows."""
+
+    inputs: Mapping[str, Raw]
+    tolerance: NotRequired[float | None]
+
+
+def step_of(name: str, step: PreviewedStep, document: StepAsTyped, catalogues: Catalogues) -> Step:
     """One step, from the worksheet of a revision and from its `document`, which is the step as typed."""
     calculated_by, catalogue = step.template, catalogues.templates
     review = review_of(catalogues.snapshot.sheets.released.get((calculated_by.id, calculated_by.version)))
@@ -119,7 +126,7 @@ def _about_the_case(detail: str, checks: Iterable[Check]) -> str:
     return detail
 
 
-def _level(level: Json, tolerance: float | None) -> str:
+def _level(level: object, tolerance: float | None) -> str:
     wanted = f", chosen for a tolerance of {numbers.percent(tolerance)}" if tolerance else ""
     if level is None:
         return ""
@@ -178,7 +185,7 @@ def _result(name: str, step: PreviewedStep, cls: Class) -> Line:
     return Line(words_of(name, cls), symbol_of(name, cls), cell(output), error=error)
 
 
-def _error(error: Json, *, is_curve: bool) -> str:
+def _error(error: object, *, is_curve: bool) -> str:
     measured = [e for e in flat(error) if isinstance(e, (int, float))]
     if not measured:
         return ""

@@ -13,9 +13,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from itertools import chain, count, zip_longest
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
-from app.plain import Json, Raw
+from app.plain import Raw
 from app.presentation.spreadsheets import Value, harmless, put, without_illegal
 from app.presentation.typed import text_of
 from app.schemas.analyses import AnalysisOutput
@@ -44,10 +44,10 @@ class Row:
     block: str
     kind: str  # parameter, input, output, dimension, analysis
     name: str
-    value: Json
+    value: object
     unit: str
     origin: str
-    remark: Json  # a reason, or reasons alongside an array
+    remark: object  # a reason, or reasons alongside an array
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ def _of_model(block: str, model: RevisionModel) -> Iterator[Row]:
             yield _quantity(block, "analysis", f"{kind}.{name}", output, "finite elements")
 
 
-def _read(raw: Raw) -> tuple[Json, str]:
+def _read(raw: Raw) -> tuple[object, str]:
     """A parameter as typed: its number and unit, or its text if it is a relation or a list with one."""
     try:
         typed = read_any(raw) if not is_relation(raw) else None
@@ -121,10 +121,10 @@ def write_csv(table: Table) -> bytes:
     return stream.getvalue().encode()
 
 
-def _each(value: Json, remark: Json, index: str = "") -> Iterator[tuple[str, Value, str]]:
+def _each(value: object, remark: object, index: str = "") -> Iterator[tuple[str, Value, str]]:
     """Every single value of an array, with its index: `3` or `3 1`, counted from 1."""
     if not isinstance(value, list):
-        yield index, value, "" if remark is None else str(remark)
+        yield index, cast(Value, value), "" if remark is None else str(remark)
         return
     remarks = remark if isinstance(remark, list) else [remark] * len(value)
     for i, (item, why) in enumerate(zip_longest(value, remarks), 1):
@@ -160,13 +160,23 @@ def _single(row: Row) -> tuple[Value, ...]:
     if isinstance(row.value, list):
         remark = f"{len(row.value)} values, in the sheet of {row.block}"
         return row.block, row.kind, row.name, None, None, row.unit, row.origin, remark
-    return row.block, row.kind, row.name, None, row.value, row.unit, row.origin, str(row.remark or "")
+    return (
+        row.block,
+        row.kind,
+        row.name,
+        None,
+        cast(Value, row.value),
+        row.unit,
+        row.origin,
+        str(row.remark or ""),
+    )
 
 
 def _curves(sheet: Worksheet, arrays: Sequence[Row]) -> None:
     """Arrays side by side: name, unit, then the values; of several axes, one column for each place."""
     columns: list[Column] = []
     for row in arrays:
+        assert isinstance(row.value, list), "an array"
         columns += _columns(row.name, row.unit, row.value)
     lines = list(zip_longest(*(values for _, _, values in columns)))
     head = [["name", *(name for name, _, _ in columns)], ["unit", *(unit for _, unit, _ in columns)]]
@@ -174,9 +184,9 @@ def _curves(sheet: Worksheet, arrays: Sequence[Row]) -> None:
     sheet.freeze_panes = "B3"
 
 
-def _columns(name: str, unit: str, value: list[Json]) -> Iterator[Column]:
+def _columns(name: str, unit: str, value: list[object]) -> Iterator[Column]:
     if not any(isinstance(item, list) for item in value):
-        yield name, unit, value
+        yield name, unit, cast(list[Value], value)
         return
     width = max(len(item) for item in value if isinstance(item, list))
     for place in range(width):

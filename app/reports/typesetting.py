@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, NotRequired, TypedDict
 
 import typst
 
-from app.plain import Json, JsonObject
 from app.presentation.bidi import bare_everywhere
 from app.reports.widths import CELL, LINE, fits
 
@@ -28,14 +27,65 @@ Pictures = Mapping[str, Mapping[str, bytes]]  # by model and kind
 
 DOCUMENT = Path(__file__).with_name("report.typ")
 
+# The parts of `app.reports.content.Report` that are read here, as `asdict` gives them: its classes are not
+# imported, for they bring the models of answers into the worker.
 
-def typeset(report: Mapping[str, Json], pictures: Pictures) -> bytes:
+
+class _Row(TypedDict):
+    lead: str
+    numbers: str
+    result: str
+
+
+class _Input(TypedDict):
+    relation: str
+
+
+class _Rule(TypedDict):
+    demand: str
+    numbers: str
+
+
+class _Step(TypedDict):
+    formulas: list[_Row]
+    inputs: list[_Input]
+    ranges: list[_Rule]
+    rules: list[_Rule]
+
+
+class _Solid(TypedDict):
+    name: str
+
+
+class _Model(_Solid):
+    rules: list[_Rule]
+
+
+class _Variants(TypedDict):
+    solids: list[_Solid]
+
+
+class ReportAsData(TypedDict):
+    """A report as plain data."""
+
+    date: str
+    steps: list[_Step]
+    models: list[_Model]
+    variants: NotRequired[_Variants | None]
+
+
+def typeset(report: ReportAsData, pictures: Pictures) -> bytes:
     """A report as PDF; equal reports give equal bytes."""
     steps = [_bounded(step) for step in report["steps"]]
-    models = [{**part, "rules": _rules(part["rules"])} for part in report["models"]]
-    shown = {**report, "steps": steps, "models": _illustrated(models, pictures)}
+    models = [
+        {**part, "rules": _rules(part["rules"]), **_illustrated(part, pictures)} for part in report["models"]
+    ]
+    shown = {**report, "steps": steps, "models": models}
     if variants := report.get("variants"):
-        shown["variants"] = {**variants, "solids": _illustrated(variants["solids"], pictures)}
+        shown["variants"] = {
+            **variants,
+            "solids": [{**solid, **_illustrated(solid, pictures)} for solid in variants["solids"]],
+        }
     data = json.dumps(bare_everywhere(shown), ensure_ascii=True).encode()
     files: Any = {"main": DOCUMENT.read_bytes(), "data.json": data}  # missing in the types of typst
     date = datetime.fromisoformat(report["date"]).replace(microsecond=0)
@@ -44,7 +94,7 @@ def typeset(report: Mapping[str, Json], pictures: Pictures) -> bytes:
     return pdf
 
 
-def _bounded(step: JsonObject) -> JsonObject:
+def _bounded(step: _Step) -> dict[str, object]:
     """A step that says of each formula whether it fits its place for sure, so that it is not measured."""
     return {
         **step,
@@ -58,7 +108,7 @@ def _bounded(step: JsonObject) -> JsonObject:
     }
 
 
-def _rules(rules: Sequence[JsonObject]) -> list[JsonObject]:
+def _rules(rules: Iterable[_Rule]) -> list[dict[str, object]]:
     return [
         {
             **rule,
@@ -69,9 +119,9 @@ def _rules(rules: Sequence[JsonObject]) -> list[JsonObject]:
     ]
 
 
-def _illustrated(parts: Sequence[JsonObject], pictures: Pictures) -> list[JsonObject]:
-    """Models or solids, each with its pictures by its name."""
-    return [{**part, "pictures": _as_svg(pictures.get(part["name"], {}))} for part in parts]
+def _illustrated(part: _Solid, pictures: Pictures) -> dict[str, object]:
+    """The pictures of a model or solid, which stand by its name, as a field of it."""
+    return {"pictures": _as_svg(pictures.get(part["name"], {}))}
 
 
 def _as_svg(files: Mapping[str, bytes]) -> dict[str, str]:

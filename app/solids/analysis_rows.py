@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from typing import cast
 
 from sqlalchemy import Text, select, type_coerce
 from sqlalchemy.orm import Session
 
 from app.identity import usage
-from app.plain import JsonObject
+from app.solids.outputs import Outputs, StoredOutput
 from app.solids.questions import Question, in_order
 from app.storage.errors import NotFound
 from app.storage.identity import now
@@ -16,20 +17,18 @@ from app.storage.tables import AnalysisRow
 from app.storage.upserts import upsert
 from cad.analysis.kinds import STRESSES, SURFACE
 
-Outputs = dict[str, JsonObject]
-
 
 def outputs_of(session: Session, key: str) -> Outputs:
     """What is known to a question about a build, by output."""
     rows = session.scalars(select(AnalysisRow).where(AnalysisRow.key == key))
-    return {row.output: row.found for row in rows}
+    return {row.output: _output(row) for row in rows}
 
 
-def outputs_of_builds(session: Session, builds: Collection[str]) -> dict[str, Outputs]:
+def outputs_of_builds(session: Session, builds: Collection[str]) -> Mapping[str, Outputs]:
     """What is known to any question about some builds, by key of the question and output."""
-    outputs: dict[str, Outputs] = {}
+    outputs: dict[str, dict[str, StoredOutput]] = {}
     for row in session.scalars(select(AnalysisRow).where(AnalysisRow.build_key.in_(builds))):
-        outputs.setdefault(row.key, {})[row.output] = row.found
+        outputs.setdefault(row.key, {})[row.output] = _output(row)
     return outputs
 
 
@@ -41,7 +40,7 @@ def stresses(session: Session, build: str, question: Question) -> Outputs:
     alike = question.whatever_level()
     earlier = [(Question(**row.asked), row) for row in rows]
     return {
-        row.output: row.found
+        row.output: _output(row)
         for other, row in earlier
         if other.whatever_level() == alike
         and other.key(build) == row.key  # computed by this program's recipe
@@ -80,11 +79,15 @@ def of_build(session: Session, build: str) -> list[tuple[Question, Outputs]]:
 def _together(rows: list[AnalysisRow]) -> tuple[Question, Outputs]:
     """A question from the rows of its answers."""
     question = Question(**rows[0].asked)
-    outputs = {row.output: row.found for row in rows}
+    outputs = {row.output: _output(row) for row in rows}
     return question, {name: outputs[name] for name in in_order(question.kind, outputs)}
 
 
-def add(session: Session, build: str, question: Question, outputs: Mapping[str, JsonObject]) -> None:
+def _output(row: AnalysisRow) -> StoredOutput:
+    return cast(StoredOutput, row.found)
+
+
+def add(session: Session, build: str, question: Question, outputs: Mapping[str, StoredOutput]) -> None:
     """Record outputs; the same computed twice is one."""
     key = question.key(build)
     for name, output in outputs.items():
@@ -92,5 +95,5 @@ def add(session: Session, build: str, question: Question, outputs: Mapping[str, 
             key=key, output=name, build_key=build, asked=question.kept(), found=output, created=now()
         )
         if "size" in output and session.get(AnalysisRow, (key, name)) is None:
-            usage.note_bytes(session, int(output["size"]))
+            usage.note_bytes(session, output["size"])
         upsert(session, row)

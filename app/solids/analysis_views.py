@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from app.plain import Json
 from app.schemas.analyses import Analysis, AnalysisOutput, ModelAnalysis
 from app.schemas.answers import Version
+from app.solids.outputs import StoredOutput
 from app.solids.questions import Question, warnings
 from cad.analysis.kinds import SURFACE
 
 
-def shown(
-    model: Version, build: str, question: Question, outputs: Mapping[str, Mapping[str, Json]]
-) -> Analysis:
+def shown(model: Version, build: str, question: Question, outputs: Mapping[str, StoredOutput]) -> Analysis:
     """An analysis on its own. Outputs that were computed together have one mesh and one time."""
     meshes = [output["mesh"] for output in outputs.values()]
     levels = (output["level"] for output in outputs.values() if output["level"])
@@ -28,17 +26,17 @@ def shown(
     return Analysis.model_validate(fields)
 
 
-def in_design(build: str, question: Question, outputs: Mapping[str, Mapping[str, Json]]) -> ModelAnalysis:
+def in_design(build: str, question: Question, outputs: Mapping[str, StoredOutput]) -> ModelAnalysis:
     """An analysis in a revision, without times: equal revisions are equal."""
     return ModelAnalysis.model_validate(_fields(build, question, outputs))
 
 
-def output(stored: Mapping[str, Json]) -> AnalysisOutput:
+def output(stored: StoredOutput) -> AnalysisOutput:
     """One output of an analysis, without its time."""
     return AnalysisOutput.model_validate(_timeless(stored))
 
 
-def _fields(build: str, question: Question, outputs: Mapping[str, Mapping[str, Json]]) -> dict[str, object]:
+def _fields(build: str, question: Question, outputs: Mapping[str, StoredOutput]) -> dict[str, object]:
     key = question.key(build)
     return {
         "id": key,
@@ -48,10 +46,10 @@ def _fields(build: str, question: Question, outputs: Mapping[str, Mapping[str, J
     }
 
 
-def _timeless(output: Mapping[str, Json]) -> dict[str, object]:
+def _timeless(output: StoredOutput) -> dict[str, object]:
     return {name: part for name, part in output.items() if name != "seconds"}
 
 
-def _linked(key: str, name: str, output: Mapping[str, Json]) -> dict[str, object]:
+def _linked(key: str, name: str, output: Mapping[str, object]) -> dict[str, object]:
     """An output; one that is a file says where it is."""
     return {"url": f"/api/v1/analyses/{key}/{name}", **output} if name == SURFACE else {**output}

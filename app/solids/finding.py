@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
+from typing import cast
 
-from app.plain import JsonObject
 from app.solids import analysis_rows as repository
 from app.solids import rows
+from app.solids.outputs import Computed, Outputs, StoredOutput
 from app.solids.questions import Question
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
@@ -58,7 +60,7 @@ class Analysing:
 
     def _computed(
         self, shape: CadModel, question: Question, unknown: tuple[str, ...], step: str, context: Runner
-    ) -> dict[str, JsonObject]:
+    ) -> Computed:
         """Outputs from the file of the build, or from those of its throws, which are drawn for it."""
         if question.kind == BORE_COMPLIANCE:
             bytes_, place = self.store.read(step), bore_of(shape)
@@ -77,15 +79,16 @@ class Analysing:
             bytes_ = self.store.read(step)
         return context.run(analyse_in_worker, bytes_, shaft, throw, question, unknown, limits=self.limits)
 
-    def _stored(self, output: JsonObject) -> JsonObject:
+    def _stored(self, output: Mapping[str, object]) -> StoredOutput:
         """An output as its row holds it: of one that is a file, what the store calls it."""
-        if FILE not in output:
-            return output
+        file = output.get(FILE)
+        if not isinstance(file, bytes):
+            return cast(StoredOutput, output)
         rest = {name: part for name, part in output.items() if name != FILE}
-        return {"sha256": self.store.put(output[FILE]), "size": len(output[FILE]), **rest}
+        return cast(StoredOutput, {"sha256": self.store.put(file), "size": len(file), **rest})
 
 
-def is_stored(outputs: repository.Outputs, output: str, store: Artifacts) -> bool:
+def is_stored(outputs: Outputs, output: str, store: Artifacts) -> bool:
     """Return whether an output is stored, and its file, if it is one, is good."""
     return output in outputs and (output != SURFACE or store.exists(outputs[output]["sha256"]))
 
@@ -139,7 +142,7 @@ def throw_of(shape: CadModel, question: Question) -> Crank | None:
 
 def analyse_in_worker(
     step: bytes, shaft: Shaft, crank: Crank | None, question: Question, outputs: tuple[str, ...]
-) -> dict[str, JsonObject]:
+) -> Computed:
     """`cad.analysis.analyse.analyse` with progress reported to the job; runs in the worker's process.
 
     Of a throw's tables all are answered, whichever are asked for: they cost the same together.
@@ -161,7 +164,7 @@ def analyse_in_worker(
         raise AnalysisError("solver", detail) from error
 
 
-def analyse_chain_in_worker(apart: ThrowsApart, question: Question) -> dict[str, JsonObject]:
+def analyse_chain_in_worker(apart: ThrowsApart, question: Question) -> Computed:
     """`cad.analysis.chain_answers.chain_answers` with progress reported to the job; in the worker's process.
 
     All outputs are answered, whichever are asked for: they cost the same together.
@@ -177,7 +180,7 @@ def analyse_chain_in_worker(apart: ThrowsApart, question: Question) -> dict[str,
         raise AnalysisError("solver", detail) from error
 
 
-def analyse_bore_in_worker(step: bytes, place: BorePlace, question: Question) -> dict[str, JsonObject]:
+def analyse_bore_in_worker(step: bytes, place: BorePlace, question: Question) -> Computed:
     """`cad.analysis.bore_tables.bore_tables` with progress reported to the job; in the worker's process."""
     from cad.analysis.bore_tables import bore_tables
 
@@ -190,9 +193,12 @@ def analyse_bore_in_worker(step: bytes, place: BorePlace, question: Question) ->
         raise AnalysisError("solver", detail) from error
 
 
-def _packed(output: JsonObject) -> JsonObject:
-    """A surface as the bytes of its JSON; how many triangles it has stands beside it."""
+def _packed(output: Mapping[str, object]) -> Mapping[str, object]:
+    """A surface as the bytes of its JSON, with the number of its triangles."""
+    from cad.analysis.surface import Surface
+
     surface = output["value"]
+    assert isinstance(surface, Surface), "the value of a surface"
     rest = {name: part for name, part in output.items() if name != "value"}
     written = json.dumps(surface.as_json(), separators=(",", ":"), allow_nan=False)
     return {FILE: written.encode(), "triangles": len(surface.triangles), **rest}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from app.plain import Json, JsonObject
+from app.plain import JsonObject
 from app.schemas.answers import Quantity, Triple, Values
 from app.schemas.solids import BoundingBox, Clearance, Inertia, Measurements
 from cad.inspect import MEASURES
@@ -28,7 +28,7 @@ def clearance(one: Between) -> Clearance:
 
 def measurements(
     measures: Mapping[str, float],
-    dimensions: Mapping[str, Json],
+    dimensions: Mapping[str, Mapping[str, object]],
     materials: Mapping[str, str] | None = None,
     trust: str | None = None,
     clearances: Sequence[Mapping[str, object]] = (),
@@ -57,7 +57,7 @@ def measurements(
     )
 
 
-def _dimension(size: Json) -> Quantity | Values:
+def _dimension(size: Mapping[str, object]) -> Quantity | Values:
     """One number, or the items of a list."""
     is_list = isinstance(size["value"], list)
     return Values.model_validate(size) if is_list else Quantity.model_validate(size)

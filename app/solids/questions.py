@@ -14,8 +14,9 @@ from importlib.metadata import version
 
 from pydantic import ConfigDict, Field
 
-from app.plain import Json, JsonObject, Raw
+from app.plain import JsonObject, Raw
 from app.schemas.bounded import Bounded
+from app.solids.outputs import Outputs, Refinement, StoredOutput
 from cad.analysis.kinds import (
     BORE_COMPLIANCE,
     BOUNDARIES,
@@ -91,11 +92,11 @@ class Question:
         """The same of stress, whose mesh is refined until it settles; under 1 N·m."""
         return replace(self, level=None, tolerance=None, load=1.0)
 
-    def kept(self) -> JsonObject:
+    def kept(self) -> dict[str, object]:
         """The question as it is kept with its answers, without the load."""
         return {name: value for name, value in asdict(self).items() if name != "load"}
 
-    def shown(self) -> JsonObject:
+    def shown(self) -> dict[str, object]:
         """The question as it is shown."""
         return {**asdict(self), "load": {"value": self.load, "unit": "N*m"}}
 
@@ -164,18 +165,18 @@ def load_faults(raw: Raw) -> list[Fault]:
     return [Fault("load", "out_of_range", detail)]
 
 
-def under_load(asked: Question, outputs: Mapping[str, Mapping[str, Json]]) -> dict[str, JsonObject]:
-    """Outputs computed under 1 N·m, under the load of the question: stress is proportional to it."""
+def under_load(asked: Question, outputs: Mapping[str, StoredOutput]) -> Outputs:
+    """Outputs under the load of the question from those under 1 N·m: stress is proportional to the load."""
     return {
-        name: _times(asked.load, output) if name in STRESSES else {**output}
-        for name, output in outputs.items()
+        name: _times(asked.load, output) if name in STRESSES else output for name, output in outputs.items()
     }
 
 
-def _times(load: float, output: Mapping[str, Json]) -> JsonObject:
-    value = None if output["value"] is None else output["value"] * load
-    steps = [{**step, "value": step["value"] * load} for step in output["convergence"]]
-    return {**output, "value": value, "convergence": steps}
+def _times(load: float, stress: StoredOutput) -> StoredOutput:
+    value = stress["value"]
+    scaled = value * load if isinstance(value, float | int) else None
+    steps: list[Refinement] = [{**step, "value": step["value"] * load} for step in stress["convergence"]]
+    return {**stress, "value": scaled, "convergence": steps}
 
 
 def offered(kind: str) -> tuple[str, ...]:
@@ -221,7 +222,7 @@ def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
     return Fault("model", "no_throw", f"{UNIT_LOADS} is of a throw: {detail}")
 
 
-def what_can_be_asked(cls: type[CadModel]) -> JsonObject:
+def what_can_be_asked(cls: type[CadModel]) -> dict[str, object]:
     """The kinds of analyses of a model, each with its outputs and their units."""
     return {
         kind: {
@@ -237,12 +238,13 @@ def what_can_be_asked(cls: type[CadModel]) -> JsonObject:
     }
 
 
-def warnings(asked: Question, outputs: Mapping[str, Mapping[str, Json]]) -> list[dict[str, str]]:
+def warnings(asked: Question, outputs: Mapping[str, StoredOutput]) -> list[dict[str, str]]:
     """The outputs whose error may be larger than was wanted."""
+    wanted = asked.tolerance
     return [
-        {"code": "tolerance_unmet", "name": name, "detail": _unmet(output["error"], asked.tolerance)}
+        {"code": "tolerance_unmet", "name": name, "detail": _unmet(error, wanted)}
         for name, output in outputs.items()
-        if asked.tolerance and output["error"] is not None and output["error"] > asked.tolerance
+        if wanted and (error := output["error"]) is not None and error > wanted
     ]
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.identity import usage
 from app.identity.acting import ACTING, BUILT_IN
-from app.plain import Json, JsonObject
+from app.plain import JsonObject
 from app.storage.clock import operated
 from app.storage.identity import now
 from app.storage.tables import (
@@ -87,7 +87,7 @@ def add_artifact(session: Session, key: str, kind: str, sha256: str, size: int) 
     upsert(session, ArtifactRow(build_key=key, kind=kind, sha256=sha256, size=size, created=now()))
 
 
-def users_of(session: Session, key: str) -> list[Mapping[str, Json]]:
+def users_of(session: Session, key: str) -> list[dict[str, object]]:
     """The revisions that use a build, oldest first, and whether each is its design's newest.
 
     A revision stands there once for its own models, and once for each of its variants.
@@ -115,7 +115,7 @@ def is_signed(session: Session, key: str) -> bool:
     return session.scalar(signed.limit(1)) is not None
 
 
-def _use(design: str, number: int, model: str, head: int) -> Mapping[str, Json]:
+def _use(design: str, number: int, model: str, head: int) -> dict[str, object]:
     """A use of a build; a dot in the name of the model stands behind that of a variant."""
     variant = variant_of(model)
     more = {} if variant is None else {"variant": variant}

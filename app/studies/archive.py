@@ -21,20 +21,22 @@ _DATE = (1980, 1, 1, 0, 0, 0)  # the first that a ZIP file can name
 _ABOUT = "about"
 
 
-def packed(arrays: Mapping[str, AnyArray], about: JsonObject | None = None) -> Pieces:
+def packed(arrays: Mapping[str, AnyArray], about: Mapping[str, object] | None = None) -> Pieces:
     """The bytes of an archive of arrays, and a JSON object beside them; equal contents, equal bytes."""
     stream = io.BytesIO()
     write(stream, arrays, about)
     return Pieces.of(stream.getvalue())
 
 
-def write(stream: IO[bytes], arrays: Mapping[str, AnyArray], about: JsonObject | None = None) -> None:
+def write(
+    stream: IO[bytes], arrays: Mapping[str, AnyArray], about: Mapping[str, object] | None = None
+) -> None:
     """Write such an archive into a file."""
     write_each(stream, ((name, arrays[name]) for name in sorted(arrays)), about)
 
 
 def write_each(
-    stream: IO[bytes], arrays: Iterable[tuple[str, AnyArray]], about: JsonObject | None = None
+    stream: IO[bytes], arrays: Iterable[tuple[str, AnyArray]], about: Mapping[str, object] | None = None
 ) -> None:
     """Write such an archive, one array after another, so that not all must be in memory."""
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED) as archive:

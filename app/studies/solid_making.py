@@ -153,6 +153,7 @@ class StudySolids:
                 name, value = f"{kind}.{output}", stored[output]["value"]
                 if value is None:
                     raise AnalysisError("no_value", f"{name} has no value: {stored[output]['reason']}")
+                assert isinstance(value, int | float), "a study reads single values"
                 scale = unit(measured_unit(Reference.parse(f"{wanting.model}.{name}")))
                 values[name] = float(scale.to_si(value))
         return values

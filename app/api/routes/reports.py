@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import chain
 from typing import Annotated
 
@@ -118,7 +118,7 @@ class ReportRequest:
             body: str | bytes = await run_in_threadpool(page, report)
         else:
             pictures = await run_in_threadpool(self.reports.pictures, report)
-            body = await run_in_threadpool(self.press.print, asdict(report), pictures)
+            body = await run_in_threadpool(self.press.print, report, pictures)
         return Response(body, 202 if job else 200, headers, media_type=REPORTS[kind])
 
 
