@@ -83,12 +83,12 @@ def test_results_of_before_are_marked_until_the_input_is_possible_again(watched,
         value = page.locator("[data-output] td.value").first
         page.get_by_label("Radial load").fill("26 mm")
         expect(page.locator("main")).to_have_class("outdated")
-        expect(page.locator("[data-state]")).to_contain_text("those of before")
+        expect(page.locator("[data-state]")).to_contain_text("the last valid input")
         expect(value).to_have_css("color", "rgb(81, 96, 111)")
         assert Axe().run(page, options={"runOnly": ["color-contrast"]}).response["violations"] == []
         page.get_by_label("Radial load").fill("26 kN")
         expect(page.locator("main")).not_to_have_class("outdated")
-        expect(page.locator("[data-state]")).not_to_contain_text("those of before")
+        expect(page.locator("[data-state]")).not_to_contain_text("the last valid input")
         expect(value).to_have_css("color", "rgb(27, 39, 51)")
 
 

@@ -10,7 +10,7 @@ export async function calculated(job, signal, progress = document.querySelector(
   await follow(job, progress, "Calculating …");
   signal?.removeEventListener("abort", stop);
   removeEventListener("pagehide", stop);
-  if (signal?.aborted) throw new DOMException("something else is wanted now", "AbortError");
+  if (signal?.aborted) throw new DOMException("a newer request replaced it", "AbortError");
   progress.hidden = true;
   return call("GET", job.replace("/jobs/", "/evaluations/"));
 }

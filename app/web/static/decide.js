@@ -6,7 +6,7 @@ import { showVerdict } from "./verdict.js";
 
 const STOPPED = {
   no_finer_level: "no level states a smaller error",
-  budget: "the time allowed was spent",
+  budget: "the time allowed is used up",
   pending: "a level is still being calculated: press again",
 };
 

@@ -83,7 +83,7 @@ export function markWaiting(step, isWaiting) {
   for (const part of parts) part.classList.toggle("outdated", isWaiting);
 }
 
-export const OUTDATED = "the results shown are those of before";
+export const OUTDATED = "the results shown belong to the last valid input";
 
 // Messages beside the fields of a form; those of no field are returned.
 export function showFaults(form, faults) {

@@ -8,7 +8,7 @@ export class SheetNames {
     this.names = [];
   }
 
-  // The names that the service read; those of before where it could read none.
+  // The names that the service read; the previous ones where it could read none.
   update(names) {
     if (names.length) this.names = names;
   }

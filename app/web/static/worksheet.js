@@ -28,12 +28,12 @@ const checking = live(
     return { sent, checked: payload };
   },
   ({ sent, checked }) => sent === area.value && show(checked), // else a newer one is about to be asked for
-  (error) => (find("[data-sheet-faults]").textContent = error instanceof Refused ? error.message : "The service does not answer; the sheet is as it was."),
+  (error) => (find("[data-sheet-faults]").textContent = error instanceof Refused ? error.message : "The service does not answer; the sheet is unchanged."),
   PAUSE,
 );
 
 // What the service says of a text. With faults it shows the lines that do without the faulty ones; others that are
-// unchanged stay, with values of before.
+// unchanged stay, with their previous values.
 function show(checked, texts = text.texts) {
   const isSound = checked.faults.length === 0;
   if (isSound) sound = { ...checked, texts };
