@@ -78,9 +78,9 @@ NETWORK = (
     "app.studies.searching",
     "app.studies.sensitivities",
 )
-"""What processes have loaded that calculate rows of designs."""
+"""Modules loaded by processes that calculate rows of designs."""
 SHEETS = ("app.worksheets.checking",)
-"""What all calculation processes have loaded to read worksheets."""
+"""Modules loaded by all calculation processes, to read worksheets."""
 FIGURES = Figures(metrics.bucket_asked, metrics.copy_looked_for)
 
 

@@ -156,7 +156,7 @@ def _state(key: ApiKeyRow) -> str:
 
 
 def _moment(span: str | None) -> datetime | None:
-    """When a span such as `90d` from now has passed."""
+    """The moment when a span such as `90d` from now has passed."""
     if span is None:
         return None
     if (match := _SPAN.fullmatch(span)) is None:

@@ -258,7 +258,7 @@ def rounded(table: Array) -> list[list[float | None]]:
 
 
 def write(cls: type, content: dict[str, Any]) -> None:
-    """One line a row of cells, so that differences can be read."""
+    """One line per row of cells, so that differences can be read."""
     path = FOLDER / f"{cls.id}_v{cls.version}.accuracy.json"
     path.write_text(json.dumps(content, ensure_ascii=False, separators=(",", ":")) + "\n", encoding="utf-8")
     print(path, path.stat().st_size // 1000, "kB")

@@ -115,7 +115,7 @@ def given(matrix: Array) -> dict[str, Any]:
 
 
 def asked(inputs: Inputs, matrix: Array) -> tuple[dict[str, float] | None, float]:
-    """What level elastic answers, dimensionless, or None if it refuses, and its processor seconds."""
+    """The dimensionless answer of level elastic, or None if it refuses, and its processor seconds."""
     raw, names = {**ElasticFilm.example, **inputs, **given(matrix)}, [*NAMES.values(), "mesh_error"]
     begin = process_time()
     try:
@@ -178,7 +178,7 @@ def begun(So: float, ratio: float, softness: BoreSoftness, to_load: float) -> Fi
 
 
 def errors(values: dict[str, float], truth: dict[str, float]) -> dict[str, float]:
-    """Of level elastic: relative, of the attitude in degrees."""
+    """Errors of level elastic: relative, of the attitude in degrees."""
     wrong = {name: values[name] / truth[name] - 1 for name in NAMES if name != "attitude"}
     off = values["attitude"] - np.degrees(truth["attitude"])
     wrong["attitude"] = float((off + 180) % 360 - 180)

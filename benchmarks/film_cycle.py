@@ -39,7 +39,7 @@ CASES = 1000
 
 
 def quantity(value: Any, unit: str) -> dict[str, Any]:
-    """As a user types it."""
+    """The value as a user types it."""
     return {"value": np.asarray(value, float).tolist(), "unit": unit}
 
 

@@ -125,7 +125,7 @@ def unknown() -> Table:
 
 
 def coverage(stated_tables: dict[str, dict[str, dict[str, Table]]], lines: list[Line]) -> dict[str, Any]:
-    """Of the duties of another seed, in how many each stated bound holds, by kind and level."""
+    """In how many duties of another seed each stated bound holds, and of how many, by kind and level."""
     held: dict[str, Any] = {}
     for kind, levels in stated_tables.items():
         for level, outputs in levels.items():

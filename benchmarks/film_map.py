@@ -2,7 +2,7 @@
 
 python -m benchmarks.film_map build      about 10 minutes on one core
 python -m benchmarks.film_map measure    about 10 minutes: fresh, finer solutions at random places
-python -m benchmarks.film_map report     the errors found and the cost a point
+python -m benchmarks.film_map report     the errors and the cost per point
 """
 
 import sys
@@ -117,7 +117,7 @@ def keep_error() -> None:
 
 
 def report() -> None:
-    """Print the errors found inside and over the whole range, and the cost a point."""
+    """Print the errors inside and over the whole range, and the cost per point."""
     x, y, errors_there = errors()
     eps, ratio = np.tanh(x), np.exp(y)
     with np.load(CHECKS) as checks:

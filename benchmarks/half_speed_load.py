@@ -78,7 +78,7 @@ def on_mesh(duty: Duty, drawn_duty: RandomDuty, meshing: Meshing) -> tuple[list[
 
 
 def described(own: RandomDuty, duty: Duty) -> str:
-    """What the bearing has to do."""
+    """The duty of the bearing."""
     x, y = duty.seen(duty.begin + 4 * np.pi * np.arange(720) / 720)[0].T
     size, still = np.hypot(x, y), np.hypot(x.mean(), y.mean())
     return (

@@ -2,7 +2,7 @@
 
 python -m benchmarks.mobility_map build      about 6 minutes on one core; goes on where it was stopped
 python -m benchmarks.mobility_map measure    about 4 minutes: fresh, finer solutions at random places
-python -m benchmarks.mobility_map report     the errors found and the cost a point
+python -m benchmarks.mobility_map report     the errors and the cost per point
 
 Solutions so far are kept in build/mobility_map, one file a gap.
 """
@@ -163,7 +163,7 @@ def keep_error() -> None:
 
 
 def report() -> None:
-    """Print the errors found inside and over the whole range, and the cost a point."""
+    """Print the errors inside and over the whole range, and the cost per point."""
     places, errors_there = errors()
     xi, eta = np.array([place(x, v) for x, v, _ in places.T]).T
     eps, ratio = np.hypot(xi, eta), np.exp(places[2])

@@ -61,7 +61,7 @@ async def _measure() -> None:
 
 
 async def _ratio(observed: Observed, app: Any) -> float:
-    """Of one turn: with the layers, and with each taken out."""
+    """Times of one turn: with all layers, and without each of them."""
     with_all = await _seconds(observed, app)
     holder: Any = observed.app
     while not isinstance(holder.app, BodyTime):

@@ -15,7 +15,7 @@ from app.team.postgres import Cluster
 
 LOOK = 0.1  # between two looks at the connections [s]
 LOCK, DISK, CORE, SERVER = "a lock of rows", "its log or an inner lock", "a core, or has it", "its server"
-"""What a connection within a transaction may wait for."""
+"""Events for which a connection within a transaction may wait."""
 
 _WAITS = f"""
 SELECT CASE WHEN state LIKE 'idle in transaction%' THEN '{SERVER}'

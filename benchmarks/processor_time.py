@@ -28,7 +28,7 @@ class Cores:
 
     @classmethod
     def now(cls) -> Cores:
-        """That of the present moment."""
+        """The counter now."""
         line = Path("/proc/stat").read_text().partition("\n")[0]
         user, nice, system, idle, waiting, *more = (int(text) * _TICK for text in line.split()[1:8])
         return cls(user + nice + system + sum(more), idle + waiting)

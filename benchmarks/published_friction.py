@@ -22,7 +22,7 @@ PUBLISHED = Path("tests/references/sander_2016_friction_torque.csv")
 BIG_END, SUPPORT = (47.8, 17.2), (54.0, 25.0)
 """Diameter and width [mm]."""
 LOAD = 800.0
-"""Of the big end, for each MPa of specific load [N]."""
+"""Load of the big end for each MPa of specific load [N]."""
 PRODUCT, FACTOR = 0.05, 0.001
 
 

@@ -84,7 +84,7 @@ PAINTED: dict[str, Callable[[Page], None]] = {
     "shell": _with_pressure,
     "throw": _with_stress,
 }
-"""What is done on a page before it is looked at."""
+"""Actions on a page before its picture is taken."""
 
 
 def _seen(page: Page, address: str, painted: Callable[[Page], None] | None) -> bytes:

@@ -67,5 +67,5 @@ BASELINES: dict[str, Callable[[float, Path], cq.Assembly]] = {
 
 
 def volume(assembly: cq.Assembly) -> float:
-    """Of all that is in it [mm³]."""
+    """Volume of all its solids [mm³]."""
     return sum(solid.Volume() for solid in assembly.toCompound().Solids())

@@ -32,7 +32,7 @@ LOADS: dict[Kind, tuple[Measure, float]] = {
     "torsion": (von_mises, sqrt(3) * 16 / (pi * NARROW**3)),
     "bending": (first_principal, 32 / (pi * NARROW**3)),
 }
-"""What is looked at under each load, and its nominal value [MPa] under 1 N·mm."""
+"""The stress examined under each load, and its nominal value [MPa] under 1 N·mm."""
 
 
 def shoulder(

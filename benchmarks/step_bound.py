@@ -42,7 +42,7 @@ class Shares:
     known_usual: float
     """With a `step_bound`, and the same of usual loads."""
     bounded: float
-    """Of those with a bound."""
+    """Duties with a bound."""
     worst: float
     """Largest error over its bound."""
     excess: float

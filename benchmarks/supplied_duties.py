@@ -29,7 +29,7 @@ class RandomDuty:
     ratio: float
     supply: Supply
     kind: str
-    """Of the load: big_end_2, big_end_4, main_2, main_4 or fourier."""
+    """Kind of the load: big_end_2, big_end_4, main_2, main_4 or fourier."""
     fed_by: str
     """One of SUPPLIES."""
 

@@ -130,7 +130,7 @@ def near(duty: RandomDuty) -> Row:
 
 
 def change(kept: Row, other: Row) -> float:
-    """Of the least gap, relative [-]."""
+    """Relative error of the least gap [-]."""
     return float(kept["least_gap"] / other["least_gap"] - 1)
 
 

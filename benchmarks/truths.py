@@ -13,7 +13,7 @@ TRUTHS = {
     OIL_SHEAR: "that film; friction is shear where there is oil, of streamers in the ruptured part",
     PAD: "the converged film of a pad of finite width, p = 0 all around it",
 }
-"""What each name means."""
+"""The meaning of each name."""
 
 FRICTION = ("shear_torque", "friction_torque", "friction_coefficient", "power_loss")
 """Outputs of `oil_film` 2 in which the two conventions of shear differ."""
@@ -29,7 +29,7 @@ RELATIVE_TO: dict[str, float | list[str]] = {
     **dict.fromkeys(("attitude_angle", "maximum_pressure_angle"), np.pi / 2),
     **{name: [n for n in COEFFICIENTS if n.startswith(name[:5])] for name in COEFFICIENTS},
 }
-"""What errors are relative to that are not so to the output itself: a size [SI], or the largest of these."""
+"""References of errors that are not relative to the output itself: a size [SI], or the largest of these."""
 
 
 def truth_of(level: str, output: str) -> str:

@@ -47,7 +47,7 @@ class PlainSave(NamedTuple):
 
 
 def plain_save(scope: Scope, longest: int) -> PlainSave | None:
-    """What a plain request to save a design asks for; None if it is anything else."""
+    """A plain request to save a design, as read; None for any other request."""
     if scope.get("root_path"):
         return None
     if scope["method"] == "POST":

@@ -224,7 +224,7 @@ BEFORE_HTTP = (
     CROWDED,
     Kind("not-http", 400, "Not HTTP", "send HTTP/1.1"),
 )
-"""What `app.api.gate.connections` answers before there is a request."""
+"""Problems that `app.api.gate.connections` answers before there is a request."""
 
 
 SLUGS = {

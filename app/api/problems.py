@@ -164,7 +164,7 @@ def install(app: FastAPI) -> None:
 
 
 _PASSING = (jobs.QueueFull, RowsLost, storage.ArtifactsUnreachable, storage.DatabaseUnavailable)
-"""What a later try may find over; each says when."""
+"""Problems that may be over at a later try; each answer says when to try."""
 
 
 def refusal(error: Exception) -> Response:

@@ -37,4 +37,4 @@ def _fault(name: str, declared: list[str]) -> Fault:
 
 
 KNOWN_NAMES = Depends(refuse_unknown)
-"""Of a route whose parameters of the address are all declared."""
+"""Dependency of a route that declares all its parameters: any other is refused."""

@@ -29,9 +29,9 @@ BODIES: JsonDict = {
         }
     }
 }
-"""What a route that takes the table in JSON takes besides."""
+"""Media types that a route takes beside JSON."""
 ANSWERS: dict[str, object] = {media: {"schema": _FILE} for media in MEDIA.values()}
-"""What a route that answers the table in JSON answers besides."""
+"""Media types that a route answers beside JSON."""
 
 
 class SheetRoute(StrictRoute):

@@ -27,9 +27,9 @@ RETRY_AFTER = 2  # s
 GONE = 410
 
 UNAVAILABLE = refusals(410, 503)
-"""What a route that serves stored files says of its answers."""
+"""Declared answers of a route that serves stored files."""
 UNCHANGED: Responses = {304: {"description": "as it was when the ETag of If-None-Match was sent"}}
-"""What it says besides if its answer has an ETag."""
+"""Further declared answers of a route whose answer has an ETag."""
 
 
 async def lost(

@@ -25,7 +25,7 @@ _ONLY_SIGNED = {"checker", "approver"}
 
 @dataclass(frozen=True)
 class TitleBlock:
-    """What was typed, by parameter; an empty text leaves a field as it is."""
+    """The typed texts by parameter; an empty text leaves a field as it is."""
 
     texts: dict[str, str]
 

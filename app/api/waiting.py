@@ -16,7 +16,7 @@ LONGEST = 60.0  # s
 LATER: Responses = {
     202: {"description": "the work goes on; its job is in the header Location", "model": Accepted}
 }
-"""What a route says of its answers that may become a job."""
+"""Declared answers of a route whose work may become a job."""
 
 
 def later(answer: type[Answer]) -> Responses:

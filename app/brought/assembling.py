@@ -29,7 +29,7 @@ from templates.core.catalogue.loading import is_outside
 from templates.core.errors import UnknownTemplate
 
 LARGEST = 128 * 2**20
-"""Of the STEP files of all fixed parts [bytes]."""
+"""Largest size of the STEP files of all fixed parts together [bytes]."""
 _BEGINNING_OF_TIME = (1980, 1, 1, 0, 0, 0)
 
 

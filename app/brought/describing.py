@@ -30,7 +30,7 @@ class Deadline:
         self._limits, self._end = limits, time.monotonic() + limits.deadline
 
     def left(self) -> float:
-        """What is left of it [s].
+        """The time that is left [s].
 
         Raises
         ------

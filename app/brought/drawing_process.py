@@ -41,7 +41,7 @@ _PIECE = 2**20
 
 
 class About(TypedDict, total=False):
-    """What the process says beside the shapes; what a refusal has, and what a drawing has."""
+    """The answer of the process beside the shapes: the fields of a refusal, and those of a drawing."""
 
     refused: str
     detail: str

@@ -104,13 +104,13 @@ class Programs:
     by_name: dict[Program, Drawing]
 
     def draw(self, shape: BroughtModel, context: Runner) -> Drawn:
-        """What the program of a model draws for its parameters; raises as `Drawing.draw` does."""
+        """The drawing of a model for its parameters; raises as `Drawing.draw` does."""
         cancelled = context.cancelled if isinstance(context, JobContext) else threading.Event()
         values = {} if shape.brought.program == "assembly" else values_of(shape)  # it has words and lists too
         return self.drawn(shape.brought, values, cancelled)
 
     def drawn(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
-        """What a program draws for some values; raises as `Drawing.draw` does."""
+        """The drawing of a program for some values; raises as `Drawing.draw` does."""
         program = self.by_name.get(described.program)
         if program is None:
             raise ProgramMissing("program_missing", f"this service drives no Creo: {SET_CREO}")

@@ -35,7 +35,7 @@ FAILURES = (
     UnreadableModel, UnreadableStep, GeometryError, ModelIdTaken, TemplateError, DeadlineExceeded,
     MemoryExceeded, JobCrashed, ArtifactMissing, ArtifactDamaged,
 )  # fmt: skip
-"""What a file brings about."""
+"""Errors that a file causes."""
 
 
 class ModelImports:

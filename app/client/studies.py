@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from app.client.clients import AsyncClient, Client
 
 Where = Word | Literal["refused"]
-"""Which rows: by their worst verdict, or those without values."""
+"""A choice of rows: by their worst verdict, or those without values."""
 Kind = Literal["csv", "xlsx", "npz"]
 _PAGE = "500"  # rows of a request
 _JOB = f"{BASE}/jobs/"

@@ -37,7 +37,7 @@ class Cell:
 NOTHING = Cell()
 
 Valued = Quantity | Values | Shown | Output | UsedInput | AnalysisOutput
-"""What has a value and a unit."""
+"""Answers that have a value and a unit."""
 
 
 def cell(quantity: Valued, *, whole: bool = False) -> Cell:

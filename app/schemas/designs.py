@@ -146,7 +146,7 @@ class RevisionStep(Answer):
     state: str | None = Field(None, description="`pending` in a preview, for a step that waits")
     pending: bool = Field(False, description="whether it waits; absent if it does not")
     record: Annotated[Record | None, SkipJsonSchema()] = Field(None, exclude=True)
-    """What its formulas are written from; not served, and None in revisions of before there were any."""
+    """The record from which formulas are written; not served, and None in revisions older than records."""
 
 
 class RevisionModel(Answer):

@@ -152,4 +152,4 @@ class Worksheet(Evaluation):
 
 
 AnyCalculation = Solution | Worksheet | Evaluation
-"""What a calculation that went on as a job answers."""
+"""The answer of a calculation that went on as a job."""

@@ -70,7 +70,7 @@ MEANINGS = {
 
 
 Responses = dict[int | str, dict[str, object]]
-"""What a route says of its answers, by status, as FastAPI takes it."""
+"""Declared answers of a route by status, as FastAPI takes them."""
 
 
 class RouteOptions(TypedDict):

@@ -28,7 +28,7 @@ class Inertia(Answer):
 
 
 class Clearance(Answer):
-    """What lies between a fixed part of an assembly and another part."""
+    """Distance and overlap of a fixed part of an assembly and another part."""
 
     parts: list[str] = Field(description="the names of the two")
     distance: Quantity = Field(description="the smallest, in mm; 0 where they touch or overlap")

@@ -7,7 +7,7 @@ CONTROL = r"\x00-\x1f\x7f-\x9f\u2028\u2029"
 """Control characters and ends of lines."""
 
 BLANK = CONTROL + r"\x20\xa0\u1680\u2000-\u200a\u202f\u205f\u3000\ufeff"
-"""What leaves no ink: control characters and every width of space."""
+"""Characters that leave no ink: control characters and every width of space."""
 
 LINE = rf"^[^{BLANK}]([^{CONTROL}]*[^{BLANK}])?$"
 """One line that neither starts nor ends with a space."""

@@ -72,7 +72,7 @@ class Analyses:
             return job
         links = {"analysis": f"/api/v1/analyses/{now}", "job": f"/api/v1/jobs/{job}"}
         detail = (
-            f"the surface of analysis {key} was found by another version of the kernel, the solver or the "
+            f"the surface of analysis {key} was computed by another version of the kernel, the solver or the "
             "recipe. Restore the file from a backup, or take the new analysis"
         )
         raise CannotRebuild("other_recipe", detail, links)

@@ -19,13 +19,13 @@ from cad.analysis.kinds import STRESSES, SURFACE
 
 
 def outputs_of(session: Session, key: str) -> Outputs:
-    """What is known to a question about a build, by output."""
+    """The stored outputs of a question about a build, by output."""
     rows = session.scalars(select(AnalysisRow).where(AnalysisRow.key == key))
     return {row.output: _output(row) for row in rows}
 
 
 def outputs_of_builds(session: Session, builds: Collection[str]) -> Mapping[str, Outputs]:
-    """What is known to any question about some builds, by key of the question and output."""
+    """The stored outputs of all questions about some builds, by key of the question and output."""
     outputs: dict[str, dict[str, StoredOutput]] = {}
     for row in session.scalars(select(AnalysisRow).where(AnalysisRow.build_key.in_(builds))):
         outputs.setdefault(row.key, {})[row.output] = _output(row)
@@ -33,7 +33,7 @@ def outputs_of_builds(session: Session, builds: Collection[str]) -> Mapping[str,
 
 
 def stresses(session: Session, build: str, question: Question) -> Outputs:
-    """What is known of stress in a build, whatever level was asked for: its meshes follow from the stress."""
+    """The stored stresses of a build, whatever level was asked for: their meshes follow from the stress."""
     rows = session.scalars(
         select(AnalysisRow).where(AnalysisRow.build_key == build, AnalysisRow.output.in_(STRESSES))
     )

@@ -20,7 +20,7 @@ def parameters(shape: CadModel) -> JsonObject:
 
 
 def clearance(one: Between) -> Clearance:
-    """What lies between two parts of an assembly."""
+    """Distance and overlap of two parts of an assembly."""
     overlap = {"overlap": Quantity(value=one.overlap, unit="mm**3")} if one.overlap else {}
     distance = Quantity(value=one.distance, unit="mm")
     return Clearance(parts=[one.one, one.other], distance=distance, **overlap)

@@ -33,7 +33,7 @@ from templates.core.errors import TemplateError
 BUILD = "build"
 VALIDATED = "validated.step"
 FAILURES = (TemplateError, GeometryError, DeadlineExceeded, MemoryExceeded, CannotRebuild)
-"""What a model brings about."""
+"""Errors that a model causes."""
 
 
 @dataclass(frozen=True)

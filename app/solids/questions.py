@@ -114,7 +114,7 @@ def load_of(raw: Raw) -> float:
 
 
 def faults(kind: str, options: Options) -> list[Fault]:
-    """What is wrong with the options of a kind beside their types."""
+    """The faults of the options of a kind, apart from their types."""
     if kind in (UNIT_LOADS, BORE_COMPLIANCE):
         return [*_faults_of_tables(kind, options)]
     both = options.level is not None and options.tolerance is not None
@@ -138,7 +138,7 @@ _OF_TABLES = {
         "load": "is under unit pressures",
     },
 }
-"""Of kinds that answer tables, why they do not have an option."""
+"""For each kind that answers tables, why it lacks an option."""
 
 
 def _faults_of_tables(kind: str, options: Options) -> Iterator[Fault]:
@@ -154,7 +154,7 @@ def _faults_of_tables(kind: str, options: Options) -> Iterator[Fault]:
 
 
 def load_faults(raw: Raw) -> list[Fault]:
-    """What is wrong with a load."""
+    """The faults of a load."""
     try:
         load = read(raw, "N*m").si
     except FaultyText as error:

@@ -84,7 +84,7 @@ def _shares_met(run: Run, stored: Stored, worst: AnyArray) -> dict[str, object]:
 def _feasible(
     stored: Stored, numbers: Integers, run: Run, names: list[str], maximised: list[bool]
 ) -> Integers:
-    """Of rows that were calculated again those that count, the best first."""
+    """The rows that count among those calculated again, the best first."""
     objectives = signed(stored.rows([f"{OUTPUT}{name}" for name in names], numbers), maximised)
     worst = stored.worst(run.plan.required)[numbers]
     if len(names) == 1:

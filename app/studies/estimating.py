@@ -32,7 +32,7 @@ class Pace:
     row: float
 
     def seconds(self, rows: int, calls: int = 0) -> float:
-        """So many rows, in so many calls; in as few as possible, if that is not said."""
+        """The time of so many rows in so many calls, by default in as few as possible [s]."""
         return self.row * rows + self.call * (calls or -(-rows // IN_CALL))
 
 

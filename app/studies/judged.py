@@ -12,7 +12,7 @@ from templates.core.judging.comparison import MET
 
 JUDGED = "judged/"
 SIDES = ("value", "limit", "low", "high")
-"""What a search needs of a criterion, kept in arrays `judged/<criterion>/<side>`."""
+"""The values of a criterion that a search needs, in arrays `judged/<criterion>/<side>`."""
 
 
 def judged_of(net: Net, name: str, table: Table) -> dict[str, AnyArray]:

@@ -193,7 +193,7 @@ def _judged(hold: Sequence[str] | None, names: Collection[str]) -> list[str]:
 
 
 def _checked(criteria: Sequence[str], tried: Table, task: Task) -> list[str]:
-    """Of all criteria those that count: not waived, and checked in any row that was tried.
+    """The criteria that count: not waived, and checked in any row that was tried.
 
     Nobody has given the limits of the others, so that no row could meet them.
     """

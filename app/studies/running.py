@@ -60,7 +60,7 @@ FAILURES = (
     ArtifactMissing,
     ArtifactDamaged,
 )
-"""What a study itself brings about, and rows that were lost while it ran."""
+"""Errors that a study itself causes, and rows that were lost while it ran."""
 
 Started = Callable[[int], Calculation]
 """Submits the chunk of a number."""

@@ -46,7 +46,7 @@ from templates.core.errors import Fault, InvalidInputs
 from templates.core.units.units import unit
 
 Lost = Callable[[str], Exception]
-"""What to raise when rows of a study cannot be read."""
+"""Returns the error to raise for a study, by its id, whose rows cannot be read."""
 ENDED: tuple[State, ...] = ("done", "failed", "cancelled")
 
 

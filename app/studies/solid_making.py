@@ -38,7 +38,7 @@ from templates.core.units.units import unit
 FAILURES = (
     TemplateError, GeometryError, AnalysisError, DeadlineExceeded, MemoryExceeded, JobCrashed, CannotRebuild,
 )  # fmt: skip
-"""What a solid itself brings about."""
+"""Errors that a solid itself causes."""
 CODES: dict[type[Exception], str] = {
     DeadlineExceeded: "too_long",
     MemoryExceeded: "too_much_memory",

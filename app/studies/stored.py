@@ -15,7 +15,7 @@ from templates.core.arrays import Array, Integers, Mask
 from templates.core.judging.comparison import MET, NOT_CHECKED
 
 PLACE, OUTPUT, ERROR, VERDICT = "place/", "output/", "error/", "verdict/"
-"""What begins the names of the arrays of a chunk."""
+"""Prefixes of the names of the arrays of a chunk."""
 EXPLORE, CONFIRM = 0, 1
 """Places in the list of levels of a search; those of its trade follow."""
 

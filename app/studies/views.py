@@ -25,7 +25,7 @@ from templates.core.units.units import unit
 MOST_REASONS = 20
 
 Where = Literal["met", "not_met", "undecided", "not_checked", "refused"]
-"""Which rows are listed: by their worst verdict, or those without values."""
+"""A choice of rows: by their worst verdict, or those without values."""
 
 
 def study(session: Session, row: Row) -> Study:

@@ -273,7 +273,7 @@ async def _analyses(
 async def _fields_of_solids(
     api: Api, id: str, measured: Mapping[str, ModelMeasurements]
 ) -> dict[str, list[SolidField]]:
-    """What can be painted on every model; nothing on one without analyses."""
+    """The fields that can be painted on each model; none on a model without analyses."""
     fields: dict[str, list[SolidField]] = {name: [] for name in measured}
     for name, part in measured.items():
         if part.analyses:

@@ -35,15 +35,15 @@ class Names(Protocol):
 
     @property
     def parameters(self) -> Collection[str]:
-        """Of its own parameters."""
+        """Names of the design's own parameters."""
 
     @property
     def steps(self) -> Collection[str]:
-        """Of its steps."""
+        """Names of its steps."""
 
     @property
     def models(self) -> Collection[str]:
-        """Of its models."""
+        """Names of its models."""
 
 
 async def fields(request: Request) -> dict[str, str]:

@@ -96,7 +96,7 @@ def _bearings(mains: int, cylinders: int) -> dict[str, JsonValue]:
 
 
 def _places(between: str, cylinders: Sequence[float], webs: float) -> dict[str, JsonValue]:
-    """Where cylinders, mains and webs stand: a wider bore makes the engine longer.
+    """Positions of cylinders, mains and webs: a wider bore makes the engine longer.
 
     A throw is as long as a bore and what is `between` two bores. Cylinders stand `cylinders` [mm] off the
     middle of their throw, webs `webs` [mm] before and behind it.

@@ -25,7 +25,7 @@ _MASS_ON_PIN = (
 
 @dataclass(frozen=True)
 class Train:
-    """What an engine has of its own."""
+    """The data in which the engines of the gallery differ."""
 
     bank: str  # of cylinder 1 [a relation]
     per_throw: int  # cylinders on each pin
@@ -38,7 +38,7 @@ class Train:
 
 
 def parameters(train: Train) -> dict[str, JsonValue]:
-    """What the two steps have in common: torque of cylinder 1, loads of the throws, twisting moments."""
+    """The parameters that both steps use: torque of cylinder 1, loads of the throws, twisting moments."""
     last = THROWS
     torques = {f"torque_{k}": _torque(train, k) for k in range(1, last)}
     front = " + ".join(torques)
@@ -83,7 +83,7 @@ def steps(train: Train) -> dict[str, JsonValue]:
 
 
 def analyses() -> dict[str, JsonValue]:
-    """What finite elements of the crankshaft answer: the stiffness of each throw, tensors at its fillets.
+    """Results of finite elements on the crankshaft: the stiffness of each throw, tensors at its fillets.
 
     The stiffness between bearings differs from `coarse` to `fine` by less than from formula to formula, so
     the cheap level serves. Stresses of `coarse` are up to a third too low.

@@ -14,7 +14,7 @@ from app.web.rendering import go, show
 from app.web.routes import Text
 
 MISSED = (409, 415, 422, 429, 503)
-"""What the form explains: the user can do something about it."""
+"""Errors that the form explains, because the user can correct them."""
 BINARY = {"Content-Type": "application/octet-stream"}
 _JOB = re.compile(r"[A-Za-z0-9-]{1,64}")
 _VERSION = re.compile(r"/api/v1/models/([a-z0-9_]+)/versions/([0-9]+)")

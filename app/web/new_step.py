@@ -25,7 +25,7 @@ from app.web.rendering import show
 
 _NUMBER = re.compile(r"[0-9]{1,6}")
 FIELDS = ("design_name", "name", "template", "model")
-"""What a form says beside the values of the step."""
+"""Fields of the form beside the values of the step."""
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from app.web.session import keep_signed_in
 from app.web.sign_in import own, sent
 
 COOKIE = "crankwright_begun"
-"""What a sign-in has begun with, for the way back: a page of another site brings it, so it is not Strict."""
+"""The cookie with which a sign-in began. A page of another site leads back to it, so it is not Strict."""
 PLACE = "/sign-in/oidc"
 _MINUTES = 10
 _KEPT = re.compile(r"([\w-]{43})\.([\w-]{43})\.([\w-]{43})\.((?:[0-9a-f]{2}){1,2000})")

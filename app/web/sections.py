@@ -94,7 +94,7 @@ def _section(step: StepBlock, worst: Line | None, is_open: bool, is_only: bool) 
 def _written(
     kept: LRUCache[bytes, Markup], page: str, macro: str, shown: object, *arguments: object
 ) -> Markup:
-    """What a macro writes, or has written before for all that it shows."""
+    """The output of a macro, kept by its name and all that it shows."""
     key = sha256(repr((macro, shown)).encode("utf-8", "surrogatepass")).digest()
     html = kept.get(key)
     if html is None:

@@ -124,7 +124,7 @@ class Row:
 
 
 def rows(checked: SheetCheck) -> list[Row]:
-    """One row a statement, in the order of the text."""
+    """One row per statement, in the order of the text."""
     tests = {test.line: test for test in checked.tests}
     at = {line.line: line for line in checked.lines}
     starts = {number: line.line for line in checked.lines for number in range(line.line, line.last_line + 1)}

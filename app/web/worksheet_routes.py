@@ -23,7 +23,7 @@ forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 
 NOT_NOW, STALE, ILL_NAMED = 409, 412, 422
 MISSED = (403, NOT_NOW, STALE, ILL_NAMED)
-"""What the page of the worksheet explains: the user can do something about it."""
+"""Errors that the page of the worksheet explains, because the user can correct them."""
 
 
 @router.get("/worksheets")

@@ -19,7 +19,7 @@ from types import ModuleType
 from benchmarks.mutation import ROOT
 
 NEAREST = 18
-"""So many test files of a mutated file are run."""
+"""Number of test files that are run for a mutated file."""
 VALUES = "tests/test_values.py"
 """A test about all modules, which it finds by their folders."""
 _NAME_IN_COMMON = 1.5  # imports that one word in common is worth

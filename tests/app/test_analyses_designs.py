@@ -83,7 +83,7 @@ class TestRelation:
         pages = pypdf.PdfReader(io.BytesIO(http.get(f"{url}/report.pdf").content)).pages
         paper = " ".join(" ".join(page.extract_text() for page in pages).split())
         for text in (screen, paper):
-            assert "Found by finite elements on the STEP file" in text
+            assert "Computed by finite elements on the STEP file" in text
             assert "Torsion: stiffness" in text
             assert f"± {100 * stiffness['error']:.2g} %" in text
             assert f"{stiffness['mesh']['elements']} elements of order {stiffness['mesh']['order']}" in text

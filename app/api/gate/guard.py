@@ -39,7 +39,7 @@ HEADERS = (
     (b"cross-origin-opener-policy", b"same-origin"),
     (b"referrer-policy", b"same-origin"),
 )
-"""Of every answer, unless its route says something else."""
+"""Headers of every answer, unless its route sets others."""
 
 LOOKED_AT = {b"host", b"origin", b"upgrade", b"sec-fetch-site", b"sec-fetch-mode", b"sec-fetch-dest"}
 Looked = dict[bytes, list[bytes]]

@@ -19,7 +19,7 @@ _METHODS = {"GET", "POST", "PUT", "PATCH", "DELETE", "HEAD", "OPTIONS"}
 
 
 in_flight: dict[int, tuple[str, str, str, float]] = {}
-"""What is being answered, by the identity of its scope: id, method, path, start."""
+"""Requests in flight, by the identity of their scope: id, method, path, start."""
 
 
 metrics.IN_FLIGHT.set_function(lambda: len(in_flight))

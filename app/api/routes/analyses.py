@@ -1,4 +1,4 @@
-"""`POST /models/{id}/versions/{n}/analyses/{kind}`, what was found by it, and its picture's data."""
+"""`POST /models/{id}/versions/{n}/analyses/{kind}`, its results, and the data of its picture."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ PAINTED: RouteOptions = {
 def list_solid_fields(
     id: Id, number: Number, name: Id, database: TheDatabase, catalogues: TheCatalogues
 ) -> schemas.SolidFieldList:
-    """What can be painted on a model: the use of its fillets by a life, shapes of torsional modes.
+    """The fields that can be painted on a model: the load use of its fillets, shapes of torsional modes.
 
     A `fatigue_life` that takes its tensors from `unit_loads` of the model, and has the output `load_use`,
     gives the first; a `forced_torsion` that takes stiffnesses from its `chain` gives the others.

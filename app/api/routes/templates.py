@@ -82,11 +82,11 @@ def _words(cls: type[Template]) -> Mapping[str, str]:
 
 
 Marks = Mapping[Key, Mapping[str, SheetMark]]
-"""What answers say of templates that are worksheets, by id and version."""
+"""The worksheet's part of an answer, by id and version."""
 
 
 def marks(catalogues: Catalogues) -> Marks:
-    """What answers say of templates that are worksheets."""
+    """The worksheet's part of the answer about each template."""
     return {
         key: {
             "worksheet": SheetMark(

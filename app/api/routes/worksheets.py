@@ -35,7 +35,7 @@ Number = Annotated[int, Path(ge=1, le=10**6)]
 IfMatch = Annotated[str | None, Header(description="the ETag of the worksheet that was read")]
 OfVersion = Annotated[int | None, Query(ge=1, le=10**6, description="the newest, if not given")]
 STEP = refusals(404, 409, 412, 429)
-"""What a step of the life of a worksheet may be refused for."""
+"""Problems for which a step in the life of a worksheet may be refused."""
 PATCH: JsonDict = {
     "requestBody": {
         "content": {"application/merge-patch+json": {"schema": {"$ref": "#/components/schemas/SheetPatch"}}}

@@ -11,7 +11,7 @@ from cad.brought import Description, Parameter
 from cad.errors import UnreadableModel
 
 LONGEST = 2**18
-"""Of a manifest [bytes]."""
+"""Largest size of a manifest [bytes]."""
 _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 _LINE = r"^[^\x00-\x1f\x7f]*$"
 _PARAMETER = r"^[A-Za-z][A-Za-z0-9_-]*$"  # others CREOSON refuses

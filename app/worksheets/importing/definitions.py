@@ -80,7 +80,7 @@ class Definitions(ListDefinitions):
             except (Untranslatable, Unnamed):
                 pass
             if not outcome.lines:
-                what = f"function {look(function.key)} whose units no call tells"
+                what = f"function {look(function.key)} whose units no call states"
                 outcome.refuse(
                     one_line(what), f"write it with its units: {legal(function.key)}(x [mm]) [1] = …"
                 )
