@@ -19,8 +19,9 @@ from app.identity.audit import record
 from app.plain import JsonObject
 from app.storage.errors import NotFound
 from app.storage.identity import new_id, now
-from app.storage.statements import Statement
+from app.storage.statements import Statement, Values
 from app.storage.tables import Base, BuildRow, DesignRow, RevisionModelRow, RevisionRow, canonical_json
+from app.storage.upserts import upsert_values
 
 _DESIGNS = Base.metadata.tables[DesignRow.__tablename__]
 _REVISIONS = Base.metadata.tables[RevisionRow.__tablename__]
@@ -56,6 +57,26 @@ _DOCUMENT = Statement(
     ),
     "of",
     "at",
+)
+_MODELS = Base.metadata.tables[RevisionModelRow.__tablename__]
+_MODEL = Statement(
+    insert(_MODELS),
+    "design_id",
+    "number",
+    "name",
+    "model",
+    "model_version",
+    "parameters",
+    "relations",
+    "build_key",
+)
+_ATTACHED = Statement(
+    update(_REVISIONS)
+    .where(_REVISIONS.c.design_id == bindparam("of"), _REVISIONS.c.number == bindparam("at"))
+    .values(results=bindparam("found"), state="current", problem=None),
+    "of",
+    "at",
+    "found",
 )
 _LEAN = defer(RevisionRow.results)
 _LEAN_REVISION = (
@@ -243,30 +264,28 @@ def append(session: Session, id: str, base: int, written: Written, at: str | Non
     digest = hashlib.sha256(canonical_json(written.document).encode()).hexdigest()
     record(session, written.action, f"designs/{id}/revisions/{base + 1}", digest, at)
     if written.models:
-        session.add_all(_model_row(id, base + 1, state) for state in written.models)
-        session.flush()
+        _MODEL.run_many(session, [_model_row(id, base + 1, state) for state in written.models])
     return base + 1
 
 
-def _model_row(id: str, number: int, state: ModelState) -> RevisionModelRow:
-    return RevisionModelRow(
-        design_id=id,
-        number=number,
-        name=state.name,
-        model=state.id,
-        model_version=state.version,
-        parameters=state.parameters,
-        relations=state.relations,
-        build_key=state.build,
-    )
+def _model_row(id: str, number: int, state: ModelState) -> Values:
+    return {
+        "design_id": id,
+        "number": number,
+        "name": state.name,
+        "model": state.id,
+        "model_version": state.version,
+        "parameters": state.parameters,
+        "relations": state.relations,
+        "build_key": state.build,
+    }
 
 
 def attach(session: Session, id: str, number: int, results: JsonObject, models: Sequence[ModelState]) -> None:
     """Attach the results of a regeneration to its revision, which becomes current."""
-    this = RevisionRow.design_id == id, RevisionRow.number == number
-    session.execute(update(RevisionRow).where(*this).values(results=results, state="current", problem=None))
+    _ATTACHED.run(session, {"of": id, "at": number, "found": results})
     for state in models:
-        session.merge(_model_row(id, number, state))
+        upsert_values(session, _MODELS, _model_row(id, number, state))
 
 
 def fail(session: Session, id: str, number: int, problem: JsonObject) -> None:

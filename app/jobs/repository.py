@@ -9,22 +9,39 @@ queues again by `reap` what nobody has prolonged. Its times are those of the dat
 """
 
 from collections.abc import Collection, Mapping
+from functools import lru_cache
 from typing import cast
 
-from sqlalchemy import ColumnElement, and_, func, or_, select, update
+from sqlalchemy import bindparam, func, insert, or_, select, update
 from sqlalchemy.orm import Session
 
 from app.identity.acting import ACTING
 from app.jobs.job import Job
-from app.jobs.turns import ALL_KINDS, UNFINISHED, Lane, next_turn
+from app.jobs.turns import ALL_KINDS, LANES, UNFINISHED, Lane, next_turn
 from app.observation import logs
 from app.plain import JsonObject
 from app.schemas.jobs import State
 from app.storage.clock import operated, present
 from app.storage.identity import new_id, now
 from app.storage.locks import lock
-from app.storage.tables import JobRow, canonical_json
+from app.storage.statements import Statement
+from app.storage.tables import Base, JobRow, canonical_json
 from app.storage.units import repeatable
+
+_JOBS = Base.metadata.tables[JobRow.__tablename__]
+_ADDED = Statement(
+    insert(_JOBS).values(state="queued", attempt=0, crashes=0, progress=0.0, log=[], others=[]),
+    "id", "kind", "design_id", "revision", "payload", "created", "updated", "client", "turn", "operated",
+    "principal", "cause",
+)  # fmt: skip
+_AS_JOB = (
+    _JOBS.c.id, _JOBS.c.kind, _JOBS.c.state, _JOBS.c.design_id, _JOBS.c.revision, _JOBS.c.payload,
+    _JOBS.c.attempt, _JOBS.c.crashes, _JOBS.c.progress, _JOBS.c.log, _JOBS.c.problem, _JOBS.c.result,
+    _JOBS.c.created, _JOBS.c.updated, _JOBS.c.principal, _JOBS.c.losses, _JOBS.c.owner,
+    func.coalesce(_JOBS.c.cause, ""), _JOBS.c.event,
+)  # fmt: skip
+"""What a `Job` has, in the order of its fields."""
+_OF_ID = Statement(select(*_AS_JOB).where(_JOBS.c.id == bindparam("of")), "of")
 
 
 def add(
@@ -38,15 +55,15 @@ def add(
 ) -> str:
     """Queue a job of a client, in its turn, and return its id."""
     session.flush()  # the revision it belongs to comes first
-    row = JobRow(
-        id=new_id(session), kind=kind, state="queued", design_id=design, revision=revision, payload=payload,
-        attempt=0, crashes=0, progress=0.0, log=[], created=now(), updated=now(),
-        client=client, others=[], turn=turn, operated=operated(session), principal=ACTING.get().id,
-        cause=f"{logs.REQUEST_ID.get()} {logs.TRACE.get()}".rstrip() or None,
-    )  # fmt: skip
-    session.add(row)
-    session.flush()
-    return row.id
+    id, at = new_id(session), now()
+    row = {
+        "id": id, "kind": kind, "design_id": design, "revision": revision, "payload": payload,
+        "created": at, "updated": at, "client": client, "turn": turn, "operated": operated(session),
+        "principal": ACTING.get().id,
+        "cause": f"{logs.REQUEST_ID.get()} {logs.TRACE.get()}".rstrip() or None,
+    }  # fmt: skip
+    _ADDED.run(session, row)
+    return id
 
 
 def census(session: Session) -> list[tuple[str, str, int]]:
@@ -58,8 +75,7 @@ def census(session: Session) -> list[tuple[str, str, int]]:
 
 def get(session: Session, id: str) -> Job | None:
     """Return a job, or None."""
-    row = session.get(JobRow, id)
-    return _job(row) if row else None
+    return next((Job(*row) for row in _OF_ID.run(session, {"of": id})), None)
 
 
 def locked(session: Session, id: str) -> Job | None:
@@ -98,15 +114,25 @@ def claim(
     `known`, if that is given: it waits for a newer server.
     """
     repeatable(session)  # a claim that nobody knows of is reaped
-    queue = select(JobRow.id).where(JobRow.state == "queued", lane.holds()).order_by(JobRow.turn, JobRow.id)
+    claimed = _claimed(lane, None if kinds is None else tuple(kinds))
+    rows = claimed.run(session, {"at": now(), "by": owner, "lease": lease})
+    return next((Job(*row) for row in rows), None)
+
+
+@lru_cache(LANES)
+def _claimed(lane: Lane, kinds: tuple[str, ...] | None) -> Statement:
+    job = _JOBS.c
+    queue = select(job.id).where(job.state == "queued", lane.holds()).order_by(job.turn, job.id)
     if kinds is not None:
-        queue = queue.where(JobRow.kind.in_(kinds))
+        queue = queue.where(job.kind.in_(kinds))
     first = queue.limit(1).with_for_update(skip_locked=True)
-    values = {"state": "running", "attempt": JobRow.attempt + 1, "progress": 0.0, "log": [], "updated": now(),
-              "owner": owner, "lease_until": present() + lease}  # fmt: skip
-    claimed = update(JobRow).where(JobRow.id == first.scalar_subquery()).values(values)
-    row = session.scalar(claimed.returning(JobRow))
-    return _job(row) if row else None
+    until = present() + bindparam("lease")
+    claimed = update(_JOBS).where(job.id == first.scalar_subquery())
+    claimed = claimed.values(
+        state="running", attempt=job.attempt + 1, progress=0.0, log=[],
+        updated=bindparam("at"), owner=bindparam("by"), lease_until=until,
+    )  # fmt: skip
+    return Statement(claimed.returning(*_AS_JOB), "at", "by", "lease")
 
 
 def beat(session: Session, owner: str, ids: Collection[str], lease: float) -> set[tuple[str, int]]:
@@ -149,7 +175,7 @@ def end(session: Session, job: Job, state: State, log: list[str], **more: object
 
 def set_result(session: Session, id: str, link: str | None) -> None:
     """Store the link to the result of a job."""
-    _write(session, JobRow.id == id, result=link)
+    _write(session, id, result=link)
 
 
 def give_back(session: Session, job: Job, crashes: int, **more: int) -> bool:
@@ -175,13 +201,13 @@ def give_back_all(session: Session, owner: str | None = None) -> list[Job]:
 def give_up(session: Session, job: Job, problem: JsonObject) -> None:
     """Mark a job as failed that has just been reaped once too often."""
     ended = {"state": "failed", "problem": problem, "operated": operated(session)}
-    _write(session, JobRow.id == job.id, **ended)
+    _write(session, job.id, **ended)
 
 
 def cancel(session: Session, job: Job, problem: JsonObject) -> None:
     """Mark a job as cancelled."""
     ended = {"state": "cancelled", "problem": problem, "operated": operated(session), **_FREE}
-    _write(session, JobRow.id == job.id, **ended)
+    _write(session, job.id, **ended)
 
 
 _FREE: Mapping[str, object] = {"owner": None, "lease_until": None}
@@ -191,14 +217,28 @@ _FREE: Mapping[str, object] = {"owner": None, "lease_until": None}
 def _fenced(session: Session, job: Job, **values: object) -> bool:
     """Update a claimed job; return whether it was still held. To do it again does no harm."""
     repeatable(session)
-    mine = JobRow.attempt == job.attempt, JobRow.owner == job.owner
-    return _write(session, and_(JobRow.id == job.id, JobRow.state == "running", *mine), **values) == 1
+    claim = {"at_attempt": job.attempt, "of_owner": job.owner}
+    given = {"of_id": job.id, **claim, **values, "updated": now()}
+    return len(_written(tuple(given), is_fenced=True).run(session, given)) == 1
 
 
-def _write(session: Session, which: ColumnElement[bool], **values: object) -> int:
-    """Update the jobs that match and return how many did."""
-    statement = update(JobRow).where(which).values(**values, updated=now()).returning(JobRow.id)
-    return len(session.scalars(statement).all())
+def _write(session: Session, id: str, **values: object) -> None:
+    given = {"of_id": id, **values, "updated": now()}
+    _written(tuple(given), is_fenced=False).run(session, given)
+
+
+@lru_cache(LANES)
+def _written(names: tuple[str, ...], is_fenced: bool) -> Statement:
+    """Gives a job the values of the columns among these names; a fenced one only while its claim holds."""
+    job = _JOBS.c
+    changed = update(_JOBS).where(job.id == bindparam("of_id"))
+    if is_fenced:
+        is_held = (
+            job.attempt == bindparam("at_attempt"),
+            job.owner.is_not_distinct_from(bindparam("of_owner")),
+        )
+        changed = changed.where(job.state == "running", *is_held)
+    return Statement(changed.returning(job.id), *names)
 
 
 def _job(row: JobRow) -> Job:

@@ -9,16 +9,20 @@ caller.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
-from sqlalchemy import ColumnElement, and_, func, select
+from sqlalchemy import ColumnElement, and_, bindparam, false, func, literal, select, true
 from sqlalchemy.orm import Session
 from sqlalchemy.sql.functions import Function
 
 from app.jobs.errors import JobShared
-from app.storage.tables import JobRow
+from app.storage.statements import Statement
+from app.storage.tables import Base, JobRow
 
 UNFINISHED = ("queued", "running")
 MOST_OTHERS = 20  # clients that are remembered to wait for a job, beside the one whose turn it takes
+LANES = 64  # of which statements are kept; a server has a few
+_JOBS = Base.metadata.tables[JobRow.__tablename__]
 
 
 @dataclass(frozen=True)
@@ -30,7 +34,10 @@ class Lane:
 
     def holds(self) -> ColumnElement[bool]:
         """The condition that a job is in this lane."""
-        return JobRow.kind.not_in(self.kinds) if self.is_common else JobRow.kind.in_(self.kinds)
+        if not self.kinds:
+            return true() if self.is_common else false()
+        kinds = [literal(kind) for kind in self.kinds]  # not a list that is written out at each execution
+        return _JOBS.c.kind.not_in(kinds) if self.is_common else _JOBS.c.kind.in_(kinds)
 
 
 ALL_KINDS = Lane()
@@ -38,27 +45,36 @@ ALL_KINDS = Lane()
 
 def next_turn(session: Session, client: str, lane: Lane) -> int:
     """The turn of a client's next job."""
-    mine = and_(JobRow.client == client, JobRow.state.in_(UNFINISHED), lane.holds())
-    last = session.scalar(select(func.max(JobRow.turn)).where(mine))
-    return max(_present_turn(session, lane), -1 if last is None else last + 1)
+    last, *present = _turns(lane)
+    own = last.scalar(session, {"by": client})
+    turns = (turn for statement in present if (turn := statement.scalar(session)) is not None)
+    return max(next(turns, 0), -1 if own is None else own + 1)
 
 
-def _present_turn(session: Session, lane: Lane) -> int:
-    """The turn that a lane is at: the lowest that waits, else the highest that runs."""
-    waiting = select(JobRow.turn).where(JobRow.state == "queued", lane.holds()).order_by(JobRow.turn)
-    running = select(JobRow.turn).where(JobRow.state == "running", lane.holds()).order_by(JobRow.turn.desc())
-    for query in (waiting, running):
-        if (turn := session.scalar(query.limit(1))) is not None:
-            return turn
-    return 0
+@lru_cache(LANES)
+def _turns(lane: Lane) -> tuple[Statement, Statement, Statement]:
+    """The last turn of a client in a lane; the lowest turn there that waits; the highest that runs."""
+    turn, state, unfinished = _JOBS.c.turn, _JOBS.c.state, [literal(one) for one in UNFINISHED]
+    own = select(func.max(turn)).where(_JOBS.c.client == bindparam("by"), state.in_(unfinished), lane.holds())
+    waiting = select(turn).where(state == "queued", lane.holds()).order_by(turn).limit(1)
+    running = select(turn).where(state == "running", lane.holds()).order_by(turn.desc()).limit(1)
+    return Statement(own, "by"), Statement(waiting), Statement(running)
 
 
 def count_queued(session: Session, client: str | None = None, lane: Lane | None = None) -> int:
     """Return the number of waiting jobs, of one client or of all, in one lane or in all."""
-    waiting = select(func.count()).select_from(JobRow).where(JobRow.state == "queued")
+    statement = _counted(lane, client is not None)
+    return statement.scalar(session, None if client is None else {"by": client}) or 0
+
+
+@lru_cache(LANES)
+def _counted(lane: Lane | None, of_client: bool) -> Statement:
+    waiting = select(func.count()).select_from(_JOBS).where(_JOBS.c.state == "queued")
     if lane is not None:
         waiting = waiting.where(lane.holds())
-    return session.scalar(waiting if client is None else waiting.where(JobRow.client == client)) or 0
+    if of_client:
+        return Statement(waiting.where(_JOBS.c.client == bindparam("by")), "by")
+    return Statement(waiting)
 
 
 def count_until_next(session: Session, client: str, lane: Lane) -> int:

@@ -5,14 +5,17 @@ Whoever wants a build renews its age in the unit of work that counts on it, or l
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
+from functools import lru_cache
 
-from sqlalchemy import func, select, update
+from sqlalchemy import bindparam, select, update
 from sqlalchemy.orm import Session
 
 from app.storage.clock import operated
-from app.storage.tables import BuildRow
+from app.storage.statements import Row, Statement
+from app.storage.tables import Base, BuildRow
 
+_BUILDS = Base.metadata.tables[BuildRow.__tablename__]
 FRESH = (
     3600  # a build wanted this recently need not be renewed: it is kept for a day or longer [s of operation]
 )
@@ -20,9 +23,9 @@ FRESH = (
 
 def is_fresh(session: Session, keys: Collection[str]) -> bool:
     """True if all of these builds are there, and sure to stay for as long as any request or job takes."""
-    present = operated(session)
-    wanted = select(func.count()).where(BuildRow.key.in_(set(keys)), BuildRow.operated >= present - FRESH)
-    return session.scalar(wanted) == len(set(keys))
+    wanted, present = set(keys), operated(session)
+    seen = _seen(session, wanted)
+    return len(seen) == len(wanted) and all(age >= present - FRESH for _, age in seen)
 
 
 def renew(session: Session, keys: Collection[str]) -> bool:
@@ -34,11 +37,23 @@ def renew(session: Session, keys: Collection[str]) -> bool:
     if not keys:
         return True
     wanted, present = set(keys), operated(session)
-    query = select(BuildRow.key, BuildRow.operated).where(BuildRow.key.in_(wanted))
-    seen = session.execute(query).all()
+    seen = _seen(session, wanted)
     old = {key for key, age in seen if age < present - FRESH}
     if not old:
         return len(seen) == len(wanted)
     renewal = update(BuildRow).where(BuildRow.key.in_(old)).values(operated=present)
     renewed = session.scalars(renewal.returning(BuildRow.key)).all()  # what is not deleted meanwhile
     return len(seen) - len(old) + len(renewed) == len(wanted)
+
+
+def _seen(session: Session, keys: Collection[str]) -> Sequence[Row]:
+    """Key and age of those of these builds that are there."""
+    given = {f"key{n}": key for n, key in enumerate(keys)}
+    return _ages(len(given)).run(session, given)
+
+
+@lru_cache(16)
+def _ages(count: int) -> Statement:
+    names = [f"key{n}" for n in range(count)]
+    seen = select(_BUILDS.c.key, _BUILDS.c.operated).where(_BUILDS.c.key.in_(list(map(bindparam, names))))
+    return Statement(seen, *names)

@@ -20,7 +20,7 @@ from app.storage.tables import (
     RevisionModelRow,
     variant_of,
 )
-from app.storage.upserts import upsert
+from app.storage.upserts import upsert_values
 
 
 def build(session: Session, key: str) -> BuildRow | None:
@@ -67,24 +67,25 @@ def add_build(
     maker: str,
 ) -> None:
     """Record a build; the same build made twice is one."""
-    row = BuildRow(
-        key=key,
-        model=model,
-        version=version,
-        parameters=parameters,
-        measurements=measured,
-        created=now(),
-        operated=operated(session),
-        made_by=maker,
-    )
-    upsert(session, row)
+    row = {
+        "key": key,
+        "model": model,
+        "version": version,
+        "parameters": parameters,
+        "measurements": measured,
+        "created": now(),
+        "operated": operated(session),
+        "made_by": maker,
+    }
+    upsert_values(session, BuildRow.__table__, row)
 
 
 def add_artifact(session: Session, key: str, kind: str, sha256: str, size: int) -> None:
     """Record an artifact of a build."""
     if ACTING.get().id not in BUILT_IN and session.get(ArtifactRow, (key, kind)) is None:
         usage.note_bytes(session, size)
-    upsert(session, ArtifactRow(build_key=key, kind=kind, sha256=sha256, size=size, created=now()))
+    row = {"build_key": key, "kind": kind, "sha256": sha256, "size": size, "created": now()}
+    upsert_values(session, ArtifactRow.__table__, row)
 
 
 def users_of(session: Session, key: str) -> list[dict[str, object]]:

@@ -37,6 +37,9 @@ TICK = 5.0  # between two times that a server moves the counter forward [s]
 LONGEST = 15  # that a time without any such move counts [s]
 
 
+_ADVANCED = "UPDATE counter SET value = value + ? WHERE name = ?"
+
+
 class present(GenericFunction[float]):  # noqa: N801 - it is written as a function
     """The present time by the clock of the database [s since 1970]: clocks of servers differ.
 
@@ -72,9 +75,7 @@ class OperationClock:
         """Raise the counter in the caller's transaction and return by how many seconds."""
         seconds = self.elapsed
         if seconds:
-            connection.execute(
-                update(CounterRow).where(CounterRow.name == NAME).values(value=CounterRow.value + seconds)
-            )
+            connection.exec_driver_sql(_ADVANCED, (seconds, NAME))
         return seconds
 
     def commit(self, seconds: int) -> None:

@@ -234,18 +234,19 @@ class TestNoScan:
     def plans(self, database):
         """How SQLite carries out all that is asked of the table of jobs meanwhile."""
         asked = []
+
+        def trace(connection):
+            connection.connection.driver_connection.set_trace_callback(asked.append)
+
         for engine in (database._reader, database._writer.engine):
-            event.listen(
-                engine,
-                "before_cursor_execute",
-                lambda c, cursor, sql, values, x, many: asked.append((sql, values)),
-            )
+            event.listen(engine, "begin", trace)
 
         def plans():
-            about = [(sql, values) for sql, values in asked if "job" in sql and not sql.startswith("INSERT")]
+            about = [sql for sql in asked if "job" in sql and sql.startswith(("SELECT", "UPDATE"))]
             with database._writer.engine.connect() as connection:
-                rows = [connection.exec_driver_sql(f"EXPLAIN QUERY PLAN {q}", v).all() for q, v in about]
-            return [(about[place][0], row[3]) for place, steps in enumerate(rows) for row in steps]
+                driver = connection.connection.driver_connection
+                rows = [driver.execute(f"EXPLAIN QUERY PLAN {sql}").fetchall() for sql in about]
+            return [(about[place], row[3]) for place, steps in enumerate(rows) for row in steps]
 
         return plans
 
