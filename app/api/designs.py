@@ -10,7 +10,7 @@ from fastapi import Header, Path, Query, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.waiting import LONGEST, finished, later, patience, written
-from app.designs import repository, views
+from app.designs import views
 from app.designs.service import Designs, Saved
 from app.jobs.service import Jobs
 from app.schemas.designs import Design, MappedDesign, Proposal
@@ -53,9 +53,7 @@ def shown(
 ) -> Response:
     """A design as of a revision, by default the newest; the ETag is that revision."""
     with designs.database.read() as session:
-        row = repository.design(session, id)
-        revision = repository.lean(session, id, number or row.head)
-        design = views.design(row, revision)
+        design = views.newest(session, id, number)
     if proposals is not None:
         design = MappedDesign(**dict(design), proposals=list(proposals))
-    return written(design, status, {"ETag": f'"{revision.number}"'})
+    return written(design, status, {"ETag": f'"{design.revision}"'})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from functools import lru_cache
 from gc import get_referents
 from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
 
@@ -29,11 +30,16 @@ def size_of(value: object) -> int:
         for part in _parts(item) if isinstance(item, np.ndarray) else get_referents(item):
             if type(part) in _ATOMS:
                 total += sys.getsizeof(part)
-            elif id(part) not in seen and not isinstance(part, _SHARED):
+            elif id(part) not in seen and not _is_shared(type(part)):  # type: ignore[arg-type]  # a class is hashable
                 seen.add(id(part))
                 total += sys.getsizeof(part)
                 waiting.append(part)
     return total
+
+
+@lru_cache(2048)
+def _is_shared(kind: type) -> bool:
+    return issubclass(kind, _SHARED)
 
 
 def _parts(array: NDArray[np.generic]) -> list[object]:  # arrays of any kind of number

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from sqlalchemy import bindparam, select
 from sqlalchemy.orm import Session
 
 from app.calculations.cost import is_quick as is_quick_template
@@ -22,8 +21,6 @@ from app.schemas.designs import Design
 from app.storage.database import Unit
 from app.storage.idempotency import Once
 from app.storage.identity import now
-from app.storage.statements import Statement
-from app.storage.tables import DesignRow, RevisionRow
 from templates.core.errors import UnknownTemplate
 
 MOST_STEPS = 4
@@ -33,12 +30,6 @@ Body = dict[str, object]
 """A document or a patch as it came."""
 
 _SLOW = ("model", "models", "variants", "iterations")
-_HEAD = Statement(
-    select(RevisionRow.number, RevisionRow.document, DesignRow.created)
-    .join(DesignRow, (DesignRow.id == RevisionRow.design_id) & (DesignRow.head == RevisionRow.number))
-    .where(DesignRow.id == bindparam("of"), DesignRow.deleted.is_(None)),
-    "of",
-)
 
 
 class NotQuick(Exception):
@@ -90,18 +81,17 @@ class QuickSaves:
         def unit(session: Session) -> Design:
             if once.begin(session):
                 raise NotQuick
-            for base, stored, created in _HEAD.run(session, {"of": id}):
-                document = merge(stored, patch)
-                if not (matches(expected, base) and self._is_quick(document)):
-                    break
-                draft = self._draft(document, note, "design.change")
-                if draft.written.document == stored:
-                    break
-                at = now()
-                number = repository.append(session, id, base, draft.written, at)
-                self._designs.enqueued(session, id, number, draft, once, created=False)
-                return views.current(id, number, draft.written.document, created, at)
-            raise NotQuick
+            head = repository.newest(session, id)
+            document = merge(head.document, patch)
+            if not (matches(expected, head.number) and self._is_quick(document)):
+                raise NotQuick
+            draft = self._draft(document, note, "design.change")
+            if draft.written.document == head.document:
+                raise NotQuick
+            at = now()
+            number = repository.append(session, id, head.number, draft.written, at)
+            self._designs.enqueued(session, id, number, draft, once, created=False)
+            return views.current(id, number, draft.written.document, head.created, at)
 
         return unit
 

@@ -5,11 +5,14 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
 
-from sqlalchemy import bindparam, insert, select, update
+from sqlalchemy import bindparam, select
 from sqlalchemy.orm import Session, defer
 from sqlalchemy.orm.util import identity_key
 
+from app.designs import statements
 from app.designs.errors import DesignReleased, StaleRevision
 from app.designs.filtering import DesignFilter, conditions
 from app.designs.releases import EVER_RELEASED, NEWEST_RELEASED
@@ -19,65 +22,10 @@ from app.identity.audit import record
 from app.plain import JsonObject
 from app.storage.errors import NotFound
 from app.storage.identity import new_id, now
-from app.storage.statements import Statement, Values
-from app.storage.tables import Base, BuildRow, DesignRow, RevisionModelRow, RevisionRow, canonical_json
+from app.storage.statements import Row, Values
+from app.storage.tables import DesignRow, RevisionModelRow, RevisionRow, canonical_json
 from app.storage.upserts import upsert_values
 
-_DESIGNS = Base.metadata.tables[DesignRow.__tablename__]
-_REVISIONS = Base.metadata.tables[RevisionRow.__tablename__]
-_DESIGN = Statement(insert(_DESIGNS), "id", "name", "created", "head")
-_REVISION = Statement(
-    insert(_REVISIONS),
-    "design_id",
-    "number",
-    "note",
-    "created",
-    "document",
-    "results",
-    "state",
-    "problem",
-    "author",
-    "supersedes",
-)
-_APPENDED = Statement(
-    update(_DESIGNS)
-    .where(
-        _DESIGNS.c.id == bindparam("of"), _DESIGNS.c.head == bindparam("base"), _DESIGNS.c.deleted.is_(None)
-    )
-    .values(head=bindparam("number"), name=bindparam("named"))
-    .returning(_DESIGNS.c.head),
-    "of",
-    "base",
-    "number",
-    "named",
-)
-_DOCUMENT = Statement(
-    select(_REVISIONS.c.document).where(
-        _REVISIONS.c.design_id == bindparam("of"), _REVISIONS.c.number == bindparam("at")
-    ),
-    "of",
-    "at",
-)
-_MODELS = Base.metadata.tables[RevisionModelRow.__tablename__]
-_MODEL = Statement(
-    insert(_MODELS),
-    "design_id",
-    "number",
-    "name",
-    "model",
-    "model_version",
-    "parameters",
-    "relations",
-    "build_key",
-)
-_ATTACHED = Statement(
-    update(_REVISIONS)
-    .where(_REVISIONS.c.design_id == bindparam("of"), _REVISIONS.c.number == bindparam("at"))
-    .values(results=bindparam("found"), state="current", problem=None),
-    "of",
-    "at",
-    "found",
-)
 _LEAN = defer(RevisionRow.results)
 _LEAN_REVISION = (
     select(RevisionRow)
@@ -165,10 +113,47 @@ def lean_head(session: Session, id: str) -> RevisionRow:
     return lean(session, id, design(session, id).head)
 
 
+class Newest(NamedTuple):
+    """A revision without its results, and when its design was created."""
+
+    number: int
+    document: JsonObject
+    created: str
+    changed: str
+    state: str
+    problem: JsonObject | None
+
+
+def newest(session: Session, id: str, number: int | None = None) -> Newest:
+    """A revision of a design that is not deleted, by default the newest, without its results.
+
+    Raises
+    ------
+    NotFound
+        If there is no such design, or no such revision.
+    """
+    for row in statements.NEWEST.run(session, {"of": id, "at": number}):
+        return Newest(*row)
+    raise _no_revision(id, number or design(session, id).head)
+
+
 def newest_document(session: Session, id: str) -> tuple[int, JsonObject]:
     """The number and the document of a design's newest revision, without its results."""
-    number = design(session, id).head
-    return number, document(session, id, number)
+    return newest(session, id)[:2]
+
+
+def model_names(session: Session, id: str, number: int) -> list[str]:
+    """The models of a revision, without those of its variants.
+
+    Raises
+    ------
+    NotFound
+        If there is no such revision.
+    """
+    names = [row[0] for row in statements.NAMES.run(session, {"of": id, "at": number})]
+    if not names:
+        lean(session, id, number)
+    return names
 
 
 def document(session: Session, id: str, number: int) -> JsonObject:
@@ -179,9 +164,16 @@ def document(session: Session, id: str, number: int) -> JsonObject:
     NotFound
         If there is none.
     """
-    for row in _DOCUMENT.run(session, {"of": id, "at": number}):
-        stored: JsonObject = row[0]
-        return stored
+    for stored, _ in statements.DOCUMENT.run(session, {"of": id, "at": number}):
+        found: JsonObject = stored
+        return found
+    raise _no_revision(id, number)
+
+
+def document_and_time(session: Session, id: str, number: int) -> tuple[JsonObject, str]:
+    """Likewise, with the time at which the revision was saved."""
+    for document, created in statements.DOCUMENT.run(session, {"of": id, "at": number}):
+        return document, created
     raise _no_revision(id, number)
 
 
@@ -225,7 +217,7 @@ def revisions(session: Session, id: str, limit: int, before: int | None) -> list
 def create(session: Session, name: str, written: Written, at: str | None = None) -> tuple[str, int]:
     """A new design with its first revision, `at` the time given or now; its id and the revision's number."""
     id, created = new_id(session), at or now()
-    _DESIGN.run(session, {"id": id, "name": name, "created": created, "head": 0})
+    statements.NEW_DESIGN.run(session, {"id": id, "name": name, "created": created, "head": 0})
     return id, append(session, id, 0, written, created)
 
 
@@ -243,7 +235,7 @@ def append(session: Session, id: str, base: int, written: Written, at: str | Non
     """
     session.flush()
     values = {"of": id, "base": base, "number": base + 1, "named": written.document["name"]}
-    if _APPENDED.scalar(session, values) is None:
+    if statements.APPENDED.scalar(session, values) is None:
         raise StaleRevision(f'"{base}"', design(session, id).head)
     if session.identity_map and (row := session.identity_map.get(identity_key(DesignRow, id))) is not None:
         session.refresh(row)
@@ -260,11 +252,12 @@ def append(session: Session, id: str, base: int, written: Written, at: str | Non
         "author": acting().id,
         "supersedes": NEWEST_RELEASED.scalar(session, {"design": id}),
     }
-    _REVISION.run(session, revision)
+    statements.NEW_REVISION.run(session, revision)
     digest = hashlib.sha256(canonical_json(written.document).encode()).hexdigest()
     record(session, written.action, f"designs/{id}/revisions/{base + 1}", digest, at)
     if written.models:
-        _MODEL.run_many(session, [_model_row(id, base + 1, state) for state in written.models])
+        models = map(partial(_model_row, id, base + 1), written.models)
+        statements.NEW_MODEL.run_many(session, list(models))
     return base + 1
 
 
@@ -283,9 +276,9 @@ def _model_row(id: str, number: int, state: ModelState) -> Values:
 
 def attach(session: Session, id: str, number: int, results: JsonObject, models: Sequence[ModelState]) -> None:
     """Attach the results of a regeneration to its revision, which becomes current."""
-    _ATTACHED.run(session, {"of": id, "at": number, "found": results})
+    statements.ATTACHED.run(session, {"of": id, "at": number, "found": results})
     for state in models:
-        upsert_values(session, _MODELS, _model_row(id, number, state))
+        upsert_values(session, statements.MODELS, _model_row(id, number, state))
 
 
 def fail(session: Session, id: str, number: int, problem: JsonObject) -> None:
@@ -312,19 +305,17 @@ def delete(session: Session, id: str) -> None:
 
 def newest_good(session: Session, id: str, model: str, until: int) -> RevisionModelRow | None:
     """The newest revision, up to this one, whose model of this name was built and accepted."""
-    query = (
-        select(RevisionModelRow)
-        .join(BuildRow, BuildRow.key == RevisionModelRow.build_key)
-        .join(
-            RevisionRow,
-            (RevisionRow.design_id == RevisionModelRow.design_id)
-            & (RevisionRow.number == RevisionModelRow.number),
-        )
-        .where(RevisionModelRow.design_id == id, RevisionModelRow.name == model)
-        .where(RevisionModelRow.number <= until, RevisionRow.state == "current")
-        .order_by(RevisionModelRow.number.desc())
-    )
-    return session.scalars(query.limit(1)).first()
+    return _model(statements.GOOD.run(session, {"of": id, "model": model, "until": until}))
+
+
+def built_model(session: Session, id: str, number: int, model: str) -> RevisionModelRow | None:
+    """A model of a revision, if it was built."""
+    return _model(statements.BUILT.run(session, {"of": id, "model": model, "at": number}))
+
+
+def _model(rows: Sequence[Row]) -> RevisionModelRow | None:
+    names = statements.MODELS.c.keys()
+    return next((RevisionModelRow(**dict(zip(names, row, strict=True))) for row in rows), None)
 
 
 def changed_since_good(session: Session, id: str, number: int) -> list[str]:

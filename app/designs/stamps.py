@@ -13,7 +13,7 @@ from app.identity.acting import LOCAL
 from app.plain import Json
 from app.schemas.approvals import ORDER
 from app.solids import rows
-from app.storage.tables import ApprovalRow, BuildRow, PrincipalRow, RevisionModelRow
+from app.storage.tables import ApprovalRow, PrincipalRow, RevisionModelRow
 from cad.model import material_named
 from cad.stamp import Stamp
 
@@ -22,16 +22,16 @@ _MM3 = 1e-9  # m³
 
 def stamp(session: Session, model: RevisionModelRow) -> Stamp:
     """The stamp of a built model: always the same, because a revision never changes."""
-    revision = repository.revision(session, model.design_id, model.number)
+    document, created = repository.document_and_time(session, model.design_id, model.number)
     build = rows.build(session, model.build_key or "")
     return Stamp(
-        design=revision.document["name"],
+        design=document["name"],
         model=model.own_name,
         revision=model.number,
-        date=revision.created[:19],  # UTC, to the second
+        date=created[:19],  # UTC, to the second
         materials=_materials(build) if build else {},
         variant=model.variant,
-        is_only=len(revision.document["models"]) == 1,
+        is_only=len(document["models"]) == 1,
     )
 
 
@@ -40,7 +40,7 @@ def signed(session: Session, model: RevisionModelRow, owner: str) -> Stamp:
 
     From the hand-over on the author has the name of that time, as in a report.
     """
-    revision = repository.revision(session, model.design_id, model.number)
+    revision = repository.lean(session, model.design_id, model.number)
     build = rows.build(session, model.build_key or "")
     of_revision = ApprovalRow.design_id == model.design_id, ApprovalRow.revision == model.number
     names = {row.step: row.name for row in session.scalars(select(ApprovalRow).where(*of_revision))}
@@ -56,7 +56,7 @@ def signed(session: Session, model: RevisionModelRow, owner: str) -> Stamp:
     )
 
 
-def _materials(build: BuildRow) -> Mapping[str, str]:
+def _materials(build: rows.Made) -> Mapping[str, str]:
     """The materials of a build's parts; of a build of an older recipe that of the whole, by its density."""
     measured: Mapping[str, Json] = build.measurements
     if "materials" in measured:

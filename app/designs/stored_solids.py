@@ -20,8 +20,7 @@ def built(database: Database) -> Measured:
 
     def measured(shape: CadModel) -> Measures | None:
         with database.read() as session:
-            row = rows.build(session, build_key(shape))
-            return row.measurements["measures"] if row else None
+            return rows.measures(session, build_key(shape))
 
     return measured
 

@@ -28,6 +28,18 @@ def design(row: DesignRow, revision: RevisionRow) -> Design:
     return _design(row.id, revision.number, revision.document, row.created, revision.created, state, problem)
 
 
+def newest(session: Session, id: str, number: int | None = None) -> Design:
+    """A design as of a revision, by default the newest.
+
+    Raises
+    ------
+    NotFound
+        If there is no such design, or no such revision.
+    """
+    it = repository.newest(session, id, number)
+    return _design(id, it.number, it.document, it.created, it.changed, it.state, it.problem)
+
+
 def current(id: str, number: int, document: JsonObject, created: str, changed: str) -> Design:
     """A design as of a revision for which nothing is to be regenerated."""
     return _design(id, number, document, created, changed, "current", None)
@@ -186,8 +198,8 @@ def good_model(session: Session, id: str, name: str | None, number: int | None) 
     NotFound
         If there is none; the text says why.
     """
-    head = repository.head(session, id) if number is None else repository.revision(session, id, number)
-    names = [model.name for model in head.models]
+    at = repository.newest(session, id).number if number is None else number
+    names = repository.model_names(session, id, at)
     wanted = name or (names[0] if len(names) == 1 else None)
     if wanted is None or wanted not in names:
         hint = (
@@ -196,14 +208,15 @@ def good_model(session: Session, id: str, name: str | None, number: int | None) 
             else "it has no model"
         )
         raise NotFound(f"design {id}: {hint}")
-    if number is None:
-        model_row = repository.newest_good(session, id, wanted, head.number)
-    else:
-        model_row = next(model for model in head.models if model.name == wanted)
-        model_row = model_row if rows.build(session, model_row.build_key or "") else None
-    if model_row is None:
-        raise NotFound(f"design {id}: {wanted} has no finished solid yet; {_why(head)}")
-    return model_row
+    model = (
+        repository.newest_good(session, id, wanted, at)
+        if number is None
+        else repository.built_model(session, id, at, wanted)
+    )
+    if model is None:
+        why = _why(repository.lean(session, id, at))
+        raise NotFound(f"design {id}: {wanted} has no finished solid yet; {why}")
+    return model
 
 
 def _why(row: RevisionRow) -> str:

@@ -75,7 +75,9 @@ def census(session: Session) -> list[tuple[str, str, int]]:
 
 def get(session: Session, id: str) -> Job | None:
     """Return a job, or None."""
-    return next((Job(*row) for row in _OF_ID.run(session, {"of": id})), None)
+    for row in _OF_ID.run(session, {"of": id}):
+        return Job(*row)
+    return None
 
 
 def locked(session: Session, id: str) -> Job | None:
@@ -115,8 +117,9 @@ def claim(
     """
     repeatable(session)  # a claim that nobody knows of is reaped
     claimed = _claimed(lane, None if kinds is None else tuple(kinds))
-    rows = claimed.run(session, {"at": now(), "by": owner, "lease": lease})
-    return next((Job(*row) for row in rows), None)
+    for row in claimed.run(session, {"at": now(), "by": owner, "lease": lease}):
+        return Job(*row)
+    return None
 
 
 @lru_cache(LANES)

@@ -45,20 +45,24 @@ ALL_KINDS = Lane()
 
 def next_turn(session: Session, client: str, lane: Lane) -> int:
     """The turn of a client's next job."""
-    last, *present = _turns(lane)
-    own = last.scalar(session, {"by": client})
-    turns = (turn for statement in present if (turn := statement.scalar(session)) is not None)
-    return max(next(turns, 0), -1 if own is None else own + 1)
+    ((own, present),) = _turns(lane).run(session, {"by": client})
+    turn: int = max(present, own)
+    return turn
 
 
 @lru_cache(LANES)
-def _turns(lane: Lane) -> tuple[Statement, Statement, Statement]:
-    """The last turn of a client in a lane; the lowest turn there that waits; the highest that runs."""
+def _turns(lane: Lane) -> Statement:
+    """The turn after a client's last one in a lane, and the turn that the lane is at.
+
+    That is the lowest that waits, else the highest that runs.
+    """
     turn, state, unfinished = _JOBS.c.turn, _JOBS.c.state, [literal(one) for one in UNFINISHED]
     own = select(func.max(turn)).where(_JOBS.c.client == bindparam("by"), state.in_(unfinished), lane.holds())
     waiting = select(turn).where(state == "queued", lane.holds()).order_by(turn).limit(1)
     running = select(turn).where(state == "running", lane.holds()).order_by(turn.desc()).limit(1)
-    return Statement(own, "by"), Statement(waiting), Statement(running)
+    next_own = func.coalesce(own.scalar_subquery() + 1, -1)
+    present = func.coalesce(waiting.scalar_subquery(), running.scalar_subquery(), 0)
+    return Statement(select(next_own, present), "by")
 
 
 def count_queued(session: Session, client: str | None = None, lane: Lane | None = None) -> int:

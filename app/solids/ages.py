@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from functools import lru_cache
+from operator import itemgetter
 
 from sqlalchemy import bindparam, select, update
 from sqlalchemy.orm import Session
@@ -25,7 +26,7 @@ def is_fresh(session: Session, keys: Collection[str]) -> bool:
     """True if all of these builds are there, and sure to stay for as long as any request or job takes."""
     wanted, present = set(keys), operated(session)
     seen = _seen(session, wanted)
-    return len(seen) == len(wanted) and all(age >= present - FRESH for _, age in seen)
+    return len(seen) == len(wanted) and min(map(itemgetter(1), seen), default=present) >= present - FRESH
 
 
 def renew(session: Session, keys: Collection[str]) -> bool:
@@ -48,8 +49,8 @@ def renew(session: Session, keys: Collection[str]) -> bool:
 
 def _seen(session: Session, keys: Collection[str]) -> Sequence[Row]:
     """Key and age of those of these builds that are there."""
-    given = {f"key{n}": key for n, key in enumerate(keys)}
-    return _ages(len(given)).run(session, given)
+    ages = _ages(len(keys))
+    return ages.run(session, dict(zip(ages.names, keys, strict=True)))
 
 
 @lru_cache(16)

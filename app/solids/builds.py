@@ -20,7 +20,6 @@ from app.solids.shapes import built_by_another, shape_of
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild
-from app.storage.tables import ArtifactRow
 from app.workers.base import Runner, may_share
 from cad.brought import BroughtModel, Drawn, brought
 from cad.errors import ProgramMissing
@@ -134,10 +133,10 @@ class Builds:
         if row is None or row.sha256 != sha:
             self.database.write(lambda session: rows.add_artifact(session, key, kind, sha, len(file)))
 
-    def _is_outdated(self, row: ArtifactRow) -> bool:
+    def _is_outdated(self, row: rows.Artifact) -> bool:
         return row.kind in DRAWINGS and not takes_stamp(self.store.read(row.sha256), row.kind)
 
-    def _row(self, key: str, kind: str) -> ArtifactRow | None:
+    def _row(self, key: str, kind: str) -> rows.Artifact | None:
         with self.database.read() as session:
             return rows.artifact(session, key, kind)
 
@@ -160,7 +159,7 @@ class Builds:
         rows.add_artifact(session, build.key, STEP, sha, len(build.step))
 
 
-def _changed(shape: CadModel, row: ArtifactRow) -> CannotRebuild:
+def _changed(shape: CadModel, row: rows.Artifact) -> CannotRebuild:
     detail = (
         f"the STEP file of build {row.build_key} is lost, and model {shape.id} version {shape.version} makes "
         "other bytes now: its file has been changed since. Put the old file back, or restore artifact "
@@ -169,7 +168,7 @@ def _changed(shape: CadModel, row: ArtifactRow) -> CannotRebuild:
     return CannotRebuild("model_changed", detail)
 
 
-def _signed_otherwise(row: ArtifactRow) -> CannotRebuild:
+def _signed_otherwise(row: rows.Artifact) -> CannotRebuild:
     detail = (
         f"file {row.kind} of build {row.build_key} is lost, and is made of other bytes now: libraries have "
         f"changed since. A signed revision has artifact {row.sha256}: restore it from a backup"

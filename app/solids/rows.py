@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from typing import NamedTuple
 
-from sqlalchemy import select
+from sqlalchemy import bindparam, select
 from sqlalchemy.orm import Session
 
 from app.identity import usage
@@ -12,9 +13,11 @@ from app.identity.acting import ACTING, BUILT_IN
 from app.plain import JsonObject
 from app.storage.clock import operated
 from app.storage.identity import now
+from app.storage.statements import Statement
 from app.storage.tables import (
     ApprovalRow,
     ArtifactRow,
+    Base,
     BuildRow,
     DesignRow,
     RevisionModelRow,
@@ -22,15 +25,62 @@ from app.storage.tables import (
 )
 from app.storage.upserts import upsert_values
 
+_BUILDS = Base.metadata.tables[BuildRow.__tablename__]
+_ARTIFACTS = Base.metadata.tables[ArtifactRow.__tablename__]
 
-def build(session: Session, key: str) -> BuildRow | None:
+
+class Made(NamedTuple):
+    """A build as it was recorded."""
+
+    key: str
+    model: str
+    version: int
+    parameters: JsonObject
+    measurements: JsonObject
+    made_by: str
+
+
+class Artifact(NamedTuple):
+    """A file of a build."""
+
+    build_key: str
+    kind: str
+    sha256: str
+
+
+_BUILD = Statement(
+    select(*(_BUILDS.c[name] for name in Made._fields)).where(_BUILDS.c.key == bindparam("of")), "of"
+)
+_MEASURED = Statement(select(_BUILDS.c.measurements).where(_BUILDS.c.key == bindparam("of")), "of")
+_ARTIFACT = Statement(
+    select(*(_ARTIFACTS.c[name] for name in Artifact._fields)).where(
+        _ARTIFACTS.c.build_key == bindparam("of"), _ARTIFACTS.c.kind == bindparam("like")
+    ),
+    "of",
+    "like",
+)
+
+
+def build(session: Session, key: str) -> Made | None:
     """A build by its key, if it was made."""
-    return session.get(BuildRow, key)
+    for row in _BUILD.run(session, {"of": key}):
+        return Made(*row)
+    return None
 
 
-def artifact(session: Session, key: str, kind: str) -> ArtifactRow | None:
+def measures(session: Session, key: str) -> Mapping[str, float] | None:
+    """The measures of a build, if it was made."""
+    for (measured,) in _MEASURED.run(session, {"of": key}):
+        found: Mapping[str, float] = measured["measures"]
+        return found
+    return None
+
+
+def artifact(session: Session, key: str, kind: str) -> Artifact | None:
     """One artifact of a build, if it was made."""
-    return session.get(ArtifactRow, (key, kind))
+    for row in _ARTIFACT.run(session, {"of": key, "like": kind}):
+        return Artifact(*row)
+    return None
 
 
 def artifact_named(session: Session, sha256: str) -> ArtifactRow | None:
@@ -77,7 +127,7 @@ def add_build(
         "operated": operated(session),
         "made_by": maker,
     }
-    upsert_values(session, BuildRow.__table__, row)
+    upsert_values(session, _BUILDS, row)
 
 
 def add_artifact(session: Session, key: str, kind: str, sha256: str, size: int) -> None:
@@ -85,7 +135,7 @@ def add_artifact(session: Session, key: str, kind: str, sha256: str, size: int) 
     if ACTING.get().id not in BUILT_IN and session.get(ArtifactRow, (key, kind)) is None:
         usage.note_bytes(session, size)
     row = {"build_key": key, "kind": kind, "sha256": sha256, "size": size, "created": now()}
-    upsert_values(session, ArtifactRow.__table__, row)
+    upsert_values(session, _ARTIFACTS, row)
 
 
 def users_of(session: Session, key: str) -> list[dict[str, object]]:

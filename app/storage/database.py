@@ -15,6 +15,7 @@ from app.storage.clock import OperationClock, SharedClock
 from app.storage.damage import Watch
 from app.storage.engines import is_sqlite, reading_engine, writing_engine
 from app.storage.group_writer import GroupWriter
+from app.storage.statements import READS
 from app.storage.units import T, Unit, Writer, after_commit, repeatable
 
 __all__ = ["Database", "Unit", "after_commit", "repeatable"]
@@ -41,6 +42,7 @@ class Database:
         """Whether several servers may use this database at the same time."""
         self.watch = Watch(url)
         self._reader = reading_engine(url, pool)
+        self._info = {} if self.is_shared else {READS: True}
         engine = writing_engine(url, pool)
         self.clock: OperationClock | SharedClock
         self._writer: Writer
@@ -66,7 +68,7 @@ class Database:
         """
         self.watch.require_file()
         try:
-            with Session(self._reader, expire_on_commit=False) as session:
+            with Session(self._reader, expire_on_commit=False, info=self._info) as session:
                 yield session
         except BaseException as error:
             self.watch.raise_if_damage(error)

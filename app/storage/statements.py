@@ -1,14 +1,14 @@
 """Statements of every save, compiled once.
 
 At every execution SQLAlchemy looks up the compiled statement, prepares each value and wraps each row. That
-takes several times as long as SQLite itself. In a unit of work on SQLite a `Statement` hands its text and its
-values to the driver; everywhere else (PostgreSQL, reading sessions) SQLAlchemy executes it.
+takes several times as long as SQLite itself. On SQLite a `Statement` hands its text and its values to the
+driver, in the transaction of the session; on PostgreSQL SQLAlchemy executes it.
 """
 
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -24,6 +24,8 @@ from app.plain import Json
 
 DRIVER = "driver"
 """Under which the session of a unit of work keeps, in its `info`, the connection of SQLite's driver."""
+READS = "reads by the driver"
+"""Under which the session of a snapshot of SQLite says, in its `info`, that it has such a connection."""
 
 Values = Mapping[str, object]
 Row = Sequence[Json]  # whoever selects columns knows their types
@@ -50,6 +52,8 @@ class Statement:
     def run(self, session: Session, values: Values | None = None) -> Sequence[Row]:
         """Execute it and return all rows, if it returns any."""
         driver: sqlite3.Connection | None = session.info.get(DRIVER)
+        if driver is None and READS in session.info:
+            driver = session.connection().connection.driver_connection
         if driver is None:
             result = session.connection().execute(self.clause, values)
             return result.all() if result.returns_rows else ()
@@ -62,7 +66,12 @@ class Statement:
             rows = driver.execute(compiled.text, row).fetchall()
         except sqlite3.Error as error:
             raise _translated(compiled.text, row, error) from error
-        return _converted(rows, compiled.reading) if compiled.reading else rows
+        if compiled.reading:
+            rows = list(map(list, rows))
+            for row in rows:
+                for n, convert in compiled.reading.items():
+                    row[n] = convert(row[n])
+        return rows
 
     def scalar(self, session: Session, values: Values | None = None) -> int | None:
         """The number in the first column of the first row; None if there is no row."""
@@ -116,10 +125,6 @@ class _Compiled:
     constants: Values
     writing: dict[int, _Convert]
     reading: dict[int, _Convert]
-
-
-def _converted(rows: Iterable[Row], converts: Mapping[int, _Convert]) -> list[Row]:
-    return [[converts[n](value) if n in converts else value for n, value in enumerate(row)] for row in rows]
 
 
 def _translated(text: str, parameters: object, error: sqlite3.Error) -> BaseException:

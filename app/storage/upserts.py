@@ -35,7 +35,8 @@ def upsert(session: Session, row: Base) -> None:
 
 def upsert_values(session: Session, table: FromClause, values: Values) -> None:
     """Likewise, for a row that is given as the values of its columns."""
-    _replacement(table, tuple(values), _dialect(session)).run(session, values)
+    dialect = "sqlite" if DRIVER in session.info else _dialect(session)
+    _replacement(table, tuple(values), dialect).run(session, values)
 
 
 def _dialect(session: Session) -> str:
