@@ -46,9 +46,12 @@ class Cache:
             kept = self._kept.get(key)
         return None if kept is None else kept.value
 
-    def keep(self, key: Hashable, value: object) -> None:
-        """Keep a value, also in place of one that has grown; one larger than the whole cache is not kept."""
-        size = size_of(value)
+    def keep(self, key: Hashable, value: object, size: int | None = None) -> None:
+        """Keep a value, also in place of one that has grown; one larger than the whole cache is not kept.
+
+        To measure a value takes a while; who knows its size roughly may say it [bytes].
+        """
+        size = size_of(value) if size is None else size
         with self._lock:
             self._kept.pop(key, None)
             if size <= self._kept.maxsize:

@@ -137,11 +137,6 @@ def newest(session: Session, id: str, number: int | None = None) -> Newest:
     raise _no_revision(id, number or design(session, id).head)
 
 
-def newest_document(session: Session, id: str) -> tuple[int, JsonObject]:
-    """The number and the document of a design's newest revision, without its results."""
-    return newest(session, id)[:2]
-
-
 def model_names(session: Session, id: str, number: int) -> list[str]:
     """The models of a revision, without those of its variants.
 
@@ -165,8 +160,7 @@ def document(session: Session, id: str, number: int) -> JsonObject:
         If there is none.
     """
     for stored, _ in statements.DOCUMENT.run(session, {"of": id, "at": number}):
-        found: JsonObject = stored
-        return found
+        return dict(stored)
     raise _no_revision(id, number)
 
 
@@ -276,7 +270,7 @@ def _model_row(id: str, number: int, state: ModelState) -> Values:
 
 def attach(session: Session, id: str, number: int, results: JsonObject, models: Sequence[ModelState]) -> None:
     """Attach the results of a regeneration to its revision, which becomes current."""
-    statements.ATTACHED.run(session, {"of": id, "at": number, "found": results})
+    statements.ATTACHED.run(session, {"of": id, "at": number, "computed": results})
     for state in models:
         upsert_values(session, statements.MODELS, _model_row(id, number, state))
 

@@ -111,7 +111,7 @@ class Designs:
         with self.database.read() as session:
             if before := once.find(session):
                 return _saved_before(before)
-            base, document = repository.newest_document(session, id)
+            base, document, *_ = repository.newest(session, id)
         _require_match(expected, base)
         return self._append(id, base, merge(document, patch), note, once, "design.change")
 
@@ -128,7 +128,7 @@ class Designs:
     def copy(self, id: str, name: str | None, once: Once) -> Saved:
         """A new design with the newest document of another."""
         with self.database.read() as session:
-            number, document = repository.newest_document(session, id)
+            number, document, *_ = repository.newest(session, id)
         named = {**document, "name": name or f"{document['name'][:190]} (copy)"}
         return self.create(named, f"copy of {id}, revision {number}", once, "design.copy")
 

@@ -56,7 +56,7 @@ def signed(session: Session, model: RevisionModelRow, owner: str) -> Stamp:
     )
 
 
-def _materials(build: rows.Made) -> Mapping[str, str]:
+def _materials(build: rows.Build) -> Mapping[str, str]:
     """The materials of a build's parts; of a build of an older recipe that of the whole, by its density."""
     measured: Mapping[str, Json] = build.measurements
     if "materials" in measured:

@@ -58,10 +58,10 @@ NEW_MODEL = Statement(
 ATTACHED = Statement(
     update(_REVISIONS)
     .where(_REVISIONS.c.design_id == bindparam("of"), _REVISIONS.c.number == bindparam("at"))
-    .values(results=bindparam("found"), state="current", problem=None),
+    .values(results=bindparam("computed"), state="current", problem=None),
     "of",
     "at",
-    "found",
+    "computed",
 )
 _OF_NAME = (
     select(*MODELS.c)

@@ -14,13 +14,15 @@ from sqlalchemy.orm import Session
 
 from app.identity.chain import seal
 from app.storage.database import Database
-from app.storage.tables import AuditRow
+from app.storage.statements import Statement
+from app.storage.tables import AuditRow, Base
 
 logger = logging.getLogger(__name__)
 
 PAUSE = 1.0  # between two looks [s]
 LOCK = 0x63775F7365616C  # of PostgreSQL's advisory locks, which are numbers: "cw_seal"
-_WAITING = select(AuditRow.seq).where(AuditRow.seq.is_(None)).limit(1)
+_ROWS = Base.metadata.tables[AuditRow.__tablename__]
+_WAITING = Statement(select(_ROWS.c.id).where(_ROWS.c.seq.is_(None)).limit(1))
 
 
 class Sealer:
@@ -49,7 +51,7 @@ class Sealer:
 
     def _is_wanted(self) -> bool:
         with self._database.read() as session:
-            return session.execute(_WAITING).first() is not None
+            return bool(_WAITING.run(session))
 
     def _unit(self, session: Session) -> int:
         if self._database.is_shared and not session.scalar(select(func.pg_try_advisory_xact_lock(LOCK))):

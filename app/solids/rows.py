@@ -29,7 +29,7 @@ _BUILDS = Base.metadata.tables[BuildRow.__tablename__]
 _ARTIFACTS = Base.metadata.tables[ArtifactRow.__tablename__]
 
 
-class Made(NamedTuple):
+class Build(NamedTuple):
     """A build as it was recorded."""
 
     key: str
@@ -49,7 +49,7 @@ class Artifact(NamedTuple):
 
 
 _BUILD = Statement(
-    select(*(_BUILDS.c[name] for name in Made._fields)).where(_BUILDS.c.key == bindparam("of")), "of"
+    select(*(_BUILDS.c[name] for name in Build._fields)).where(_BUILDS.c.key == bindparam("of")), "of"
 )
 _MEASURED = Statement(select(_BUILDS.c.measurements).where(_BUILDS.c.key == bindparam("of")), "of")
 _ARTIFACT = Statement(
@@ -61,18 +61,17 @@ _ARTIFACT = Statement(
 )
 
 
-def build(session: Session, key: str) -> Made | None:
+def build(session: Session, key: str) -> Build | None:
     """A build by its key, if it was made."""
     for row in _BUILD.run(session, {"of": key}):
-        return Made(*row)
+        return Build(*row)
     return None
 
 
 def measures(session: Session, key: str) -> Mapping[str, float] | None:
     """The measures of a build, if it was made."""
     for (measured,) in _MEASURED.run(session, {"of": key}):
-        found: Mapping[str, float] = measured["measures"]
-        return found
+        return dict(measured["measures"])
     return None
 
 

@@ -7,6 +7,7 @@ from sqlalchemy import Connection, Engine, create_engine, event, make_url
 from sqlalchemy.exc import OperationalError
 
 from app.storage.errors import NotForTeams
+from app.storage.statements import translated
 
 _SHARED = ("busy_timeout = 10000", "foreign_keys = on")
 _WRITER = (*_SHARED, "journal_mode = wal", "synchronous = full")
@@ -91,7 +92,12 @@ def _sqlite_engine(url: str, pragmas: tuple[str, ...], begin: str) -> Engine:
 
     @event.listens_for(engine, "begin")
     def start(connection: Connection) -> None:
-        connection.exec_driver_sql(begin)
+        driver = connection.connection.driver_connection
+        assert driver is not None
+        try:
+            driver.execute(begin)
+        except sqlite3.Error as error:
+            raise translated(begin, (), error) from error
 
     event.listen(engine, "savepoint", _expect_transaction)
     event.listen(engine, "commit", _expect_transaction)

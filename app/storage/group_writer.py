@@ -44,6 +44,7 @@ class GroupWriter:
         self._waiting: queue.SimpleQueue[_Pending | None] = queue.SimpleQueue()
         self._closing = threading.Lock()
         self._closed = False
+        self._connection: Connection | None = None  # of the thread
         self._thread = threading.Thread(target=self._serve, name="database-writer", daemon=True)
         self._thread.start()
 
@@ -80,6 +81,13 @@ class GroupWriter:
                 self._commit(group)
         if self._clock.elapsed:
             self._commit([])
+        self._disconnect()
+
+    def _disconnect(self) -> None:
+        """Give the connection back to the pool; the next group takes one again."""
+        connection, self._connection = self._connection, None
+        if connection is not None:
+            connection.close()
 
     def _next_group(self) -> tuple[list[_Pending], bool]:
         """Wait for a unit, then take those that came meanwhile; also return whether more may come."""
@@ -95,7 +103,8 @@ class GroupWriter:
     def _commit(self, group: list[_Pending]) -> None:
         start = time.perf_counter()
         try:
-            with self.engine.begin() as connection:
+            connection = self._connection = self._connection or self.engine.connect()
+            with connection.begin():
                 self._watch.refuse()  # damage may have shown while the group was waiting
                 seconds = self._clock.advance(connection)
                 for pending in group:
@@ -108,6 +117,7 @@ class GroupWriter:
             cause = self._watch.translated(error)
             for pending in group:
                 pending.refuse(cause)
+            self._disconnect()
         else:
             self._on_commit(len(group), time.perf_counter() - start, False)
             self._clock.commit(seconds)

@@ -65,7 +65,7 @@ class Statement:
         try:
             rows = driver.execute(compiled.text, row).fetchall()
         except sqlite3.Error as error:
-            raise _translated(compiled.text, row, error) from error
+            raise translated(compiled.text, row, error) from error
         if compiled.reading:
             rows = list(map(list, rows))
             for row in rows:
@@ -127,6 +127,6 @@ class _Compiled:
     reading: dict[int, _Convert]
 
 
-def _translated(text: str, parameters: object, error: sqlite3.Error) -> BaseException:
+def translated(text: str, parameters: object, error: sqlite3.Error) -> BaseException:
     """The error as SQLAlchemy raises it."""
     return DBAPIError.instance(text, parameters, error, sqlite3.Error, dialect=_SQLITE)  # type: ignore[call-overload,no-any-return]

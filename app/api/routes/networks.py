@@ -22,5 +22,5 @@ Id = Annotated[str, Path(max_length=64)]
 def show_network(id: Id, designs: TheDesigns) -> Response:
     """The dependencies of a design: its blocks in order of calculation, its relations, and names for them."""
     with designs.database.read() as session:
-        _, document = repository.newest_document(session, id)
+        document = repository.newest(session, id).document
     return Response(network_json(document, designs.catalogues), media_type="application/json")

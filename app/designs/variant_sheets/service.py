@@ -58,7 +58,7 @@ def save_sheet(
     """
     grid = read_sheet(content, kind)
     with designs.database.read() as session:
-        _, raw = repository.newest_document(session, id)
+        raw = repository.newest(session, id).document
     document = resolved(read_document(raw), designs.catalogues)
     network, _ = build_graph(document.model_copy(update={"variants": {}}), designs.catalogues)
     sheet, faults = readable_variants(grid, units_of(network), document.variants)

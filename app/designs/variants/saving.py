@@ -26,7 +26,7 @@ def replace_variants(
         With everything that is wrong with the table; nothing is saved then.
     """
     with designs.database.read() as session:
-        number, document = repository.newest_document(session, id)
+        number, document, *_ = repository.newest(session, id)
     patch = {"variants": patch_between(document.get("variants", {}), table)}
     is_any = expected is None or expected.strip() == "*"
     return designs.change(id, patch, note, f'"{number}"' if is_any else expected, once)
