@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
@@ -121,7 +121,7 @@ class Newest(NamedTuple):
     created: str
     changed: str
     state: str
-    problem: JsonObject | None
+    problem: Mapping[str, object] | None
 
 
 def newest(session: Session, id: str, number: int | None = None) -> Newest:
@@ -161,13 +161,6 @@ def document(session: Session, id: str, number: int) -> JsonObject:
     """
     for stored, _ in statements.DOCUMENT.run(session, {"of": id, "at": number}):
         return dict(stored)
-    raise _no_revision(id, number)
-
-
-def document_and_time(session: Session, id: str, number: int) -> tuple[JsonObject, str]:
-    """Likewise, with the time at which the revision was saved."""
-    for document, created in statements.DOCUMENT.run(session, {"of": id, "at": number}):
-        return document, created
     raise _no_revision(id, number)
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.designs import repository
+from app.designs import repository, statements
 from app.identity.acting import LOCAL
 from app.plain import Json
 from app.schemas.approvals import ORDER
@@ -22,7 +22,8 @@ _MM3 = 1e-9  # m³
 
 def stamp(session: Session, model: RevisionModelRow) -> Stamp:
     """The stamp of a built model: always the same, because a revision never changes."""
-    document, created = repository.document_and_time(session, model.design_id, model.number)
+    about = {"of": model.design_id, "at": model.number}
+    ((document, created),) = statements.DOCUMENT.run(session, about)
     build = rows.build(session, model.build_key or "")
     return Stamp(
         design=document["name"],
