@@ -22,10 +22,12 @@ from app.api.routes.calculations import FEW, evaluate_template, router
 from app.api.services import Services
 from app.api.waiting import as_json
 from app.calculations.cost import is_quick
+from app.calculations.prepared import prepared
 from app.calculations.schemas import EvaluateIn
 from app.calculations.service import run_evaluate
 from app.calculations.size import points
 from app.schemas.designs import Design
+from templates.core.language.template import Template
 
 LONGEST = min(65_536, MOST_BRACKETS, MOST_QUOTES)  # bytes: too short to be intricate
 _PATH = re.compile(r"/api/v1/templates/([a-z0-9_]{1,64})/versions/([1-9][0-9]{0,5})/evaluate")
@@ -33,6 +35,7 @@ _TYPES = frozenset(kind.encode() for kind in JSON_TYPES)
 _ROUTE = next(
     route for route in router.routes if isinstance(route, APIRoute) and route.endpoint is evaluate_template
 )
+_PLAIN_MEMBERS = {"inputs", "outputs"}
 _METHODS = frozenset({"POST", "PATCH"})
 _HEADER = (b"content-type", b"application/json")
 
@@ -104,12 +107,32 @@ async def _answer(services: Services, id: str, version: int, message: Message) -
         if cls is None or not is_quick(cls):
             return None
         VIEWER.check()
-        asked = EvaluateIn.model_validate(from_json(body))
+        raw = from_json(body)
+        if (content := _prepared(cls, raw)) is not None:
+            return content
+        asked = EvaluateIn.model_validate(raw)
         if len(asked.inputs) > FEW or points(asked.inputs) > FEW:
             return None
         return to_json(run_evaluate(cls, asked))
     except Exception:  # whatever it is, the general way meets it too, and answers it
         return None
+
+
+def _prepared(cls: type[Template], raw: object) -> bytes | None:
+    """The answer to a request of texts of single values alone; None to any other."""
+    if not (isinstance(raw, dict) and raw.keys() <= _PLAIN_MEMBERS):
+        return None
+    inputs, outputs = raw.get("inputs"), raw.get("outputs")
+    if not (isinstance(inputs, dict) and len(inputs) <= FEW and all(map(_is_text, inputs.values()))):
+        return None
+    if outputs is not None and not (isinstance(outputs, list) and all(map(_is_text, outputs))):
+        return None
+    ready = prepared(cls, outputs) if outputs is None or len(outputs) <= FEW else None
+    return None if ready is None else ready.answer(inputs)
+
+
+def _is_text(value: object) -> bool:
+    return type(value) is str
 
 
 async def _saved(scope: Scope, asked: PlainSave, message: Message) -> Design | None:

@@ -14,15 +14,19 @@ def rendered(ordered: Sequence[Judgement]) -> JsonObject:
     """`criteria`, worst first, and the `verdict` over them; nothing where there are no criteria."""
     if not ordered:
         return {}
+    return {"criteria": [criterion(judgement) for judgement in ordered], "verdict": verdict(ordered)}
+
+
+def verdict(ordered: Sequence[Judgement]) -> dict[str, object]:
+    """The verdict over all criteria, which stand in order."""
     summary = summarised(ordered)
-    verdict = {
+    return {
         "verdict": summary.verdict,
         "counts": dict(summary.counts),
         **({"governing": summary.governing} if summary.governing else {}),
         "headline": summary.headline,
         "green": summary.green,
     }
-    return {"criteria": [criterion(judgement) for judgement in ordered], "verdict": verdict}
 
 
 def criterion(judgement: Judgement) -> JsonObject:

@@ -93,15 +93,15 @@ def _plain(value: object) -> object:
     return [_plain(row) for row in value]
 
 
-def _errors(errors: Mapping[str, object]) -> dict[str, object]:
-    """The error of each output as JSON."""
+def errors(errors: Mapping[str, object]) -> dict[str, object]:
+    """The error of each output."""
     return {
         name: _plain(error) if isinstance(error, np.ndarray) else None if error != error else error
         for name, error in errors.items()
     }
 
 
-def _inputs(echoes: Mapping[str, Echo]) -> dict[str, object]:
+def inputs(echoes: Mapping[str, Echo]) -> dict[str, object]:
     """The inputs as they were used."""
     shown: dict[str, object] = {}
     for name, used in echoes.items():
@@ -114,17 +114,18 @@ def evaluation(result: Evaluation) -> JsonObject:
     """The whole answer to `evaluate`."""
     return {
         "template": identity(type(result.template)),
-        "inputs": _inputs(result.inputs),
+        "inputs": inputs(result.inputs),
         "outputs": outputs(result.outputs),
         "level": _plain(result.level),
-        "error": _errors(result.error),
-        "warnings": _warnings(result.warnings),
+        "error": errors(result.error),
+        "warnings": warnings(result.warnings),
         **criteria.rendered(result.criteria),
         "seconds": result.seconds,
     }
 
 
-def _warnings(notices: Iterable[Notice]) -> list[dict[str, object]]:
+def warnings(notices: Iterable[Notice]) -> list[dict[str, object]]:
+    """The warnings."""
     return [{"code": w.code, "name": w.name, "detail": w.detail} for w in notices]
 
 
@@ -132,7 +133,7 @@ def solution(result: Solution) -> JsonObject:
     """The whole answer to `solve`."""
     return {
         "unknown": quantity(result.unknown, result.unit),
-        "warnings": _warnings(result.warnings),
+        "warnings": warnings(result.warnings),
         "roots": [_root(root, result.unit) for root in result.roots],
         "touching": [_root(root, result.unit) for root in result.touching],
         "jumps": [_jump(jump, result) for jump in result.jumps],

@@ -120,3 +120,20 @@ def test_other_methods_and_versions_are_as_before(http):
 def test_without_a_key_nothing_is_evaluated(team):
     with team.http() as http:
         assert http.post(EVALUATE, json={"inputs": OIL_FILM}).status_code == 401
+
+
+def test_the_same_bytes_both_ways(http):
+    body = {"inputs": OIL_FILM, "outputs": ["minimum_film_thickness"]}
+    ways = [http.post(EVALUATE, json=body, params=query).content for query in ({}, GENERAL)]
+    first, second = (way.partition(b',"seconds":')[0] for way in ways)
+    assert first == second
+    assert b'"minimum_film_thickness":{"value":3.24' in first
+
+
+def test_a_plain_answer_is_put_together_from_prepared_parts(http, monkeypatch, served_generally):
+    def unwanted(*given):
+        raise AssertionError("not prepared")  # the router would answer then
+
+    monkeypatch.setattr("app.api.express.run_evaluate", unwanted)
+    assert http.post(EVALUATE, json={"inputs": OIL_FILM}).status_code == 200
+    assert served_generally == []

@@ -25,10 +25,11 @@ class Summary:
 
 def worst_first(judgements: Iterable[Judgement]) -> list[Judgement]:
     """Criteria in order: not met, undecided, not checked, met; inside each by utilisation, largest first."""
-    return sorted(judgements, key=_rank)
+    return sorted(judgements, key=rank)
 
 
-def _rank(judgement: Judgement) -> tuple[int, float, float, str]:
+def rank(judgement: Judgement) -> tuple[int, float, float, str]:
+    """The place of a judgement in that order."""
     used = judgement.utilisation
     margin = judgement.margin if judgement.margin is not None else 0.0
     return (

@@ -30,7 +30,7 @@ NOT_JUDGED = "check_not_judged"
 RIGHT_ANGLE = math.pi / 2  # to which the errors of angles are relative [rad]
 
 
-@dataclass(frozen=True)
+@dataclass  # frozen, each would cost three times as much
 class Evaluated:
     """The evaluated values, as criteria see them.
 
@@ -79,7 +79,7 @@ class Evaluated:
 def judged(evaluated: Evaluated) -> list[Judgement]:
     """The criteria of a template whose outputs were evaluated, worst first."""
     template = evaluated.template
-    return worst_first(_judged(evaluated, c) for c in template.declared_criteria if is_due(evaluated, c))
+    return worst_first(judged_alone(evaluated, c) for c in template.declared_criteria if is_due(evaluated, c))
 
 
 def is_due(evaluated: Evaluated, criterion: Criterion) -> bool:
@@ -113,7 +113,8 @@ def _instead(evaluated: Evaluated, criterion: Criterion) -> Instead | None:
     return Instead(judge(missing.instead, estimates, absent), missing.reason)
 
 
-def _judged(evaluated: Evaluated, criterion: Criterion) -> Judgement:
+def judged_alone(evaluated: Evaluated, criterion: Criterion) -> Judgement:
+    """One criterion whose outputs were evaluated."""
     estimates, absent = estimates_of(evaluated, criterion)
     subject = criterion.subject or ""
     shown = evaluated.shown_in[subject].text if subject in evaluated.shown_in else None
@@ -236,7 +237,7 @@ def _estimate_of_output(evaluated: Evaluated, name: str) -> Estimate | Absent:
     if formula.attribute in template.ledger.absent and not np.ndim(answer.value):
         return _absent(template, formula, answer.reason)
     axes = formula.axes if isinstance(formula, Profile) else 0
-    error, is_stated = _error(evaluated, name)
+    error, is_stated = error_of(evaluated, name)
     scale = None if axes else _scale(evaluated, name)
     if scale is not None and (scale != scale if isinstance(scale, float) else np.isnan(scale).any()):
         error, is_stated, scale = _where_it_has_a_scale(error, scale)
@@ -274,7 +275,7 @@ def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Ab
     return Absent(give, reason or absence(template, formula))
 
 
-def _error(evaluated: Evaluated, name: str) -> tuple[Any, bool]:
+def error_of(evaluated: Evaluated, name: str) -> tuple[Any, bool]:
     """The relative error of an output, and whether any was stated.
 
     A template of which no errors were measured, or one without levels whose table does not name the output,

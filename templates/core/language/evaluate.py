@@ -48,7 +48,7 @@ class Echo:
     extra: Mapping[str, Any]
 
 
-@dataclass(frozen=True)
+@dataclass  # as `Answer`
 class Evaluation:
     """The result of `evaluate`; `template` is the evaluated instance with every SI value it computed.
 
@@ -129,7 +129,7 @@ def _judged(
     )
 
 
-@dataclass(frozen=True)
+@dataclass(slots=True)  # as `Answer`
 class _Part:
     """The answers at one level, or of all levels joined."""
 
@@ -266,7 +266,7 @@ def _echoes(template: Template) -> dict[str, Echo]:
         if isinstance(typed, Typed):
             echoes[name] = Echo(typed.value, typed.unit, "given", typed.extra)
         elif typed is None and isinstance(declared, Given) and declared.default and not declared.optional:
-            echoes[name] = _default(declared)
+            echoes[name] = default_of(declared)
         elif typed is not None or is_reported(template, declared):
             echoes[name] = _echo(template, declared, typed)
     return echoes
@@ -280,8 +280,8 @@ def _echo(template: Template, declared: Input, typed: str | None) -> Echo:
 
 
 @lru_cache(maxsize=4096)  # worksheets come and go
-def _default(declared: Given) -> Echo:
-    """The constant default of an input."""
+def default_of(declared: Given) -> Echo:
+    """The constant default of an input, as it is used."""
     assert declared.default is not None
     return _shown(declared, declared.default.si, "default")
 
@@ -301,9 +301,11 @@ def _with_nulls(shown: Array) -> list[Any]:
 
 def _standing(cls: type[Template], given: Mapping[str, Any]) -> list[Notice]:
     """The warnings that hold whatever is calculated from these inputs: of the version, and of tolerances."""
-    detail = f"{cls.id} version {cls.version} is withdrawn: {cls.withdrawn}"
-    withdrawn = [Notice("withdrawn", cls.id, detail)] if cls.withdrawn else []
-    return [*withdrawn, *tolerances.unused(given)]
+    noted = tolerances.unused(given)
+    if cls.withdrawn:
+        detail = f"{cls.id} version {cls.version} is withdrawn: {cls.withdrawn}"
+        return [Notice("withdrawn", cls.id, detail), *noted]
+    return list(noted)
 
 
 def answers_at_level(template: Template, outputs: Iterable[str]) -> tuple[dict[str, Answer], dict[str, Any]]:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import filterfalse
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,10 +92,96 @@ def admitted(cls: type[Template], typed: Mapping[str, Typed | str]) -> Intake:
                 intake.warnings.extend([warning] if warning else [])
         elif source is not None:
             intake.values[declared.attribute] = source
-        elif isinstance(declared, Given) and declared.optional:
-            intake.missing.update(set() if declared.alternative else {declared.attribute})
-            intake.values[declared.attribute] = () if isinstance(declared, Table) else np.float64(np.nan)
+        else:
+            _note_missing(declared, intake)
     return intake
+
+
+class Plain(NamedTuple):
+    """Inputs of which nothing is wrong, or to be noted: single values and options."""
+
+    typed: dict[str, Typed | str]
+    values: dict[str, Any]
+    missing: set[str]
+
+
+class PlainText(NamedTuple):
+    """An input as typed, and its value [SI] or option."""
+
+    typed: Typed | str
+    value: Any
+
+
+def plain(cls: type[Template], raw: Mapping[str, Any]) -> Plain | None:
+    """The inputs of most requests, read and admitted at once; None if any needs a further look."""
+    left_out = _left_out(cls)
+    typed: dict[str, Typed | str] = {}
+    values: dict[str, Any] = {}
+    missing: set[str] = set()
+    for name, declared in cls.inputs.items():
+        given = raw.get(name)
+        if given is None:
+            default = left_out.get(name)
+            if default is None:
+                return None
+            values.update(default.values)
+            missing.update(default.missing)
+        elif type(given) is str and (text := plain_text(declared, given)):
+            typed[name], values[declared.attribute] = text
+        elif isinstance(given, Typed) and (value := _plain_value(declared, given)) is not None:
+            typed[name], values[declared.attribute] = given, value
+        else:
+            return None
+    return Plain(typed, values, missing) if len(typed) == len(raw) else None
+
+
+_defaults: WeakKeyDictionary[type[Template], dict[str, Plain]] = WeakKeyDictionary()
+
+
+def _left_out(cls: type[Template]) -> dict[str, Plain]:
+    """What stands for each input that is not given; without those that have to be given."""
+    if cls in _defaults:
+        return _defaults[cls]
+    defaults: dict[str, Plain] = {}
+    for name, declared in cls.inputs.items():
+        default = None if isinstance(declared, Derived) else declared.default
+        value = default if isinstance(default, str) else default and _plain_value(declared, default)
+        if value is not None:
+            defaults[name] = Plain({}, {declared.attribute: value}, set())
+        elif default is None and not declared.required:
+            intake = Intake()
+            _note_missing(declared, intake)
+            defaults[name] = Plain({}, intake.values, intake.missing)
+    _defaults[cls] = defaults
+    return defaults
+
+
+@lru_cache(maxsize=4096)  # who varies one input sends the others again
+def plain_text(declared: Input, text: str) -> PlainText | None:
+    """An input as typed and its value [SI], if that needs no further look."""
+    try:
+        typed = _read_one(declared, text)
+    except FaultyText:
+        return None
+    value = typed if isinstance(typed, str) else _plain_value(declared, typed)
+    return None if value is None else PlainText(typed, value)
+
+
+def _plain_value(declared: Input, typed: Typed) -> np.float64 | None:
+    """One number within its bounds and the published range."""
+    si, bounds = typed.si, declared.plain
+    if bounds and isinstance(si, float) and typed.tolerance is None and bounds[0] <= si <= bounds[1]:
+        value = np.float64(si)
+        is_published = declared.meaning.published_si is None or not outside_published(declared, value)
+        return value if is_published else None
+    return None
+
+
+def _note_missing(declared: Input, intake: Intake) -> None:
+    """Note an optional input that is not given."""
+    if isinstance(declared, Given) and declared.optional:
+        intake.missing.update(set() if declared.alternative else {declared.attribute})
+        intake.values[declared.attribute] = () if isinstance(declared, Table) else np.float64(np.nan)
 
 
 def _bounded(declared: Input, typed: Typed) -> tuple[Any, Fault | Mask | None]:

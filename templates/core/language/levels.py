@@ -104,9 +104,11 @@ class Accuracy:
         measured = [name for name in names if name in available and name not in exact]
         cell = self._cell(template) if measured else None
         estimates = {name: _looked_up(tables[name], cell) for name in measured}
-        none = np.zeros(template.shape_of_points())[()]
-        unknown = none + np.nan
-        errors = {n: estimates[n] if n in estimates else none if n in exact else unknown for n in names}
+        errors: dict[str, Any] = estimates
+        if len(estimates) < len(names):
+            none = np.zeros(template.shape_of_points())[()]
+            unknown = none + np.nan
+            errors = {n: estimates[n] if n in estimates else none if n in exact else unknown for n in names}
         for condition in self._conditions:
             if condition.holds(there):
                 errors = {name: error + condition.added(there, name) for name, error in errors.items()}

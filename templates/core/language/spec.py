@@ -114,8 +114,21 @@ class Formula(Declaration, Generic[T]):
     def __get__(self, obj: T | None, owner: type) -> Self | Array:
         if obj is None:
             return self
-        value = obj.__dict__[self.attribute] = obj.admit(self, self.function(obj))  # type: ignore[attr-defined]
+        value, span = self.function(obj), self.unremarkable
+        if span is None or type(value) is not np.float64 or not span[0] <= value <= span[1]:
+            value = obj.admit(self, value)  # type: ignore[attr-defined]
+        obj.__dict__[self.attribute] = value
         return value
+
+    @cached_property
+    def unremarkable(self) -> tuple[float, float] | None:
+        """From where to where a single result needs no further look [SI]; None where any does."""
+        meaning = self.meaning
+        if meaning.per_level or meaning.assumes:
+            return None
+        (low, high), published = meaning.interval, meaning.published_si
+        ends = published.interval() if published else (low, high)
+        return max(low, ends[0]), min(high, ends[1])
 
     @cached_property
     def expression(self) -> ast.expr:

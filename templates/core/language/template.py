@@ -41,6 +41,7 @@ from templates.core.language.intake import (
     as_typed,
     check_shapes,
     is_curve,
+    plain,
     points_of,
     read_inputs,
     violations,
@@ -165,6 +166,9 @@ class Template:
         InvalidInputs
             Naming all that is wrong at once.
         """
+        if (inputs := plain(cls, raw)) is not None:
+            ledger = Ledger(typed=inputs.typed, missing=inputs.missing)
+            return cls._kept(cls(inputs.values, ledger), pending)
         typed, faults = read_inputs(cls, raw)
         intake = admitted(cls, typed)
         if faults := [*faults, *intake.faults]:
@@ -229,6 +233,11 @@ class Template:
     def _checked(cls, values: Mapping[str, Any], ledger: Ledger, pending: Collection[str] = ()) -> Self:
         self = cls(values, ledger)
         check_shapes(self)
+        return cls._kept(self, pending)
+
+    @classmethod
+    def _kept(cls, self: Self, pending: Collection[str]) -> Self:
+        """The template, if it keeps its rules."""
         with np.errstate(all="ignore"):
             faults = violations(self, cls._due(pending) if pending else cls.requirements)
         if faults:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -39,13 +39,14 @@ _PLAIN: dict[
 }
 
 
-def closure(node: Any) -> Closure:
+def closure(node: Any, attributes: Mapping[str, str] | None = None) -> Closure:
     """A tree as a function; of a condition it gives truths, and what is not known is not true.
 
     The function takes an object with an attribute for each name of the tree, in SI: single values, or arrays
-    whose first axis is that of the points.
+    whose first axis is that of the points. `attributes` are those of the names, where they are called
+    otherwise.
     """
-    run = _closure(node)
+    run = _closure(node, attributes or {})
     return (lambda template: np.equal(run(template), 1.0)) if is_condition(node) else run
 
 
@@ -57,7 +58,7 @@ def is_condition(node: Any) -> bool:
     return operation is IS or operation in LOGIC.values() or operation in COMPARISONS.values()
 
 
-def _closure(node: Any) -> Closure:
+def _closure(node: Any, attributes: Mapping[str, str]) -> Closure:
     match node:
         case Constant(value=value):
             plain = np.float64(value)  # a float of Python would raise at 1/0
@@ -65,8 +66,9 @@ def _closure(node: Any) -> Closure:
         case Word(text=text):
             return lambda template: text
         case Name(name=name):
-            return operator.attrgetter(name)
-    calculate, parts = _calculation(node.operation), [_closure(part) for part in node.arguments]
+            return operator.attrgetter(attributes.get(name, name))
+    calculate = _calculation(node.operation)
+    parts = [_closure(part, attributes) for part in node.arguments]
     match parts:
         case [only]:
             return lambda template: calculate(only(template))
