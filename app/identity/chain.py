@@ -7,7 +7,7 @@ takes out or puts in a row has to write all that follow again, and then meets no
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from sqlalchemy import BigInteger, Select, bindparam, cast, func, select, update
@@ -21,9 +21,17 @@ from app.storage.tables import AuditRow, Base, canonical_json
 AT_ONCE = 1000  # rows that are read together
 SOME = 100  # rows that one unit seals: others' writes wait a few milliseconds for it
 NO_NUMBER = 2**62  # no sealer comes so far: whoever writes such a number leaves room for those that follow
-_TEXTS = ("id", "at", "principal", "name", "action", "object", "digest", "previous", "hash")
+_SAID = ("id", "at", "principal", "name", "action", "object", "digest")
+_TEXTS = (*_SAID, "previous", "hash")
 _DAMAGED = (DBAPIError, DatabaseDamaged)  # when SQLite reads a text that is none
 _ROWS = Base.metadata.tables[AuditRow.__tablename__]
+_UNSEALED = Statement(
+    select(*(_ROWS.c[name] for name in _TEXTS))
+    .where(_ROWS.c.seq.is_(None))
+    .order_by(_ROWS.c.id)
+    .limit(bindparam("most")),
+    "most",
+)
 _SEALED = Statement(
     update(_ROWS)
     .where(_ROWS.c.id == bindparam("row"))
@@ -58,17 +66,16 @@ class Verified:
 
 def hash_of(row: AuditRow, seq: int, previous: str | None) -> str:
     """The hash of a row at a place in the chain."""
-    said = {
-        "id": row.id,
-        "at": row.at,
-        "principal": row.principal,
-        "name": row.name,
-        "action": row.action,
-        "object": row.object,
-        "digest": row.digest,
-        "seq": seq,
-        "previous": previous,
-    }
+    return _hash(_said(row), seq, previous)
+
+
+def _said(row: AuditRow) -> dict[str, object]:
+    """What a row says, by its columns."""
+    return {name: getattr(row, name) for name in _SAID}
+
+
+def _hash(row: Mapping[str, object], seq: int, previous: str | None) -> str:
+    said = {name: row[name] for name in _SAID} | {"seq": seq, "previous": previous}
     return hashlib.sha256(canonical_json(said).encode()).hexdigest()
 
 
@@ -170,12 +177,23 @@ def _readable(session: Session, query: Select[AuditRow]) -> list[AuditRow]:
         return []
 
 
+def _unsealed(session: Session) -> list[dict[str, object]]:
+    """What the rows of `waiting` say; without the ORM, unless one of them is damaged."""
+    session.flush()
+    try:
+        rows = _UNSEALED.run(session, {"most": SOME})
+    except _DAMAGED:
+        return [_said(row) for row in waiting(session)]
+    texts = (row for row in rows if all(isinstance(value, str | None) for value in row))
+    return [dict(zip(_TEXTS, row, strict=True)) for row in texts]
+
+
 def seal(session: Session) -> int:
     """Number and chain rows that wait, in a unit of work; return how many."""
     last, sealed = head(session), list[Values]()
-    for row in waiting(session):
-        before, last = last, Link(last.seq + 1, hash_of(row, last.seq + 1, last.hash))
-        sealed.append({"row": row.id, "number": last.seq, "before": before.hash, "own": last.hash})
+    for row in _unsealed(session):
+        before, last = last, Link(last.seq + 1, _hash(row, last.seq + 1, last.hash))
+        sealed.append({"row": row["id"], "number": last.seq, "before": before.hash, "own": last.hash})
     if sealed:
         _SEALED.run_many(session, sealed)
     return len(sealed)

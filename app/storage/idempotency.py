@@ -1,8 +1,8 @@
 """Requests that may be sent again: one Idempotency-Key, one change.
 
 The key is kept in the transaction of the change itself, so that after a crash a repeated request finds
-either the change or nothing. It is inserted before anything else: of two requests that several servers carry
-out at the same time, the second waits there for the first.
+either the change or nothing. Where several servers share a database it is inserted before anything else: of
+two requests that they carry out at the same time, the second waits there for the first.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from app.plain import JsonObject
 from app.storage.clock import operated
 from app.storage.errors import KeyReused
 from app.storage.identity import now
-from app.storage.statements import Statement, Values
+from app.storage.statements import DRIVER, Statement, Values
 from app.storage.tables import Base, IdempotencyRow
 from app.storage.units import repeatable
 from app.storage.upserts import insert_new_values, upsert_values
@@ -62,7 +62,7 @@ class Once:
         return self._answer(*next(iter(kept.values()))) if kept else None
 
     def begin(self, session: Session) -> JsonObject | None:
-        """The stored answer of an equal earlier request; else reserve its key and let `keep` follow.
+        """The stored answer of an equal earlier request; else let `keep` follow, for which a key is reserved.
 
         It comes first in a unit of work: while another server carries out the same request, this waits.
 
@@ -73,6 +73,8 @@ class Once:
         """
         if not self.key:
             return None
+        if DRIVER in session.info:  # SQLite runs one unit after another: nobody else carries it out meanwhile
+            return self.find(session)
         repeatable(session)
         kept = self._kept(session)
         if self.client != BEFORE_CLIENTS and BEFORE_CLIENTS in kept:

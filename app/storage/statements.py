@@ -58,10 +58,7 @@ class Statement:
             result = session.connection().execute(self.clause, values)
             return result.all() if result.returns_rows else ()
         compiled = self._compiled
-        row = list(map({**compiled.constants, **(values or {})}.__getitem__, compiled.places))
-        for n, convert in compiled.writing.items():
-            if row[n] is not None:
-                row[n] = convert(row[n])
+        row = compiled.parameters(values or {})
         try:
             rows = driver.execute(compiled.text, row).fetchall()
         except sqlite3.Error as error:
@@ -82,11 +79,16 @@ class Statement:
 
     def run_many(self, session: Session, many: Sequence[Values]) -> None:
         """Execute it once for each of several sets of values; it returns no rows."""
-        if DRIVER in session.info:
-            for values in many:
-                self.run(session, values)
-        else:
+        driver: sqlite3.Connection | None = session.info.get(DRIVER)
+        if driver is None:
             session.connection().execute(self.clause, many)
+            return
+        compiled = self._compiled
+        rows = [compiled.parameters(values) for values in many]
+        try:
+            driver.executemany(compiled.text, rows)
+        except sqlite3.Error as error:
+            raise _translated(compiled.text, rows, error) from error
 
     @cached_property
     def _compiled(self) -> _Compiled:
@@ -125,6 +127,14 @@ class _Compiled:
     constants: Values
     writing: dict[int, _Convert]
     reading: dict[int, _Convert]
+
+    def parameters(self, values: Values) -> list[object]:
+        """The parameters of one execution."""
+        row = list(map({**self.constants, **values}.__getitem__, self.places))
+        for n, convert in self.writing.items():
+            if row[n] is not None:
+                row[n] = convert(row[n])
+        return row
 
 
 def translated(text: str, parameters: object, error: sqlite3.Error) -> BaseException:
