@@ -88,7 +88,7 @@ class Statement:
         try:
             driver.executemany(compiled.text, rows)
         except sqlite3.Error as error:
-            raise _translated(compiled.text, rows, error) from error
+            raise translated(compiled.text, rows, error) from error
 
     @cached_property
     def _compiled(self) -> _Compiled:
