@@ -50,7 +50,7 @@ def list_command(
 
 
 @audit_command.command("verify")
-@click.option("--head", default=None, help="a hash that was noted earlier; it has to be in the chain")
+@click.option("--head", default=None, help="a hash that you recorded earlier; it must be in the chain")
 @_data
 @click.pass_context
 def verify_command(ctx: click.Context, head: str | None, data: Path | None) -> None:

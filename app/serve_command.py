@@ -21,14 +21,12 @@ from app.storage.ownership import require_own_store
 
 
 @click.command("serve")
+@click.option("--host", default=None, help="address to listen on; 127.0.0.1 unless CRANKWRIGHT_HOST is set")
 @click.option(
-    "--host", default=None, help="address to listen on; 127.0.0.1 unless CRANKWRIGHT_HOST says else"
-)
-@click.option(
-    "--port", default=None, type=click.IntRange(0, 65535), help="8000 unless CRANKWRIGHT_PORT says else"
+    "--port", default=None, type=click.IntRange(0, 65535), help="8000 unless CRANKWRIGHT_PORT is set"
 )
 @click.option("--data", type=click.Path(path_type=Path), default=None, help="folder of designs and artifacts")
-@click.option("--insecure", is_flag=True, help="listen beyond this machine although nothing asks for a key")
+@click.option("--insecure", is_flag=True, help="listen beyond this machine although no key is required")
 def serve_command(host: str | None, port: int | None, data: Path | None, insecure: bool) -> None:
     """Serve the REST interface; its documentation is at /docs."""
     given: JsonObject = {"data": data, "host": host, "port": port}

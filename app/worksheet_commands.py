@@ -170,7 +170,7 @@ def release_command(id: str, url: str | None, data: Path | None) -> None:
 
 @worksheet_command.command("withdraw")
 @click.argument("id")
-@click.option("--reason", required=True, help="why it shall not be used any longer")
+@click.option("--reason", required=True, help="why it must no longer be used")
 @click.option("--version", type=int, default=None, help="the newest released one, if not given")
 @url_option
 @data_option

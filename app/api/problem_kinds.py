@@ -60,7 +60,7 @@ INTERNAL = Kind("internal", 500, "The service failed", "this is a fault of the p
 CANCELLED = Kind("cancelled", 409, "The work was cancelled", "send the change again")
 
 NOT_READY = Kind("not-ready", 503, "The service is not ready", "see `errors`; ask the operator")
-REBUILDING = Kind("rebuilding", 503, "The file is being made again", "retry after the time in Retry-After")
+REBUILDING = Kind("rebuilding", 503, "The file is being rebuilt", "retry after the time in Retry-After")
 
 TABLE: dict[type[Exception], Kind] = {
     templates.InvalidInputs: INVALID,
@@ -94,7 +94,7 @@ TABLE: dict[type[Exception], Kind] = {
         "same-principal", 409, "Another principal has to act", "let somebody else take this step"
     ),
     approvals.OtherDigest: Kind(
-        "other-digest", 412, "There is something else to sign", "read the approvals again, then sign"
+        "other-digest", 412, "The content to sign has changed", "read the approvals again, then sign"
     ),
     worksheets.StaleWorksheet: Kind(
         "stale-worksheet", 412, "The worksheet has changed", "read it again, then retry"
@@ -121,19 +121,22 @@ TABLE: dict[type[Exception], Kind] = {
     NotJson: Kind("unsupported-media-type", 415, "The body is not JSON", "send application/json"),
     NotCsv: Kind("not-csv", 415, "The body is not CSV", "send text/csv in UTF-8"),
     NotSheet: Kind(
-        "not-sheet", 415, "The body is not said to be a file", "send the file as application/octet-stream"
+        "not-sheet", 415, "The media type is that of no file", "send the file as application/octet-stream"
     ),
     NotModel: Kind(
-        "not-model", 415, "The body is not said to be a model", "send the file as application/octet-stream"
+        "not-model",
+        415,
+        "The media type is that of no model",
+        "send the file as application/octet-stream",
     ),
-    NotStep: Kind("not-step", 415, "The body is not said to be STEP", "send the file as model/step"),
+    NotStep: Kind("not-step", 415, "The media type is not that of STEP", "send the file as model/step"),
     NotForm: Kind("not-a-form", 415, "The body is not a form", "send application/x-www-form-urlencoded"),
     BadHost: Kind("bad-host", 400, "The request names no host", "send one header Host, and the path alone"),
     HostNotAllowed: Kind(
         "host-not-allowed",
         421,
         "The service does not answer to this host",
-        "ask by localhost or the address it listens on, or let the operator set CRANKWRIGHT_ALLOWED_HOSTS",
+        "ask by localhost or the address it listens on, or ask the operator to set CRANKWRIGHT_ALLOWED_HOSTS",
     ),
     CrossSite: Kind(
         "cross-site",
@@ -146,7 +149,7 @@ TABLE: dict[type[Exception], Kind] = {
     TooIntricate: Kind("body-too-intricate", 413, "The body is too intricate", "send less at once"),
     NoArray: Kind("no-array", 406, "The answer is not an array", "ask for application/json; see `detail`"),
     TooManyValues: Kind("too-many-values", 413, "Too many values", "ask for fewer points or outputs"),
-    BodyTooSlow: Kind("too-slow", 408, "The request comes too slowly", "send it faster, or in parts"),
+    BodyTooSlow: Kind("too-slow", 408, "The request arrives too slowly", "send it faster, or in parts"),
     TooManyStreams: Kind("too-many-streams", 429, "Too many streams are open", "close some, then retry"),
     identity.NotSignedIn: Kind(
         "not-signed-in", 401, "A key is needed", "send `Authorization: Bearer cw_…`, or sign in at /sign-in"
@@ -156,16 +159,16 @@ TABLE: dict[type[Exception], Kind] = {
     ),
     identity.NotOwn: Kind("not-own", 403, "This belongs to another", "ask its owner or an administrator"),
     identity.KeyInAddress: Kind(
-        "key-in-address", 400, "A key stands in the address", "revoke it; send keys in Authorization alone"
+        "key-in-address", 400, "The address contains a key", "revoke it; send keys only in Authorization"
     ),
     LimitReached: Kind(
         "limit-reached",
         429,
-        "You have used what you may",
+        "Your limit is used up",
         "retry after the time in Retry-After; without it, ask an administrator",
     ),
     identity.Outlives: Kind("outlives-key", 403, "The key would live too long", "ask for a shorter life"),
-    identity.TooManyKeys: Kind("too-many-keys", 409, "There are too many keys", "go on with those there are"),
+    identity.TooManyKeys: Kind("too-many-keys", 409, "There are too many keys", "use or revoke an old one"),
     ProviderRefused: Kind("provider-refused", 403, "The sign-in failed", "begin again, or sign in by a key"),
     identity.FirstByCommand: Kind(
         "first-by-command", 409, "There are no keys yet", "the operator makes the first one; see `detail`"
@@ -180,7 +183,7 @@ TABLE: dict[type[Exception], Kind] = {
     storage.ArtifactMissing: Kind(
         "no-such-artifact", 404, "No such artifact", "take the hash from a revision"
     ),
-    storage.ArtifactDamaged: Kind("artifact-damaged", 503, "The file is damaged", "retry: it is made again"),
+    storage.ArtifactDamaged: Kind("artifact-damaged", 503, "The file is damaged", "retry: it is rebuilt"),
     storage.ArtifactsUnreachable: Kind(
         "files-unreachable", 503, "The file store does not answer", "retry after the time in Retry-After"
     ),
@@ -193,19 +196,22 @@ TABLE: dict[type[Exception], Kind] = {
     RowsLost: REBUILDING,
     storage.StorageError: Kind("storage", 503, "The storage is not available", "retry; ask the operator"),
     ProgramMissing: Kind(
-        "program-missing", 503, "The program that draws the model is not here", "install it; see `detail`"
+        "program-missing",
+        503,
+        "The model's program is not installed",
+        "install it; see `detail`",
     ),
-    UnreadableModel: Kind("unreadable-model", 422, "The file is not taken as a model", "see `detail`"),
+    UnreadableModel: Kind("unreadable-model", 422, "The file cannot be read as a model", "see `detail`"),
     ModelIdTaken: Kind(
         "model-id-taken", 409, "The id of a model is taken", "choose another id; see `detail`"
     ),
-    GeometryError: Kind("geometry", 422, "No sound solid came out", "change the parameters in `errors`"),
+    GeometryError: Kind(
+        "geometry", 422, "These values give no sound solid", "change the parameters in `errors`"
+    ),
     AnalysisError: Kind(
         "analysis", 422, "The solid could not be analysed", "see `errors`; fillets and less accuracy help"
     ),
-    SheetNotRead: Kind(
-        "unreadable-sheet", 422, "The file is not taken as a sheet of Mathcad", "see `detail`"
-    ),
+    SheetNotRead: Kind("unreadable-sheet", 422, "The file cannot be read as a Mathcad sheet", "see `detail`"),
     UnreadableStep: Kind("unreadable-step", 422, "Not a STEP file", "send a STEP file (ISO 10303-21)"),
     workers.DeadlineExceeded: Kind("deadline", 422, "The work took too long", "simplify the model"),
     workers.MemoryExceeded: Kind("memory", 422, "The work took too much memory", "simplify the model"),

@@ -34,7 +34,7 @@ class SamePrincipal(ApprovalError):
 
 
 class OtherDigest(ApprovalError):
-    """There is something else to sign than what the signer saw."""
+    """What there is to sign is not what the signer saw."""
 
     def __init__(self, right: str) -> None:
         self.headers = {"ETag": f'"{right}"'}

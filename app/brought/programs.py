@@ -91,7 +91,7 @@ def given_to_freecad(one: Parameter, value: float) -> list[str | float]:
 
 
 SET_CREO = (
-    "let the operator set CRANKWRIGHT_CREOSON_URL, such as http://127.0.0.1:9056/creoson, and "
+    "ask the operator to set CRANKWRIGHT_CREOSON_URL, such as http://127.0.0.1:9056/creoson, and "
     "CRANKWRIGHT_CREOSON_FOLDER, the folder into which Creo exports"
 )
 

@@ -38,7 +38,7 @@ class NotOwn(IdentityError):
 
 
 class KeyInAddress(IdentityError):
-    """A key stands in the address, which is kept by logs and histories on the way."""
+    """The address contains a key, and logs and histories on the way keep addresses."""
 
     def __init__(self) -> None:
         super().__init__(

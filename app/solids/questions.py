@@ -59,13 +59,13 @@ class Options(Bounded):
     boundary: Boundary = Field(
         "free_end", description="the loaded end: `free_end`, or kept on the axis, `guided_end`"
     )
-    level: Level | None = Field(None, description="how fine the mesh is; `default`, if nothing is said")
+    level: Level | None = Field(None, description="how fine the mesh is; `default` if not given")
     tolerance: float | None = Field(
         None, gt=0, le=1, description="the largest relative error wanted, instead of a level"
     )
     load: str | JsonObject | None = Field(
         None,
-        description="the torque or bending moment under which stress is given; 1 N*m, if nothing is said",
+        description="the torque or bending moment under which stress is given; 1 N*m if not given",
         examples=["500 N*m"],
     )
 

@@ -122,7 +122,7 @@ class TimedProtocol(WholeTarget):
         self._head_timer = None
         if self._in_head:
             detail = f"send the request line and all headers within {self.limits.header_seconds:g} s"
-            self._refuse(408, "too-slow", "The request comes too slowly", detail)
+            self._refuse(408, "too-slow", "The request arrives too slowly", detail)
         else:
             self._cut("silent")
 

@@ -25,9 +25,7 @@ class Driven(Bounded):
     model_config = _STRICT
 
     name: str = Field(max_length=60, pattern=r"^[a-z][a-z0-9]*(_[a-z0-9]+)*$", description="in relations")
-    words: str = Field(
-        "", max_length=100, pattern=_LINE, description="what it is; the name if nothing is said"
-    )
+    words: str = Field("", max_length=100, pattern=_LINE, description="what it is; the name if not given")
     dimension: str | None = Field(
         None, min_length=1, max_length=80, pattern=_LINE, description="its symbol in Creo: `D`"
     )
