@@ -61,6 +61,7 @@ def test_names_are_no_markup(http, design, path):
     assert "<b>not" not in page
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", [path for path in PAGES if "{id}" in path])
 def test_titles_are_bare(http, design, path):
     title = re.search("<title>(.*?)</title>", page_of(http, path, design), re.DOTALL)[1]

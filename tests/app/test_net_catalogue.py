@@ -40,6 +40,7 @@ def varied(net, count):
     return rows
 
 
+@pytest.mark.sampled(16)
 @pytest.mark.parametrize("template", TEMPLATES, ids=lambda key: f"{key[0]} {key[1]}")
 @pytest.mark.parametrize("count", [2, pytest.param(5, marks=pytest.mark.slow)])
 def test_property_rows_of_a_template_equal_designs(template, count):

@@ -125,7 +125,7 @@ def names_instead(cls, name):
 
 @pytest.mark.parametrize("cls", older_slow(TEMPLATES))
 @pytest.mark.parametrize("most", [8, pytest.param(1000, marks=pytest.mark.slow)])
-@pytest.mark.sampled(12)
+@pytest.mark.sampled(6)
 def test_a_report_says_met_only_of_criteria_with_value_and_limit(cls, most):
     unjudged = []
     for inputs, limits in variations(cls, most):

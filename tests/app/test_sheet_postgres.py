@@ -38,6 +38,7 @@ def test_the_migrated_schema_is_the_declared_one(postgres):
     engine.dispose()
 
 
+@pytest.mark.slow
 def test_a_release_of_one_server_is_a_template_of_the_other(both):
     here, there = both
     sheet = released(here, id="shared")

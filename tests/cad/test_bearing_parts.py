@@ -149,6 +149,7 @@ def judged(cls: type[CadModel], sets: list[dict[str, Any]]) -> None:
         assert not (drawn(cls, given) and any(value in BAD or value != value for value in given.values()))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("cls", [*QUICK, BEARING])
 def test_property_some_hostile_parts(cls: type[CadModel]) -> None:
     sets = hostile(cls)

@@ -210,6 +210,7 @@ def test_datum_geometric_tolerances_and_texture(fitted: bytes, font: ImageFont.F
     assert overlapping(svg, font) == []
 
 
+@pytest.mark.slow
 def test_words_do_not_overlap_where_everything_is_toleranced(font: ImageFont.FreeTypeFont) -> None:
     model = models().get("ball_bearing", 1)
     texts = as_text(model.from_quantities(model.example))

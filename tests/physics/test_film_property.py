@@ -68,7 +68,8 @@ def test_full_solution_bears_more_the_more_eccentric(ratio: float) -> None:
 def test_closed_forms_rise_and_invert_over_everything(load: object) -> None:
     assert callable(load)
     rng = np.random.default_rng(3)
-    So = np.sort(10 ** rng.uniform(-8, 6, 4000))
+    count = 400 if load is load_Swift_Stieber else 4000  # the one that integrates to a rupture of its own
+    So = np.sort(10 ** rng.uniform(-8, 6, count))
     width = () if load.__code__.co_argcount == 1 else (0.5,)
     eps = eccentricity(load, So, *width)
     borne = np.isfinite(eps)

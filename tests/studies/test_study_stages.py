@@ -82,6 +82,7 @@ def test_an_interrupted_front_repeats_no_finished_generation(monkeypatch, times)
         assert len(before & set(watch.begun)) <= 3 * slice_of_generations  # none but those of the lost slice
 
 
+@pytest.mark.slow
 def test_each_level_shows_its_front_its_promise_and_what_is_true_of_it(monkeypatch):
     monkeypatch.setattr(searching, "pareto_front", partial(pareto_front, effort=SMALL))
     monkeypatch.setattr(searching, "ALONE", SMALL)

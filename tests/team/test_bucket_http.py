@@ -12,6 +12,8 @@ from stored_routes import ROUTES, check_conditions, path_of
 
 from app.settings import Settings
 
+pytestmark = pytest.mark.slow  # .ci/run runs these always, beside the kills
+
 obstore = pytest.importorskip("obstore", reason="the client of S3 is not installed")
 
 WAIT = {"Prefer": f"wait={patient(20):.0f}"}

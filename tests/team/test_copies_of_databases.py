@@ -18,6 +18,8 @@ from app.storage.errors import ArtifactsUnreachable
 from app.storage.folder import DataFolder
 from app.storage.opening import opened_store
 
+pytestmark = pytest.mark.slow  # .ci/run runs these always, beside the kills
+
 
 @pytest.fixture(params=["folder", "bucket"])
 def store(request, tmp_path):

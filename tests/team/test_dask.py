@@ -22,6 +22,8 @@ from app.workers.remote.network import security
 from cad.catalogue import models
 from cad.regenerate import as_text
 
+pytestmark = pytest.mark.slow  # .ci/run runs these always, beside the kills
+
 USUAL = Limits(deadline=patient(20), memory_mb=512)
 LONG = Limits(deadline=patient(100), memory_mb=512)
 

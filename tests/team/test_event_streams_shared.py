@@ -9,6 +9,8 @@ from streams import first, messages, short
 
 from app.settings import Settings
 
+pytestmark = pytest.mark.slow  # .ci/run runs these always, beside the kills
+
 pytest.importorskip("psycopg", reason="the driver of PostgreSQL is not installed")
 DESIGN = {"name": "x", "parameters": {"a": "1"}}
 

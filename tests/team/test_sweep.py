@@ -14,6 +14,8 @@ from app.storage.database import Database
 from app.storage.folder import DataFolder
 from app.storage.opening import opened_store
 
+pytestmark = pytest.mark.slow  # .ci/run runs these always, beside the kills
+
 GRACE = 24 * 3600.0
 
 

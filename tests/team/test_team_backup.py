@@ -12,6 +12,8 @@ from app.settings import Settings
 from app.storage.folder import DataFolder
 from app.storage.opening import opened_store
 
+pytestmark = pytest.mark.slow  # .ci/run runs these always, beside the kills
+
 
 @pytest.fixture(scope="module")
 def kept(postgres, s3, tmp_path_factory):

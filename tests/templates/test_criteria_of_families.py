@@ -189,6 +189,7 @@ WIDE = {(FILM_1, "film_exists")}
 COLUMNS = ("template", "name", "changes", "limits", "verdict", "value", "limit")
 
 
+@pytest.mark.sampled(80)
 @pytest.mark.parametrize(COLUMNS, CASES, ids=NAMES)
 def test_by_hand(template, name, changes, limits, verdict, value, limit):
     judgement, _ = judged(*template, changes, limits, name)

@@ -104,6 +104,7 @@ def test_pages_have_no_serious_fault_of_accessibility(watched, kinds, is_all):
         assert serious == [], path
 
 
+@pytest.mark.slow
 def test_the_keyboard_reaches_fields_and_save_in_the_order_of_the_page(watched, http):
     watched.open(created(http, "paper"))
     page = watched.page

@@ -25,6 +25,7 @@ def undecided(http):
     return f"/designs/{design['id']}"
 
 
+@pytest.mark.slow
 def test_decide_decides_what_it_can_and_says_what_it_took(watched, undecided, http):
     page = watched.page
     watched.open(undecided)

@@ -54,6 +54,7 @@ def test_a_file_is_read_as_a_spreadsheet_saved_it(watched, tmp_path, encoding):
     expect(page.locator("[id='-crank_angle']")).to_have_value("[0, 90] °")
 
 
+@pytest.mark.slow
 def test_a_list_of_quantities_and_relations_is_edited_by_keyboard_and_saved(watched, http):
     place = from_example(http, "torsional_vibration/1")
     page = watched.page

@@ -184,6 +184,7 @@ def test_the_view_has_room_about_the_part(watched):
         assert above == pytest.approx(1e-3, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_an_analysis_offers_only_what_it_takes(watched):
     page = watched.page
     watched.open(PAGE)

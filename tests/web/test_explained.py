@@ -25,6 +25,7 @@ def shell(http):
     return f"/designs/{design['id']}"
 
 
+@pytest.mark.slow
 def test_a_verdict_leads_to_value_and_limit_and_who_gave_it(watched, shell):
     page = watched.page
     watched.open(shell)

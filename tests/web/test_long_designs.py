@@ -96,6 +96,7 @@ def test_a_worksheet_without_formulas_is_the_same_otherwise(http, long):
     assert bare == whole
 
 
+@pytest.mark.slow
 def test_a_step_is_fetched_edited_kept_as_a_draft_and_saved(watched, http, long):
     page = watched.page
     watched.open(long)

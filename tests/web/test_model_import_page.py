@@ -3,6 +3,7 @@
 import sys
 from pathlib import Path
 
+import pytest
 from playwright.sync_api import expect
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "app" / "brought"))
@@ -16,6 +17,7 @@ def sent(page, id, content, file):
     page.get_by_role("button", name="Bring the model").click()
 
 
+@pytest.mark.slow
 @needs_freecad
 def test_a_file_of_freecad_is_brought_by_a_form_alone(plain):
     page = plain.page

@@ -18,6 +18,7 @@ FILM = {
 }
 
 
+@pytest.mark.slow
 def test_a_design_begins_empty_and_its_mapping_is_proposed(watched, http):
     page = watched.page
     watched.open("/designs/new?design_name=mine&template=oil_film/1&model=plain_bearing/1")

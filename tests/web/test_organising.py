@@ -30,6 +30,7 @@ def organise(place):
     place.locator("details.organise > summary").click()
 
 
+@pytest.mark.slow
 def test_a_design_is_tagged_found_and_archived_from_the_home_page(watched, http, design, word):
     page, tag = watched.page, f"{word} V8"
     watched.open("/")

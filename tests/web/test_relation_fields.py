@@ -31,6 +31,7 @@ def opened(watched, paper):
     assert [fault for fault in watched.faults() if "422" not in str(fault)] == []
 
 
+@pytest.mark.slow
 def test_a_relation_completes_its_names_by_keyboard(opened):
     bore = field(opened, "model.inner_diameter")
     bore.fill("")

@@ -124,6 +124,7 @@ def test_a_design_that_cannot_be_analysed_says_why(http):
     assert "write one as in 55 ± 5 um" in page.text
 
 
+@pytest.mark.slow
 def test_a_finished_job_is_a_part_of_the_page(http, toleranced):
     job = job_of(http, toleranced)
     part = http.get(f"{toleranced}/tolerances", params={"part": "1", "job": job.rpartition("/")[2]})

@@ -232,6 +232,7 @@ def test_five_mains_are_typed_as_a_newcomer_writes_them(watched, http, shell):
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_a_block_of_a_spreadsheet_is_pasted_into_the_cells(watched, http, two):
     page = watched.page
     watched.open(two)

@@ -102,6 +102,7 @@ def test_names_units_and_keywords_are_completed_by_keyboard_and_undone(watched, 
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_a_fault_is_explained_under_its_line_and_sound_lines_stay(watched, http):
     area = opened(watched, stored(http, "explained"))
     page = watched.page

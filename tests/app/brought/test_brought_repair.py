@@ -31,6 +31,7 @@ def repaired(data):
     return CliRunner().invoke(main, ["check", "--repair", "--data", str(data)])
 
 
+@pytest.mark.slow
 def test_a_lost_build_is_drawn_again_with_the_same_bytes(kept):
     data, _, built = kept
     before = {path: path.read_bytes() for path in built}

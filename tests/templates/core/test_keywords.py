@@ -61,6 +61,7 @@ def complaints(tmp_path_factory):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("line", "complaint"), LINES.items())
 def test_property_a_type_checker_sees_a_wrong_keyword(complaints, line, complaint):
     assert (complaint in complaints[line]) if complaint else complaints[line] == ""

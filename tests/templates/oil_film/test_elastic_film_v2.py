@@ -152,7 +152,7 @@ class TestAnswers:
         [
             ({}, "elastic", "compliance_modes"),
             ({**rows(RING), "bore_width": "17 mm"}, "elastic", "bore_width"),
-            (rows(1e5 * RING), "elastic", "relative_eccentricity"),
+            pytest.param(rows(1e5 * RING), "elastic", "relative_eccentricity", marks=pytest.mark.slow),
         ],
     )
     def test_property_refuses_by_name(self, raw, level, name):
