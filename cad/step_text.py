@@ -63,7 +63,10 @@ def without_noise(text: str) -> str:
 
 
 def _usage(start: str, number: int, rest: str) -> str:
-    """A usage by its number in the file, with lines as the writer breaks them for this number."""
+    """A usage by its number in the file. Its lines break by widths alone, whatever the kernel's number was.
+
+    The kernel's writer may break before a comma; here a comma stays with what is before it.
+    """
     lines = [f"{start}'{number}',"]
     for token in _TOKEN.findall(rest.replace("\n  ", "").removesuffix(")")):
         _append(lines, token)
