@@ -49,6 +49,16 @@ def test_analytic_squeeze_of_a_short_bearing() -> None:
     assert squeezed(time, 400) == pytest.approx(0.7, abs=2e-4)
 
 
+@pytest.mark.parametrize(
+    "rows", [[[1.0, 2.0], [2.0, 4.0]], [[1.0, -3.0], [-2.0, 6.0]], [[5.0, 1.0], [2.0, 3.0]]]
+)
+def test_a_displacement_is_a_solution_and_of_several_the_shortest(rows: list[list[float]]) -> None:
+    """Against the pseudo-inverse, also where the determinant vanishes."""
+    (a, b), (c, d) = rows
+    wanted = np.linalg.pinv(np.array(rows)) @ [1.0, 2.0]
+    assert kernel.displacement(a, b, c, d, 1.0, 2.0) == pytest.approx(wanted, abs=1e-12)
+
+
 @pytest.mark.parametrize("edges", [(), (0.1,), (0.25,), (0.7,), (0.95,)])
 @pytest.mark.parametrize("across", [4, 6, 12])
 def test_rows_across_integrate_an_even_parabola(edges: tuple[float, ...], across: int) -> None:

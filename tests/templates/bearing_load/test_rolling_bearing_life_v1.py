@@ -6,6 +6,7 @@ import pytest
 from templates.bearing_load.rolling_bearing_life_v1 import RollingBearingLife
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
+from templates.physics.rolling.rating_life import mean_load
 
 PLAIN = {
     "radial_load": "10 kN", "speed": "3000 rpm", "dynamic_capacity": "55.3 kN", "static_capacity": "31.5 kN",
@@ -129,3 +130,9 @@ def test_property_refusals_name_the_input(change, name, words):
     faults = refused({**PLAIN, **change})
     assert name in faults, faults
     assert words in faults[name]
+
+
+def test_property_a_mean_load_scales_with_its_loads():
+    """A half turn at P and one without load: (P^p/2)^(1/p), for a millionth of a newton as for a million."""
+    for size in (1e-6, 0.5, 1.0, 1e6):
+        assert mean_load(np.array([size, 0.0]), 3.0) == pytest.approx(size * 0.5 ** (1 / 3), rel=1e-12)

@@ -230,6 +230,12 @@ class TestRefusals:
         error = refusal(text)
         assert (error.code, error.meta.column) == (code, column)
 
+    def test_a_list_that_is_written_out_is_named_by_its_items(self):
+        assert "2 items" in str(refusal("F * [1, 2]"))
+        single = str(refusal("F * [1]"))
+        assert "1 item" in single
+        assert "1 items" not in single
+
     @pytest.mark.parametrize(
         "text",
         [
