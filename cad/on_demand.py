@@ -6,6 +6,9 @@ a stand-in. The first use of one (a call, an attribute) imports the kernel and p
 every stand-in that a module holds. So nothing fails for this; it comes later.
 
 Modules that need the kernel while they are imported say so by `constant` and `once_loaded`.
+
+The kernel is then loaded without VTK, with which CadQuery shows shapes on a screen: of that it gets stand-ins
+too. No function of ours uses it; a team's model may, and the first use imports it.
 """
 
 from __future__ import annotations
@@ -24,11 +27,13 @@ T = TypeVar("T")
 
 PACKAGES = frozenset({"cadquery", "OCP", "ezdxf", "typst", "PIL"})
 """What is postponed together."""
+DISPLAY = frozenset({"vtkmodules", "OCP.IVtk", "OCP.IVtkOCC", "OCP.IVtkVTK"})
+"""What stays postponed when the kernel is loaded; it takes 110 MB."""
 
 
 def postpone() -> None:
     """Have modules that are imported from now on get stand-ins; nothing changes if the kernel is there."""
-    if not is_loaded() and _finder not in sys.meta_path:
+    if not is_loaded() and not is_postponed():
         sys.meta_path.insert(0, _finder)
 
 
@@ -61,14 +66,31 @@ def load() -> None:
         if not is_postponed():
             return
         sys.meta_path.remove(_finder)
-        for name in [name for name, module in sys.modules.items() if isinstance(module, _Module)]:
-            del sys.modules[name]
+        _forget(_Module)
+        sys.meta_path.insert(0, _display)
         import_module("cadquery")
         for name in list(sys.modules):
             if _may_hold(name):
-                _complete(sys.modules[name])
+                _complete(sys.modules[name], StandIn)
         while _following:
             _following.pop(0)()
+
+
+def _load_display() -> None:
+    """Import VTK for good; a second call does nothing."""
+    with _loading:
+        if _display in sys.meta_path:
+            sys.meta_path.remove(_display)
+            _forget(_DisplayModule)
+            for name in list(sys.modules):
+                if name.partition(".")[0] == "cadquery" or _may_hold(name):
+                    _complete(sys.modules[name], _DisplayStandIn)
+
+
+def _forget(kind: type[ModuleType]) -> None:
+    """Have the real modules imported in place of those of a kind."""
+    for name in [name for name, module in sys.modules.items() if type(module) is kind]:
+        del sys.modules[name]
 
 
 def _may_hold(name: str) -> bool:
@@ -84,11 +106,11 @@ def _may_hold(name: str) -> bool:
     return not is_foreign or name.partition(".")[0] in _asking
 
 
-def _complete(module: ModuleType) -> None:
-    """Put the real things in place of the stand-ins in the namespace of a module."""
+def _complete(module: ModuleType, kind: type[StandIn]) -> None:
+    """Put the real things in place of the stand-ins of a kind in the namespace of a module."""
     names = getattr(module, "__dict__", {})
     for name, value in list(names.items()):
-        if type(value) is StandIn:
+        if type(value) is kind:
             names[name] = value.real()
 
 
@@ -98,9 +120,11 @@ class StandIn:
     def __init__(self, make: Callable[[], object]) -> None:
         self.__dict__["_make"] = make
 
+    _load: Callable[[], None] = staticmethod(load)
+
     def real(self) -> object:
         """The thing itself."""
-        load()
+        self._load()
         if "_real" not in self.__dict__:
             make: Callable[[], object] = self.__dict__["_make"]
             self.__dict__["_real"] = make()
@@ -136,8 +160,24 @@ class StandIn:
         return (self.real(),)
 
 
+class _DisplayStandIn(StandIn):
+    """Something of VTK, in a module of the kernel or of a team."""
+
+    _load = staticmethod(_load_display)
+
+    def __getattr__(self, name: str) -> object:
+        """An attribute of the thing itself; none by which `typing` tells annotations apart."""
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return super().__getattr__(name)
+
+    def __instancecheck__(self, instance: object) -> bool:
+        """True if something is an instance of the class; before VTK is loaded there is none."""
+        return _display not in sys.meta_path and isinstance(instance, cast(type, self.real()))
+
+
 def _real(value: object) -> object:
-    return value.real() if type(value) is StandIn else value
+    return value.real() if isinstance(value, StandIn) else value
 
 
 class _Module(ModuleType):
@@ -151,6 +191,16 @@ class _Module(ModuleType):
         return StandIn(lambda: _imported(place, name))
 
 
+class _DisplayModule(ModuleType):
+    """Stands in for a module of VTK, or of the kernel's part for it."""
+
+    def __getattr__(self, name: str) -> object:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        place = self.__name__
+        return _DisplayStandIn(lambda: _imported(place, name))
+
+
 def _imported(place: str, name: str) -> object:
     """What `from place import name` gives: an attribute, else a module."""
     module = import_module(place)
@@ -158,18 +208,21 @@ def _imported(place: str, name: str) -> object:
 
 
 class _Finder(MetaPathFinder, Loader):
-    """Finds a stand-in for each module of the kernel."""
+    """Finds a stand-in for each module of some packages."""
+
+    def __init__(self, packages: frozenset[str], kind: type[ModuleType]) -> None:
+        self._packages, self._kind = packages, kind
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """The stand-in, if the module is one of the kernel."""
-        is_ours = fullname.partition(".")[0] in PACKAGES
+        """The stand-in, if the module is one of these packages."""
+        is_ours = not self._packages.isdisjoint((fullname, fullname.partition(".")[0]))
         return ModuleSpec(fullname, self, is_package=True) if is_ours else None
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
         """An empty module."""
-        return _Module(spec.name)
+        return self._kind(spec.name)
 
     def exec_module(self, module: ModuleType) -> None:
         """Do nothing: there is nothing to run."""
@@ -178,6 +231,6 @@ class _Finder(MetaPathFinder, Loader):
 _PYTHON = os.path.dirname(os.__file__)
 _asking: set[str] = set()
 """The packages of which a module has asked for something of the kernel."""
-_finder = _Finder()
+_finder, _display = _Finder(PACKAGES, _Module), _Finder(DISPLAY, _DisplayModule)
 _loading = threading.RLock()
 _following: list[Callable[[], object]] = []

@@ -2,6 +2,7 @@
 
 import json
 import os
+import select
 import signal
 import socket
 import subprocess
@@ -100,8 +101,10 @@ class JobProcess:
 
     def _converse(self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event) -> Outcome:
         end = time.monotonic() + limits.deadline
+        messages = select.poll()  # one for all: `Connection.poll` makes a selector each time
+        messages.register(self._connection.fileno(), select.POLLIN)
         while True:
-            self._await_message(end, limits, cancelled)
+            _await_message(messages, end, limits, cancelled)
             match self._receive():
                 case Progress(fraction, text):
                     if on_progress is not None:
@@ -109,16 +112,6 @@ class JobProcess:
                 case Returned() | Raised() as outcome:
                     self.reusable = outcome.reusable
                     return outcome
-
-    def _await_message(self, end: float, limits: Limits, cancelled: threading.Event) -> None:
-        waiting = True
-        while waiting:
-            if cancelled.is_set():
-                raise JobCancelled
-            left = end - time.monotonic()
-            if left <= 0:
-                raise DeadlineExceeded(limits.deadline)
-            waiting = not self._connection.poll(min(left, _GLANCE))
 
     def _receive(self) -> object:
         try:
@@ -131,6 +124,18 @@ class JobProcess:
             return int(self._status.recv())
         except EOFError:
             return None
+
+
+def _await_message(messages: select.poll, end: float, limits: Limits, cancelled: threading.Event) -> None:
+    """Wait for a message or the end of the process."""
+    while True:
+        if cancelled.is_set():
+            raise JobCancelled
+        left = end - time.monotonic()
+        if left <= 0:
+            raise DeadlineExceeded(limits.deadline)
+        if messages.poll(1e3 * min(left, _GLANCE)):
+            return
 
 
 class Process(Protocol):

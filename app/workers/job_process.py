@@ -47,12 +47,16 @@ def serve_jobs(
                 rehearse(connection.poll)
         request = receive(connection)
         reusable = not has_hung_up(connection.fileno())  # else cancelled before this process was born
+        is_first = True
         while reusable:
             answer, reusable = _answer(request, connection)
             send(connection, answer)
             del answer
             if reusable:
                 gc.collect()  # what a calculation leaves in cycles may be large
+                if is_first:
+                    gc.freeze()  # what was loaded at first use stays: later collections need not look at it
+                is_first = False
                 request = receive(connection)
         exit_code = 0
     finally:  # also when the server has closed its end, which is how it dismisses a process

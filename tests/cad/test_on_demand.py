@@ -55,3 +55,30 @@ def test_property_the_server_and_all_models_are_imported_without_the_kernel():
 def test_the_first_use_loads_the_kernel_and_gives_equal_bytes():
     digest = hashlib.sha256(regenerate_from_text("plain_bearing", 1, BUSH).step).hexdigest()
     assert run(f"import sys\n{IMPORTS}{DRAWS}")[1:] == [digest]
+
+
+SHOWS = """
+from cad import on_demand
+on_demand.postpone()
+on_demand.load()
+import sys
+import cadquery as cq
+box = cq.Workplane().box(1, 1, 1).val()
+assert box.isValid() and not hasattr(sys.modules["vtkmodules"], "__file__"), "something has used VTK"
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+assert not isinstance(box, vtkPolyData)
+seen = box.toVtkPolyData(0.1)
+assert isinstance(seen, vtkPolyData)
+print(seen.GetNumberOfPoints() > 0, sys.modules["vtkmodules"].__file__ is not None)
+cq.Assembly(box).export(sys.argv[1], "VTKJS")
+"""
+
+
+@pytest.mark.slow
+def test_what_shows_shapes_on_a_screen_is_loaded_when_a_model_uses_it(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-c", SHOWS, str(tmp_path / "box")], capture_output=True, text=True, cwd=tmp_path
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == ["True", "True"]
+    assert (tmp_path / "box.zip").exists()
