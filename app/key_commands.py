@@ -76,7 +76,7 @@ def add_command(
                 f"them: POST /api/v1/principals/{row.id}"
             )
         key, _ = identity.add_key(row.id, scopes=scopes, expires=until)
-    click.echo(f"a key of {name} ({', '.join(scopes or row.roles)}), shown this once:", err=True)
+    click.echo(f"a key of {name} ({', '.join(scopes or row.roles)}), shown only once:", err=True)
     click.echo(key.text)
 
 

@@ -48,7 +48,7 @@ def study_command(
         body: JsonObject = json.load(file)
         design = str(body.pop("design"))
     except (ValueError, KeyError, AttributeError, TypeError):
-        raise click.ClickException('FILE is not JSON object with a "design"') from None
+        raise click.ClickException('FILE is not a JSON object with a "design"') from None
     body |= {"variant": variant} if variant else {}
     with connected(url, data) as client:
         study = client.study(design, **body)
