@@ -19,7 +19,14 @@ from app.calculations.waiting import Waiting, is_waiting
 from templates.core.judging.judgement import Judgement
 from templates.core.judging.summary import rank
 from templates.core.language.criteria import Evaluated, judged_alone, warned
-from templates.core.language.evaluate import Answer, Echo, Evaluation, default_of, evaluate
+from templates.core.language.evaluate import (
+    Answer,
+    Echo,
+    answers_at_level,
+    default_of,
+    echoes_of,
+    notices_of,
+)
 from templates.core.language.intake import Input, plain_text
 from templates.core.language.levels import accuracy
 from templates.core.language.spec import Given
@@ -56,23 +63,26 @@ class Prepared:
         """
         start = time.perf_counter()
         cls = self._cls
-        result = evaluate(cls, inputs, outputs=self._names, judge=False)
-        template, ledger = result.template, result.template.ledger
+        template = cls.from_quantities(inputs)
+        answers, errors = answers_at_level(template, self._names)
+        ledger = template.ledger
         if ledger.masks or ledger.absent or not ledger.handed.isdisjoint(cls._results):
             return None
-        outputs = self._shown(result.outputs)
+        outputs = self._shown(answers)
         if outputs is None:
             return None
-        judged = self._judged(Evaluated(template, result.outputs, result.error, self._measured))
+        with np.errstate(all="ignore"):
+            used = self._used(inputs, template)
+            judged = self._judged(Evaluated(template, answers, errors, self._measured))
         ordered = [judgement for judgement, _ in judged]
-        warnings = [*result.warnings, *warned(cls, ordered)]
+        warnings = [*notices_of(template), *warned(cls, ordered)]
         parts = [
             self._head,
-            b",".join(self._used(inputs, result)),
+            b",".join(used),
             b'},"outputs":{',
             outputs,
             b'},"level":null,"error":',
-            to_json(rendering.errors(result.error)),
+            to_json(rendering.errors(errors)),
             b',"warnings":',
             to_json(rendering.warnings(warnings)) if warnings else b"[]",
         ]
@@ -92,28 +102,28 @@ class Prepared:
             shown.append(before + to_json(value) + after)
         return b",".join(shown)
 
-    def _used(self, inputs: Mapping[str, str], result: Evaluation) -> list[bytes]:
+    def _used(self, inputs: Mapping[str, str], template: Template) -> list[bytes]:
         """The inputs as they were used."""
-        used = []
+        used: list[bytes] = []
+        others: Mapping[str, Echo] | None = None
         for name, declared, default in self._inputs:
-            if name in inputs:
-                used.append(_given(declared, inputs[name]) or _member(name, result.inputs[name]))
-            elif default is not None:
-                used.append(default)
-            elif name in result.inputs:
-                used.append(_member(name, result.inputs[name]))
+            said = _given(declared, inputs[name]) if name in inputs else default
+            if said is None:
+                others = echoes_of(template) if others is None else others
+                said = _member(name, others[name]) if name in others else b""
+            if said:
+                used.append(said)
         return used
 
     def _judged(self, evaluated: Evaluated) -> list[Judged]:
         """The criteria, worst first."""
         judged = []
-        with np.errstate(all="ignore"):
-            for criterion, waiting in self._criteria:
-                one = waiting and waiting.judged(evaluated)
-                if not one:
-                    judgement = judged_alone(evaluated, criterion)
-                    one = judgement, to_json(criteria.criterion(judgement))
-                judged.append(one)
+        for criterion, waiting in self._criteria:
+            one = waiting and waiting.judged(evaluated)
+            if not one:
+                judgement = judged_alone(evaluated, criterion)
+                one = judgement, to_json(criteria.criterion(judgement))
+            judged.append(one)
         return sorted(judged, key=lambda one: rank(one[0]))
 
     def _verdict(self, ordered: Sequence[Judgement]) -> bytes:
@@ -150,10 +160,12 @@ def _around(cls: type[Template], name: str) -> tuple[bytes, bytes]:
 
 
 def _default(declared: Input) -> bytes | None:
-    """An input that nobody gave, if its default is a constant."""
-    if isinstance(declared, Given) and declared.default is not None and not declared.optional:
-        return _member(declared.name, default_of(declared))
-    return None
+    """An input that nobody gave, if its default is a constant; empty where no answer reports it."""
+    if not isinstance(declared, Given):
+        return None
+    if declared.optional:
+        return b""
+    return _member(declared.name, default_of(declared)) if declared.default else None
 
 
 @lru_cache(maxsize=4096)

@@ -103,7 +103,7 @@ def evaluate(
         rungs = _rungs(template, names, level, tolerance, per_point)
         parts = [_part(rung.template, names, shown_in) for rung in rungs]
         whole = parts[0] if rungs[0].where is None else _joined(rungs, parts)
-        echoes = _echoes(template)
+        echoes = echoes_of(template)
         criteria = _judged(rungs, whole, shown_in, request.limits) if judge and cls.declared_criteria else []
     notices = [*_standing(cls, template.ledger.typed), *_noticed(rungs)]
     if tolerance is not None:
@@ -258,7 +258,7 @@ def is_reported(template: Template, declared: Input) -> bool:
     return not (isinstance(declared, Given) and declared.optional)
 
 
-def _echoes(template: Template) -> dict[str, Echo]:
+def echoes_of(template: Template) -> dict[str, Echo]:
     """The inputs as they were used: those given, and the defaults that an answer reports."""
     echoes, given = {}, template.ledger.typed
     for name, declared in template.inputs.items():
@@ -334,8 +334,12 @@ def evaluate_at_level(
         If a result is out of its domain.
     """
     answers, errors = answers_at_level(template, outputs)
-    standing = _standing(type(template), template.ledger.typed)
-    return answers, errors, [*standing, *_noticed([Rung(template, None)])]
+    return answers, errors, notices_of(template)
+
+
+def notices_of(template: Template) -> list[Notice]:
+    """All warnings so far of a template at its level, but for those of criteria."""
+    return [*_standing(type(template), template.ledger.typed), *_noticed([Rung(template, None)])]
 
 
 def criterion_warnings(

@@ -114,18 +114,17 @@ class PlainText(NamedTuple):
 
 def plain(cls: type[Template], raw: Mapping[str, Any]) -> Plain | None:
     """The inputs of most requests, read and admitted at once; None if any needs a further look."""
-    left_out = _left_out(cls)
+    left_out = _defaults.get(cls) or _left_out(cls)
     typed: dict[str, Typed | str] = {}
-    values: dict[str, Any] = {}
+    values = left_out.values.copy()
     missing: set[str] = set()
     for name, declared in cls.inputs.items():
         given = raw.get(name)
         if given is None:
-            default = left_out.get(name)
-            if default is None:
+            if name in left_out.needed:
                 return None
-            values.update(default.values)
-            missing.update(default.missing)
+            if declared.attribute in left_out.missing:
+                missing.add(declared.attribute)
         elif type(given) is str and (text := plain_text(declared, given)):
             typed[name], values[declared.attribute] = text
         elif isinstance(given, Typed) and (value := _plain_value(declared, given)) is not None:
@@ -135,25 +134,31 @@ def plain(cls: type[Template], raw: Mapping[str, Any]) -> Plain | None:
     return Plain(typed, values, missing) if len(typed) == len(raw) else None
 
 
-_defaults: WeakKeyDictionary[type[Template], dict[str, Plain]] = WeakKeyDictionary()
+class LeftOut(NamedTuple):
+    """What stands for inputs that are not given, by attribute, and the names of those that have to be."""
+
+    values: dict[str, Any]
+    missing: set[str]
+    needed: set[str]
 
 
-def _left_out(cls: type[Template]) -> dict[str, Plain]:
-    """What stands for each input that is not given; without those that have to be given."""
-    if cls in _defaults:
-        return _defaults[cls]
-    defaults: dict[str, Plain] = {}
+_defaults: WeakKeyDictionary[type[Template], LeftOut] = WeakKeyDictionary()
+
+
+def _left_out(cls: type[Template]) -> LeftOut:
+    """What stands for the inputs of a version that are not given."""
+    intake, needed = Intake(), set[str]()
     for name, declared in cls.inputs.items():
         default = None if isinstance(declared, Derived) else declared.default
         value = default if isinstance(default, str) else default and _plain_value(declared, default)
         if value is not None:
-            defaults[name] = Plain({}, {declared.attribute: value}, set())
+            intake.values[declared.attribute] = value
         elif default is None and not declared.required:
-            intake = Intake()
             _note_missing(declared, intake)
-            defaults[name] = Plain({}, intake.values, intake.missing)
-    _defaults[cls] = defaults
-    return defaults
+        else:
+            needed.add(name)
+    _defaults[cls] = left_out = LeftOut(intake.values, intake.missing, needed)
+    return left_out
 
 
 @lru_cache(maxsize=4096)  # who varies one input sends the others again

@@ -20,6 +20,7 @@ from templates.core.language.syntax import attributes_used, inputs_read_as_given
 from templates.core.units.quantity import Typed, read
 
 T = TypeVar("T")
+_NUMBER = np.float64
 
 
 class Declaration:
@@ -115,7 +116,7 @@ class Formula(Declaration, Generic[T]):
         if obj is None:
             return self
         value, span = self.function(obj), self.unremarkable
-        if span is None or type(value) is not np.float64 or not span[0] <= value <= span[1]:
+        if span is None or type(value) is not _NUMBER or not span[0] <= value <= span[1]:
             value = obj.admit(self, value)  # type: ignore[attr-defined]
         obj.__dict__[self.attribute] = value
         return value
