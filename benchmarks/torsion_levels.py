@@ -1,28 +1,31 @@
-"""How good the levels of `cad.analysis` are on random throws; what cad/analysis/levels.json is read from.
+"""How good the levels of `cad.analysis` are on random shafts; what cad/analysis/levels.json is read from.
 
-    python -m benchmarks.torsion_levels [COUNT]
+    python -m benchmarks.torsion_levels [COUNT] [SEED] [FILE]
 
 COUNT shafts, every third of them a crankshaft with plain ends, the others throws. For each shaft and level
 the true error of every output but stress, and the change from one order less, whose multiple is stated as
-the error, above a floor. Every second shaft has no fillets: its corners are sharp. The truth is a run with
-elements of a higher order on a mesh of its own, far finer along sharp corners. `share` is the true error by
-the stated one, which must be below 1. Kept after every shaft in
-benchmarks/results/torsion_levels.json; with COUNT 0 what is kept there is judged by the present table.
+the error, above a floor. Every second shaft has no fillets: its corners are sharp. The truth is that of
+`benchmarks.shaft_truth`. `share` is the true error by the stated one, which must be below 1.
+
+Everything is kept in FILE, by default benchmarks/results/torsion_levels.json, after every shaft. What is kept
+there for the same shaft, mesh and orders is not computed again. So a run that was broken off goes on, and one
+changed level costs only itself. With COUNT 0 what is kept is judged by the present table.
 """
 
 import json
 import sys
-from collections.abc import Collection, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from time import process_time
 from typing import Any
 
+import ngsolve as ng
 import numpy as np
 
-from cad.analysis.elastic import System, respond
-from cad.analysis.kinds import LOADS, Boundary, Kind
+from benchmarks.shaft_truth import KEY, OUTPUTS, Found, by_orders, extrapolated, outputs_by
+from cad.analysis.kinds import LOADS
 from cad.analysis.levels import LEVELS, Level
 from cad.analysis.mesh import Fineness, Grid, make_grid
-from cad.analysis.modes import torsional_mode
 from cad.analysis.solid import read_solid
 from cad.model import CadModel
 from cad.models.crank_throw_v1 import CrankThrow
@@ -33,15 +36,6 @@ from templates.core.errors import InvalidInputs
 
 RESULTS = Path("benchmarks/results/torsion_levels.json")
 COUNT, SEED = 12, 20261121
-TRUTH = Fineness(size=0.8, curvature=0.4, turn=np.pi / 3, sharp=0.06)
-ORDER, SHARP_ORDER = 5, 4
-ASKED: dict[str, tuple[Kind, Boundary]] = {
-    "stiffness": ("torsion", "free_end"),
-    "guided stiffness": ("torsion", "guided_end"),
-    "bending stiffness": ("bending", "free_end"),
-}
-FREQUENCY = "torsional frequency"
-OUTPUTS = (*ASKED, FREQUENCY)
 
 # Of the journal's diameter: throws of engines and compressors, with overlap of pin and journal and without.
 RANGES = {
@@ -114,96 +108,147 @@ def shaft_of(parameters: dict[str, Any]) -> tuple[bytes, Shaft]:
     return regenerate("crank_throw", 1, parameters).step, Shaft(-half, half)
 
 
-def drawn(model: type[CadModel], parameters: dict[str, Any]) -> tuple[bytes, Shaft]:
-    """The STEP file of a shaft of any model, and where it is held and loaded."""
-    shaft = model.from_si(parameters).shaft()
+def drawn(model: str, parameters: dict[str, Any]) -> tuple[bytes, Shaft]:
+    """The STEP file of a shaft of a model, and where it is held and loaded."""
+    cls = {one.id: one for one in (CrankThrow, Crankshaft)}[model]
+    shaft = cls.from_si(parameters).shaft()
     assert shaft is not None
-    return regenerate(model.id, model.version, parameters).step, shaft
+    return regenerate(cls.id, cls.version, parameters).step, shaft
 
 
-Found = dict[str, float]
+Row = dict[str, Any]
 
 
-def outputs_by(grid: Grid, order: int, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> Found:
-    """Outputs on one mesh: stiffnesses [N·m/rad], frequency [Hz]."""
-    computed: Found = {}
-    few = FREQUENCY not in outputs
-    for load in LOADS:
-        asked = {name: end for name, (kind, end) in ASKED.items() if kind == load and name in outputs}
-        if not asked:
-            continue
-        system = System(grid, order, shaft.material, load, few_forces=few)
-        for name, boundary in asked.items():
-            response = respond(system, boundary)
-            computed[name] = 1e-3 / response.compliance
-            if name == "stiffness" and not few:
-                computed[FREQUENCY] = torsional_mode(response).frequency
-    return computed
+PASSES = (LEVELS[:-1], LEVELS[-1:])
+"""The level that takes longest is measured last, so that a run that is broken off has the others."""
 
 
-def truth(step: bytes, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> Found:
-    """The same from another mesh, in elements of a higher order than any level has."""
-    grid = make_grid(read_solid(step, shaft), TRUTH)
-    return outputs_by(grid, SHARP_ORDER if grid.is_sharp else ORDER, shaft, outputs)
-
-
-def row(model: type[CadModel], parameters: dict[str, Any]) -> dict[str, Any]:
-    """Results of each level for a shaft, by themselves and against the truth."""
-    step, shaft = drawn(model, parameters)
-    true = truth(step, shaft)
-    kept: dict[str, Any] = {"model": model.id, "parameters": parameters, **true}
+def measure(row: Row, levels: Iterable[Level]) -> None:
+    """Add to a row what it lacks: the values that its truth is extrapolated from, and those of levels."""
+    if row.get("truth", {}).get("by") == KEY and not any(lacks(row, level) for level in levels):
+        return
+    step, shaft = drawn(row["model"], row["parameters"])
+    if row.get("truth", {}).get("by") != KEY:
+        row["truth"] = {"by": KEY, "orders": by_orders(step, shaft)}
+    grids: dict[Fineness, Grid] = {}
+    values: dict[tuple[Fineness, int], Found] = {}
     for level in LEVELS:
-        grid = make_grid(read_solid(step, shaft), level.fineness)
-        low, high = (outputs_by(grid, order, shaft) for order in (level.order - 1, level.order))
-        outputs = {
-            name: {"true error": high[name] / true[name] - 1, "change": low[name] / high[name] - 1}
-            for name in true
+        if not lacks(row, level):
+            orders = {level.order - 1: "low", level.order: "high"}
+            values |= {(level.fineness, order): row[level.name][kept] for order, kept in orders.items()}
+    for level in levels:
+        if not lacks(row, level):
+            continue
+        fineness = level.fineness
+        if fineness not in grids:
+            grids[fineness] = make_grid(read_solid(step, shaft), fineness)
+        grid = grids[fineness]
+        for order in (level.order - 1, level.order):
+            if (fineness, order) not in values:
+                values[fineness, order] = outputs_by(grid, order, shaft)
+        row[level.name] = {
+            "mesh": mesh_of(level),
+            "elements": grid.mesh.ne,
+            "is sharp": grid.is_sharp,
+            "low": values[fineness, level.order - 1],
+            "high": values[fineness, level.order],
         }
-        kept[level.name] = {"elements": grid.mesh.ne, "is sharp": grid.is_sharp, "outputs": outputs}
-    return kept
 
 
-def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
+def mesh_of(level: Level) -> str:
+    """What values of a level depend on."""
+    return f"{level.fineness}, order {level.order}, ngsolve {ng.__version__}"
+
+
+def lacks(row: Row, level: Level) -> bool:
+    """Return whether a row has no values of a level as it is."""
+    return bool(row.get(level.name, {}).get("mesh") != mesh_of(level))
+
+
+def summary(rows: list[Row]) -> dict[str, Any]:
     """For each level and sort of corners the greatest true error, change and share of the stated error."""
     return {
         f"{level.name}, {'sharp' if sharp else 'filleted'}": worst(
-            level, [one[level.name] for one in rows if one[level.name]["is sharp"] == sharp], is_sharp=sharp
+            level,
+            [one for one in rows if level.name in one and one[level.name]["is sharp"] == sharp],
+            is_sharp=sharp,
         )
         for level in LEVELS
         for sharp in (False, True)
     }
 
 
-def worst(level: Level, cases: list[dict[str, Any]], *, is_sharp: bool) -> dict[str, Any]:
+def worst(level: Level, rows: list[Row], *, is_sharp: bool) -> dict[str, Any]:
     """By output, the greatest of each, in magnitude."""
-    worst_ones: dict[str, Any] = {}
+    worst_ones: dict[str, Any] = {"shafts": len(rows)}
     for name in OUTPUTS:
-        errors = [(abs(one["outputs"][name]["true error"]), one["outputs"][name]["change"]) for one in cases]
-        worst_ones[name] = {
-            "true error": max((true for true, _ in errors), default=0),
-            "change": max((abs(change) for _, change in errors), default=0),
-            "share": max(
-                (true / level.error(1 + change, 1, is_sharp=is_sharp) for true, change in errors), default=0
-            ),
-        }
+        found = [judged(row, level, name, is_sharp=is_sharp) for row in rows]
+        worst_ones[name] = {key: max((one[key] for one in found), default=0) for key in CRITERIA}
     return worst_ones
 
 
-def main(count: int) -> None:
-    """Measure, print and keep the table."""
-    rows: list[dict[str, Any]] = [] if count else json.loads(RESULTS.read_text())["rows"]
-    for model, parameters in random_shafts(count, SEED):
-        rows.append(row(model, parameters))
-        keep(rows)
-    keep(rows)
-    print(json.dumps(summary(rows), indent=1))
+CRITERIA = ("true error", "change", "share", "truth's last step")
 
 
-def keep(rows: list[dict[str, Any]]) -> None:
+def judged(row: Row, level: Level, name: str, *, is_sharp: bool) -> dict[str, float]:
+    """One output of one shaft at one level; the last step is by how much the truth was extrapolated."""
+    low, high = (row[level.name][order][name] for order in ("low", "high"))
+    orders = row["truth"]["orders"]
+    true = extrapolated(orders)[name]
+    off = abs(high / true - 1)
+    return {
+        "true error": off,
+        "change": abs(low / high - 1),
+        "share": off / level.error(low, high, is_sharp=is_sharp),
+        "truth's last step": abs(orders[-1][name] / true - 1),
+    }
+
+
+def main(count: int, seed: int, results: Path) -> None:
+    """Measure what is not kept yet, print and keep the table."""
+    rows: list[Row] = json.loads(results.read_text())["rows"] if results.exists() else []
+    shafts = [(model.id, parameters) for model, parameters in random_shafts(count, seed)]
+    for (model, parameters), row in zip(shafts, rows, strict=False):
+        if (row["model"], row["parameters"]) != (model, parameters):
+            raise SystemExit(f"{results} keeps other shafts; remove it, or name another file")
+    rows += [{"model": model, "parameters": parameters} for model, parameters in shafts[len(rows) :]]
+    for levels in PASSES:
+        for number, row in enumerate(rows if count else []):
+            measure(row, levels)
+            keep(rows, seed, results)
+            print(number + 1, process_time(), flush=True)
+    if not count:
+        keep(rows, seed, results)
+    print("\n".join(table(summary(rows))))
+
+
+def table(kept: dict[str, Any]) -> Iterator[str]:
+    """The greatest true errors with their shares of the stated ones, as the documentation quotes them."""
+    corners = ("filleted", "sharp")
+    heads = [f"{load}, {kind}" for kind in corners for load in LOADS]
+    yield f"| level | {' | '.join(heads)} | shafts, filleted and sharp |"
+    yield f"|---|{'---:|' * (len(heads) + 1)}"
+    for level in LEVELS:
+        cells = []
+        for kind in corners:
+            worst_ones = kept[f"{level.name}, {kind}"]
+            for load in LOADS:
+                names = [name for name in OUTPUTS if (load == "bending") == ("bending" in name)]
+                off, share = (max(worst_ones[name][key] for name in names) for key in ("true error", "share"))
+                cells.append(f"{100 * off:.2g} % ({share:.2f})")
+        shafts = " and ".join(str(kept[f"{level.name}, {kind}"]["shafts"]) for kind in corners)
+        yield f"| `{level.name}` | {' | '.join(cells)} | {shafts} |"
+
+
+def keep(rows: list[Row], seed: int, results: Path) -> None:
     """Write what is known so far."""
-    record = {"shafts": len(rows), "summary": summary(rows), "rows": rows}
-    RESULTS.write_text(json.dumps(record, indent=1) + "\n")
+    record = {"shafts": len(rows), "seed": seed, "summary": summary(rows), "rows": rows}
+    results.write_text(json.dumps(record, indent=1) + "\n")
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else COUNT)
+    main(
+        int(sys.argv[1]) if len(sys.argv) > 1 else COUNT,
+        int(sys.argv[2]) if len(sys.argv) > 2 else SEED,
+        Path(sys.argv[3]) if len(sys.argv) > 3 else RESULTS,
+    )

@@ -65,11 +65,14 @@ class System:
         self.form = ng.BilinearForm(self.space, symmetric=True, symmetric_storage=True, condense=True)
         self.form += ng.InnerProduct(stress(u, material), ng.Grad(v)) * ng.dx  # a stress is symmetric
         self.form.Assemble()
-        if few_forces and order > 2:
+        self.inverse = self._inverse_of_form(few_forces)
+
+    def _inverse_of_form(self, few_forces: bool) -> Any:
+        """What solves the assembled form for a force, on its unknowns outside elements."""
+        if few_forces and self.order > 2:
             by_order = _by_order(self.form, self.space)
-            self.inverse = CGSolver(self.form.mat, by_order, tol=_RESIDUAL, maxiter=_MOST_STEPS)
-        else:
-            self.inverse = self.form.mat.Inverse(self.space.FreeDofs(True), inverse="sparsecholesky")
+            return CGSolver(self.form.mat, by_order, tol=_RESIDUAL, maxiter=_MOST_STEPS)
+        return self.form.mat.Inverse(self.space.FreeDofs(True), inverse="sparsecholesky")
 
     def solve(self, force: Any) -> Any:
         """The displacement under a force, both as vectors; the dofs inside elements are eliminated.

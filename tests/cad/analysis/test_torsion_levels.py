@@ -1,16 +1,19 @@
 """Property: the estimated error bounds the true one, filleted or sharp; two runs give the same, nearly."""
 
-from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
+from benchmarks import torsion_levels
+from benchmarks.shaft_truth import RATIO, extrapolated, truth
 from benchmarks.torsion import THROW
-from benchmarks.torsion_levels import TRUTH, outputs_by, random_throws, shaft_of, truth
+from benchmarks.torsion_levels import random_throws, shaft_of
 from cad.analysis.analyse import AnalysisRequest, analyse
-from cad.analysis.mesh import make_grid
-from cad.analysis.solid import read_solid
+from cad.analysis.levels import LEVELS
 from cad.models.crankshaft_v1 import Crankshaft
 from cad.regenerate import regenerate
+from cad.shaft import Shaft
 
 OTHER_SEED = 7  # not that of the throws from which the factors were read
 
@@ -37,8 +40,7 @@ def test_property_it_does_so_where_an_end_is_slender(ends: tuple[str, float, flo
     parameters = {**THROW, f"{end}_diameter": diameter / 1e3, f"{end}_length": length / 1e3}
     step, shaft = regenerate("crankshaft", 1, parameters).step, Crankshaft.from_si(parameters).shaft()
     assert shaft is not None
-    grid = make_grid(read_solid(step, shaft), replace(TRUTH, sharp=0.04))
-    true = outputs_by(grid, 4, shaft, ["stiffness"])["stiffness"]
+    true = truth(step, shaft, ["stiffness"])["stiffness"]
     for level in ("coarse", "default"):
         result = analyse(step, shaft, AnalysisRequest(level=level), ["stiffness"], lambda done, what: None)
         reported = result.outputs["stiffness"]
@@ -53,3 +55,37 @@ def test_two_runs_tell_the_same() -> None:
     first, second = one.outputs["stiffness"], other.outputs["stiffness"]
     assert first["mesh"] == second["mesh"]
     assert first["value"] == pytest.approx(second["value"], rel=1e-9)  # but for the residual of the solver
+
+
+def test_extrapolation_finds_the_limit_of_a_geometric_series() -> None:
+    found = [{"stiffness": 5.0 + 0.2**order} for order in (2, 3, 4)]
+    assert extrapolated(found)["stiffness"] == pytest.approx(5.0, rel=1e-12)
+
+
+def test_two_orders_are_extrapolated_by_the_ratio_of_sharp_edges() -> None:
+    found = [{"stiffness": 5.0 + RATIO**order} for order in (2, 3)]
+    assert extrapolated(found)["stiffness"] == pytest.approx(5.0, rel=1e-12)
+
+
+def test_a_broken_off_run_goes_on_where_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a row has is not computed again; a change of one level's mesh costs that level only."""
+    row: dict[str, Any] = {"model": "crank_throw", "parameters": {}}
+    asked: list[int] = []
+
+    def values(grid: Any, order: int, *_: Any) -> dict[str, float]:
+        asked.append(order)
+        return {"stiffness": float(order)}
+
+    mesh = SimpleNamespace(ne=1)
+    monkeypatch.setattr(torsion_levels, "drawn", lambda model, parameters: (b"", Shaft(0.0, 1.0)))
+    monkeypatch.setattr(torsion_levels, "by_orders", lambda step, shaft: [{"stiffness": 1.0}])
+    monkeypatch.setattr(torsion_levels, "read_solid", lambda step, shaft: None)
+    monkeypatch.setattr(torsion_levels, "make_grid", lambda *_: SimpleNamespace(mesh=mesh, is_sharp=False))
+    monkeypatch.setattr(torsion_levels, "outputs_by", values)
+    torsion_levels.measure(row, LEVELS)
+    assert sorted(asked) == [2, 2, 3, 3, 4]  # `fine` has the mesh of `default`
+    torsion_levels.measure(row, LEVELS)
+    assert len(asked) == 5
+    row["coarse"]["mesh"] = "another"
+    torsion_levels.measure(row, LEVELS)
+    assert asked[5:] == [2, 3]
