@@ -45,7 +45,7 @@ ON_REQUEST = STRESSES | {SURFACE}
 WITHOUT_SURFACE = (UNIT_LOADS, CHAIN, BORE_COMPLIANCE)
 """Kinds whose solid has no picture."""
 
-RECIPE = 5
+RECIPE = 6
 """Raised whenever the same question to the same solid gets another answer."""
 
 _MADE_BY = f"recipe {RECIPE}, ngsolve {version('ngsolve')}"
