@@ -5,11 +5,11 @@ change is to cover what a higher order would correct, a floor what only a finer 
 about a drilling was 1.4 % too stiff in any order. Both are compared with the true errors of random shafts in
 benchmarks/results/torsion_levels.json (`python -m benchmarks.torsion_levels`).
 
-Solids with sharp inner edges have factors of their own. Where displacements grow as r^λ from an edge, energies
-of order p err by c p^(-4 λ) (Babuška and Suri 1987), so the error is 1/((p/(p - 1))^(4 λ) - 1) of the change. λ
-is 0.5445 at an inner edge of 90° and 0.5 at a crack, the worst: there the error is 0.8 of the change in third
-order and 1.29 in fourth. With sharp edges two orders may agree by chance, as on crankshafts with a slender
-end, so their floor is higher (tests/cad/analysis/test_torsion_levels.py).
+Solids with sharp inner edges have factors of their own. Where displacements grow as r^λ from an edge,
+energies of order p err by c p^(-4 λ) (Babuška and Suri 1987), so the error is 1/((p/(p - 1))^(4 λ) - 1) of
+the change. λ is 0.5445 at an inner edge of 90° and 0.5 at a crack, the worst: there the error is 0.8 of the
+change in third order and 1.29 in fourth. With sharp edges two orders may agree by chance, as on crankshafts
+with a slender end, so their floor is higher (tests/cad/analysis/test_torsion_levels.py).
 """
 
 from __future__ import annotations
