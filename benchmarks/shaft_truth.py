@@ -236,6 +236,7 @@ def checked(step: bytes, shaft: Shaft) -> dict[str, Any]:
     table = {
         "elements": grid.mesh.ne,
         "is sharp": grid.is_sharp,
+        "ratio": RATIO,
         "by order": {str(order): values for order, values in enumerate(found, start=2)},
         "truth": extrapolated(found[:-1]),
         "with an order more": extrapolated(found[-3:]),
