@@ -44,15 +44,17 @@ class Waiting:
 
         None where the number does not exist.
         """
+        number = math.nan
+        if self._side is not None:
+            number = float(self.criterion.scale.from_si(float(self._side(evaluated.template))))
+            if not math.isfinite(number):
+                return None
         stated = tuple([error_of(evaluated, name)[1] for name in self._outputs])
         ready = self._ready.get(stated)
         if ready is None:
             ready = self._ready[stated] = self._prepared(judged_alone(evaluated, self.criterion))
         if self._side is None:
             return ready.judgement, ready.before
-        number = float(self.criterion.scale.from_si(float(self._side(evaluated.template))))
-        if not math.isfinite(number):
-            return None
         return ready.judgement, ready.before + to_json(number) + ready.after
 
     def _prepared(self, judgement: Judgement) -> _Ready:

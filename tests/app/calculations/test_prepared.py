@@ -78,6 +78,13 @@ def test_an_answer_is_calculated_each_time():
     assert answers[0] == answers[2] != answers[1]
 
 
+def test_a_number_that_does_not_exist_leaves_nothing_behind(monkeypatch):
+    monkeypatch.setattr("app.calculations.prepared._prepared", {})
+    for load in ("1e308 N", "25 kN"):
+        inputs = {**OIL_FILM, "radial_load": load}
+        assert from_parts(OilFilm, inputs, ["width_ratio"]) == generally(OilFilm, inputs, ["width_ratio"])
+
+
 def test_a_warning_of_a_criterion_is_there():
     content = from_parts(OilFilm, {**OIL_FILM, "radial_load": "5000 kN"}, THICKNESS)
     assert content is not None
