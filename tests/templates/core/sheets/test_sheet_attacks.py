@@ -188,3 +188,11 @@ def test_a_slip_of_the_pen_is_met_with_what_would_be_right(text, column, remedy)
 )
 def test_a_fault_of_meaning_has_the_column_of_its_part(text, part):
     assert faults(SHEET + text)[0].column == text.index(part) + 1
+
+
+def test_a_check_that_is_too_long_by_the_names_of_its_inputs_is_refused():
+    words = "width of the bearing between its inner edges " * 3
+    text = f'given q [mm] "{words.strip()}" (example 1 mm)\ncheck {" + ".join(["q"] * 40)} <= 2 m "x"'
+    (fault,) = faults(SHEET + text)
+    assert (fault.code, fault.line) == ("check", FIRST + 1)
+    assert "at most 2000 characters" in fault.message
