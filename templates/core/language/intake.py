@@ -19,7 +19,7 @@ from templates.core.language.causes import BROKEN, suspects
 from templates.core.language.ledger import Mask, Notice
 from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Requirement, Table
 from templates.core.units.quantity import Typed, read
-from templates.core.units.tolerance import Tolerance
+from templates.core.units.tolerance import LONGEST_TEXT, Tolerance
 from templates.core.units.units import Value, unit
 
 Input = Given | Choice | Derived[Any]
@@ -161,9 +161,13 @@ def _left_out(cls: type[Template]) -> LeftOut:
     return left_out
 
 
-@lru_cache(maxsize=4096)  # who varies one input sends the others again
 def plain_text(declared: Input, text: str) -> PlainText | None:
     """An input as typed and its value [SI], if that needs no further look."""
+    return _plain_text(declared, text) if len(text) <= LONGEST_TEXT else None
+
+
+@lru_cache(maxsize=4096)  # who varies one input sends the others again
+def _plain_text(declared: Input, text: str) -> PlainText | None:
     try:
         typed = _read_one(declared, text)
     except FaultyText:

@@ -1,10 +1,12 @@
-"""How a template reads an input that is a table: rows of the columns that it declares, and no others."""
+"""How a template reads inputs: rows of the columns that a table declares, and texts of a bounded length."""
 
 import pytest
 
 from templates.core.errors import InvalidInputs
+from templates.core.language import intake
 from templates.core.language.evaluate import evaluate
 from templates.core.language.template import Template, table, text
+from templates.oil_film.oil_film_v1 import OilFilm
 
 
 class Plate(Template):
@@ -34,3 +36,11 @@ def test_another_shape_is_refused(rows):
 def test_a_single_row_may_stand_alone():
     assert word([1, 2]) == word([[1, 2]]) == "1"
     assert word([[1, 2], [3, 4]]) == "2"
+
+
+def test_a_long_text_is_refused_and_not_kept():
+    kept = intake._plain_text.cache_info().currsize
+    for size in range(1000, 1010):
+        with pytest.raises(InvalidInputs):
+            evaluate(OilFilm, {**OilFilm.example, "speed": "1" * size + " rpm"})
+    assert intake._plain_text.cache_info().currsize <= kept + len(OilFilm.inputs)
