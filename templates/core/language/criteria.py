@@ -30,7 +30,7 @@ NOT_JUDGED = "check_not_judged"
 RIGHT_ANGLE = math.pi / 2  # to which the errors of angles are relative [rad]
 
 
-@dataclass  # frozen, each would cost three times as much
+@dataclass(frozen=True)
 class Evaluated:
     """The evaluated values, as criteria see them.
 

@@ -38,7 +38,7 @@ class Answer:
     reasons: NDArray[np.object_] | None = None
 
 
-@dataclass(slots=True)  # as `Answer`
+@dataclass(frozen=True)
 class Echo:
     """One input as it was used: as typed, or its default."""
 
@@ -48,7 +48,7 @@ class Echo:
     extra: Mapping[str, Any]
 
 
-@dataclass  # as `Answer`
+@dataclass(frozen=True)
 class Evaluation:
     """The result of `evaluate`; `template` is the evaluated instance with every SI value it computed.
 
@@ -129,7 +129,7 @@ def _judged(
     )
 
 
-@dataclass(slots=True)  # as `Answer`
+@dataclass(frozen=True)
 class _Part:
     """The answers at one level, or of all levels joined."""
 
