@@ -235,7 +235,7 @@ def table(kept: dict[str, Any]) -> Iterator[str]:
             for load in LOADS:
                 names = [name for name in OUTPUTS if (load == "bending") == ("bending" in name)]
                 off, share = (max(worst_ones[name][key] for name in names) for key in ("true error", "share"))
-                cells.append(f"{100 * off:.2g} % ({share:.2f})")
+                cells.append(f"{100 * off:.2g} % ({share:.2f})" if worst_ones["shafts"] else "not measured")
         shafts = " and ".join(str(kept[f"{level.name}, {kind}"]["shafts"]) for kind in corners)
         yield f"| `{level.name}` | {' | '.join(cells)} | {shafts} |"
 
