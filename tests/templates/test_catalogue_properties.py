@@ -272,7 +272,7 @@ class TestArrays:
             assert_finite_or_refused(cls, extremes(cls, random, at_once), at_once)
 
     @newest_templates
-    @pytest.mark.parametrize("count", [40, pytest.param(400, marks=pytest.mark.slow)])
+    @pytest.mark.parametrize("count", [80, pytest.param(400, marks=pytest.mark.slow)])
     def test_property_extremes_agree_with_single_points(self, cls, count):
         inputs = extremes(cls, np.random.default_rng(4), count)
         assert_pointwise(cls, inputs, range(count))
