@@ -19,7 +19,7 @@ from threading import Lock
 from typing import Any
 
 from benchmarks.mutation import ROOT
-from benchmarks.mutation.places import targets
+from benchmarks.mutation.targets import targets
 
 MOST_TESTS = 60
 """Single tests of a line that are tried before whole files."""

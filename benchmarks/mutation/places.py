@@ -25,13 +25,7 @@ from cosmic_ray.plugins import get_operator, operator_names
 from parso.python.tree import Keyword, PythonNode
 
 from benchmarks.mutation import ROOT
-
-TARGETS = (
-    *("templates/core/**/*.py", "templates/physics/**/*.py"),
-    *("cad/checks.py", "cad/regenerate.py", "cad/inspect.py", "cad/surfaces.py", "app/**/questions.py"),
-    *("app/designs/**/*.py", "app/jobs/**/*.py", "app/storage/**/*.py"),
-)
-"""The files that are mutated: language, physics, checks and keys of solids, designs, jobs, storage."""
+from benchmarks.mutation.targets import targets
 
 Span = tuple[tuple[int, int], tuple[int, int]]
 
@@ -112,12 +106,6 @@ def sample(seed: int, count: int) -> list[Mutant]:
     """Return `count` random mutants, in the order of their rank; fewer if there are no more."""
     ranked = sorted((place for file in targets() for place in places(file, seed)), key=lambda p: p.rank)
     return list(islice((m for place in ranked if (m := mutant(place)) is not None), count))
-
-
-def targets() -> list[str]:
-    """Return the files that are mutated."""
-    files = {file for pattern in TARGETS for file in ROOT.glob(pattern)}
-    return sorted(file.relative_to(ROOT).as_posix() for file in files)
 
 
 def places(file: str, seed: int) -> list[Place]:

@@ -24,8 +24,9 @@ from uuid import uuid4
 
 from benchmarks.mutation import ROOT, forks, observer
 from benchmarks.mutation.observations import Observations
-from benchmarks.mutation.places import Mutant, targets
+from benchmarks.mutation.places import Mutant
 from benchmarks.mutation.related import related
+from benchmarks.mutation.targets import targets
 from tests.patience import patient
 
 PYTEST = ("-x", "-q", "-n", "0", "-p", "no:cacheprovider", "--no-header", "--tb=line")
