@@ -125,7 +125,7 @@ def plain(cls: type[Template], raw: Mapping[str, Any]) -> Plain | None:
                 return None
             if declared.attribute in left_out.missing:
                 missing.add(declared.attribute)
-        elif type(given) is str and (text := plain_text(declared, given)):
+        elif type(given) is str and len(given) <= LONGEST_TEXT and (text := plain_text(declared, given)):
             typed[name], values[declared.attribute] = text
         elif isinstance(given, Typed) and (value := _plain_value(declared, given)) is not None:
             typed[name], values[declared.attribute] = given, value
@@ -161,13 +161,9 @@ def _left_out(cls: type[Template]) -> LeftOut:
     return left_out
 
 
-def plain_text(declared: Input, text: str) -> PlainText | None:
-    """An input as typed and its value [SI], if that needs no further look."""
-    return _plain_text(declared, text) if len(text) <= LONGEST_TEXT else None
-
-
 @lru_cache(maxsize=4096)  # who varies one input sends the others again
-def _plain_text(declared: Input, text: str) -> PlainText | None:
+def plain_text(declared: Input, text: str) -> PlainText | None:
+    """An input as typed and its value [SI], if that needs no further look; for texts short enough to keep."""
     try:
         typed = _read_one(declared, text)
     except FaultyText:

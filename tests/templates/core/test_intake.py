@@ -39,8 +39,8 @@ def test_a_single_row_may_stand_alone():
 
 
 def test_a_long_text_is_refused_and_not_kept():
-    kept = intake._plain_text.cache_info().currsize
+    kept = intake.plain_text.cache_info().currsize
     for size in range(1000, 1010):
         with pytest.raises(InvalidInputs):
             evaluate(OilFilm, {**OilFilm.example, "speed": "1" * size + " rpm"})
-    assert intake._plain_text.cache_info().currsize <= kept + len(OilFilm.inputs)
+    assert intake.plain_text.cache_info().currsize <= kept + len(OilFilm.inputs)
