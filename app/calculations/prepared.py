@@ -1,7 +1,7 @@
 """Answers to plain requests to evaluate, put together from parts that are ready as JSON.
 
 Most requests give texts of single values within their bounds, and their answers differ in numbers only. What
-does not depend on these is found out once, for each version and set of outputs. Every answer is calculated,
+does not depend on these is prepared once, for each version and set of outputs. Every answer is calculated,
 and what needs a further look goes the general way (`app.calculations.service`), which writes the same bytes.
 """
 
