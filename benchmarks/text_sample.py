@@ -1,8 +1,8 @@
 """Print a random sample of the texts of the project, for a reader who has not seen them.
 
-`python -m benchmarks.text_sample --seed 7 --count 60` prints docstrings of functions and of modules, messages and
-paragraphs of docs, in equal numbers. Each text is named by its file and line. Messages are the literal
-texts of `raise` statements and of faults.
+`python -m benchmarks.text_sample --seed 7 --count 60` prints docstrings of functions and of modules,
+messages and paragraphs of docs, in equal numbers. Each text is named by its file and line. Messages are the
+literal texts of `raise` statements and of faults.
 """
 
 from __future__ import annotations
