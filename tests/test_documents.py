@@ -1,4 +1,4 @@
-"""Documents hold together: few decision pages, no reference to one that went, one age of each figure of cost."""
+"""Documents hold together: few decision pages, no reference to a missing one, one age of each cost."""
 
 import re
 import subprocess
@@ -10,7 +10,7 @@ from benchmarks.all import table
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted((ROOT / "docs" / "decisions").glob("*.md"))
-TEXTS = (".py", ".md", ".toml", ".yml", ".yaml", ".html", ".js", ".typ", ".css", ".sh", ".txt", ".json", ".sheet")
+TEXTS = (".py", ".md", ".toml", ".yml", ".yaml", ".html", ".js", ".typ", ".css", ".txt", ".json")
 NAMED = re.compile(r"decisions/(\d{3}(?:-[\w-]+)?)|\b[Dd]ecisions? \[?(\d{3})\b|\[(\d{3})\]\(")
 
 
