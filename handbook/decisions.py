@@ -11,8 +11,9 @@ from handbook.rendering import ROOT
 FOLDER = ROOT / "docs" / "decisions"
 HEAD = """# Decisions
 
-One page for each choice that a reader would question: what was chosen, why, what was tried instead. A number is never
-used twice; pages whose choice no longer stands, or needs no explanation, are in the history of Git only.
+One page for each choice that a reader would question: what was chosen, why, what was tried instead.
+A number is never used twice. Pages whose choice no longer stands, or needs no explanation, are in the
+history of Git only.
 
 | | decision | in short |
 |---|---|---|
