@@ -1,10 +1,10 @@
 """Parts of the service: hashes, a bill of materials and licences of all pinned distributions.
 
     python -m benchmarks.supply_chain            # docs/licences.md, docs/sbom.cdx.json: of what is installed
-    python -m benchmarks.supply_chain --hashes   # requirements.lock as well: asks the package index by pip
+    python -m benchmarks.supply_chain --hashes   # the lock as well: asks the package index by pip
 
 Run it in the environment that `constraints.txt` describes. The lock holds the hashes of the files that pip
-takes on this platform: `pip install --require-hashes --no-deps -r requirements.lock` accepts no other bytes.
+takes on this platform: `pip install --require-hashes --no-deps -r docs/requirements.lock` accepts no others.
 """
 
 import argparse
@@ -20,7 +20,7 @@ from importlib.metadata import Distribution, distribution
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-CONSTRAINTS, LOCK = ROOT / "constraints.txt", ROOT / "requirements.lock"
+CONSTRAINTS, LOCK = ROOT / "constraints.txt", ROOT / "docs" / "requirements.lock"
 LICENCES, BILL = ROOT / "docs" / "licences.md", ROOT / "docs" / "sbom.cdx.json"
 LONGEST = 60  # letters; longer "licences" are the text of one
 

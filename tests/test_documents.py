@@ -1,4 +1,4 @@
-"""Documents hold together: few decision pages, no reference to a missing one, one age of each cost."""
+"""The repository and its documents: what stands at the top, few decision pages, no dead reference."""
 
 import re
 import subprocess
@@ -29,6 +29,15 @@ def references():
         if path.suffix in TEXTS or path.is_relative_to(ROOT / ".ci"):
             for found in NAMED.finditer(path.read_text(encoding="utf-8")):
                 yield path.relative_to(ROOT), next(filter(None, found.groups()))
+
+
+def test_the_top_level_is_short():
+    top = {path.relative_to(ROOT).parts[0] for path in files()}
+    assert {name for name in top if not name.startswith(".")} == {
+        *("pyproject.toml", "constraints.txt", "mkdocs.yml", "README.md"),
+        *("app", "templates", "cad", "tests", "docs", "benchmarks"),
+    }
+    assert {name for name in top if name.startswith(".")} <= {".ci", ".gitignore", ".github", ".dockerignore"}
 
 
 def test_decisions_are_few():

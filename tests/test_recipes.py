@@ -138,5 +138,6 @@ def test_a_new_file_format_is_served(copy):
 def test_a_list_has_one_more_filter(copy):
     *_, tests = carry_out(recipe(FILTER), copy)
     assert count_passed(tests) > 20
-    script = "from handbook.rest import interface; print(interface()['paths']['/api/v1/designs']['get'])"
+    script = "import sys; sys.path.append('docs'); from handbook.rest import interface; "
+    script += "print(interface()['paths']['/api/v1/designs']['get'])"
     assert "changed_since" in run([sys.executable, "-c", script], copy)

@@ -22,7 +22,7 @@ from app.api.gate.allow import METHODS
 from app.api.routes.film_pressure import TYPICAL
 
 SEED = seeded(11)
-CONFIGURATION = Path(__file__).parents[2] / "schemathesis.toml"
+CONFIGURATION = Path(__file__).parents[1] / "schemathesis.toml"
 
 
 def interface(*phases):

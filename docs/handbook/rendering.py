@@ -12,7 +12,7 @@ from markupsafe import Markup, escape
 
 from templates.core.paper.mathml import mathml, unit_symbol
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 
 
 def math(latex: str) -> Markup:
