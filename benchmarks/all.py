@@ -20,11 +20,12 @@ from datetime import UTC, datetime
 from importlib import import_module
 from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 from benchmarks.service_rows import commit, machine
 from benchmarks.speed.figures import Figure
 
-RESULTS = Path("benchmarks/results/all.json")
+RESULTS = Path(__file__).parent / "results" / "all.json"
 HEAD = "| work | measured | aim | | how |\n|---|---|---|---|---|"
 KINDS = ("shell", "serving", "films", "elements")
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
@@ -61,19 +62,20 @@ def main(kinds: list[str]) -> None:
         RESULTS.write_text(json.dumps(kept, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
-def kept() -> None:
-    """Print the table of benchmarks/results/all.json, with its date and machine."""
-    content = json.loads(RESULTS.read_text(encoding="utf-8"))
-    print(f"{content['date']}, commit {content['commit']}, {content['minutes']} minutes\n")
-    print(HEAD)
-    for row in content["figures"]:
-        row.pop("is_met")
-        print(Figure(**row).line())
+def table() -> str:
+    """Return the kept figures as a table in Markdown, as `docs/costs.md` shows them."""
+    figures = json.loads(RESULTS.read_text(encoding="utf-8"))["figures"]
+    return "\n".join([HEAD, *(Figure(**without(row, "is_met")).line() for row in figures)])
+
+
+def without(row: dict[str, Any], name: str) -> dict[str, Any]:
+    """Return a row without one of its fields."""
+    return {key: value for key, value in row.items() if key != name}
 
 
 if __name__ == "__main__":
     if sys.argv[1:] == ["kept"]:
-        kept()
+        print(table())
         raise SystemExit
     named = sys.argv[1:] or list(KINDS)
     if unknown := set(named) - set(KINDS):

@@ -1,6 +1,6 @@
 """How `crank_stiffness` errs about overlap 0, against finite elements of the same throws.
 
-    python -m benchmarks.crank_transition    # docs/decisions/067
+    python -m benchmarks.crank_transition
 
 One throw without fillets, three thicknesses of its webs, throws from no overlap to much. The stiffness by
 finite elements is that of level `default`, end to end, free end.

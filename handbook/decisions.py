@@ -11,10 +11,11 @@ from handbook.rendering import ROOT
 FOLDER = ROOT / "docs" / "decisions"
 HEAD = """# Decisions
 
-One page for each decision that was hard to make: what it was about, what was decided, what follows. A number
-is never used twice; a decision that is overturned stays, and names the one that replaces it.
+One page for each choice that a reader would question: what was chosen, why, what was tried instead.
+A number is never used twice. Pages whose choice no longer stands, or needs no explanation, are in the
+history of Git only.
 
-| | decision | about |
+| | decision | in short |
 |---|---|---|
 """
 

@@ -2,7 +2,7 @@
 
 Linux weighs niceness only among the processes of one session where `sched_autogroup_enabled` is set, which is
 usual. And since 6.6 it lets a process that wakes up wait for the end of the other's slice (milliseconds),
-unless it asks for a shorter slice itself (since 6.12). docs/decisions/019 has the measurements.
+unless it asks for a shorter slice itself (since 6.12).
 """
 
 import ctypes

@@ -94,7 +94,7 @@ class Crankshaft(CrankRules):
 
     References
     ----------
-    Own closed form of the volume: the parts touch in faces, so their volumes add (docs/decisions/066).
+    Own closed form of the volume: the parts touch in faces, so their volumes add.
     """
 
     example = {

@@ -62,7 +62,7 @@ class Crankshaft(SplitParameters, EndParameters):
 
     References
     ----------
-    Own closed form of the volume: the parts touch in faces, so their volumes add (docs/decisions/066).
+    Own closed form of the volume: the parts touch in faces, so their volumes add.
     """
 
     example = {

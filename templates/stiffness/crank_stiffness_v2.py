@@ -40,7 +40,7 @@ class CrankStiffness(Template):
     the overlap recommends one of them, both are returned.
     Where the overlap is within ±0.1 (journal diameter + pin diameter) the recommended stiffness passes from
     one to the other without a jump: their flexibilities are joined in shares. The literature names the sign
-    of the overlap and no width; the width is ours (decision 067). Version 1 jumps at overlap 0.
+    of the overlap and no width; the width is ours. Version 1 jumps at overlap 0.
     With a throw below 0.2 (journal diameter + pin diameter) Ker Wilson's web term is negative: a warning.
     Where it outweighs journal and pin the formula gives no stiffness: a refusal, of this formula alone.
     Sensitivities are d ln K/d ln x, all other dimensions kept: a value of 2 means that 1 % more of the

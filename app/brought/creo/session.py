@@ -6,7 +6,7 @@ CREOSON answers a POST of JSON, `{"sessionId", "command", "function", "data"}`, 
 References
 ----------
 SimplifiedLogic, CREOSON 3.0.1: Web Service Help, functions of `connection`, `creo`, `file`, `dimension`,
-    `parameter` and `interface`; its source, as decision 081 names the files.
+    `parameter` and `interface`; the source of its `JShellJsonHandler` and `JLJson…Handler` classes.
 """
 
 from __future__ import annotations
