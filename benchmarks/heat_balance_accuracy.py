@@ -44,6 +44,8 @@ HOT = 250.0 + 273.15
 """Bearings hotter than this are left out: their oil would burn [K]."""
 HEAT_CAPACITY = 1.8e6
 """The template's default [J/(m³ K)]."""
+ZERO = ("couple_across_load", "couple_along_load")
+"""Outputs that vanish in an aligned bearing, as all of these are."""
 ANGLES = ("attitude_angle", "maximum_pressure_angle")
 INPUTS = ("supply_temperature", "ambient_temperature")
 
@@ -146,11 +148,13 @@ def value_of(template: OilFilm, output: str) -> Array:
 
 
 def dependent() -> list[str]:
-    """The outputs that a heat balance reaches."""
+    """Return the outputs that a heat balance reaches."""
     return [
         name
         for name, formula in OilFilm.formulas.items()
-        if not isinstance(formula, Text) and "balance" in OilFilm.ancestors(formula.attribute)
+        if name not in ZERO
+        and not isinstance(formula, Text)
+        and "balance" in OilFilm.ancestors(formula.attribute)
     ]
 
 

@@ -18,7 +18,7 @@ LOOPS = '''
 """A model whose build never ends."""
 
 from cad.model import Box, CadModel
-from templates.core.template import Array, given
+from templates.core.language.template import Array, given
 
 
 class Loops(CadModel):

@@ -18,7 +18,7 @@ from templates.door import built_in
 
 BUSH = '''"""Duty of a plain bush."""
 
-from templates.core.template import Array, Template, Truth, derived, formula, given, require
+from templates.core.language.template import Array, Template, Truth, derived, formula, given, require
 
 
 class BushDuty(Template):

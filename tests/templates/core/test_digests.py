@@ -24,7 +24,7 @@ SOURCE = '''"""A team's own template."""
 
 import math as maths
 from numpy import sqrt as root, pi
-from templates.core.template import Template, choice, derived, formula, given
+from templates.core.language.template import Template, choice, derived, formula, given
 
 
 class Own(Template):
@@ -61,7 +61,10 @@ TIDYING = [
 ]
 MOVES = [
     ("from numpy import", "from numpy.lib.scimath import"),
-    ("from templates.core.template import Template, choice,", "from templates.core.language import choice,"),
+    (
+        "from templates.core.language.template import Template, choice,",
+        "from templates.core.language import choice,",
+    ),
     ("from numpy import sqrt as root, pi", "from math import pi\nfrom numpy import sqrt as root"),
     ("import math as maths", "import lib.math as maths"),
 ]

@@ -16,7 +16,7 @@ from templates.core.language.template import Template
 
 SOURCE = '''"""A team's own template."""
 
-from templates.core.template import Template, choice, derived, formula, given
+from templates.core.language.template import Template, choice, derived, formula, given
 
 
 class Own(Template):
@@ -153,7 +153,7 @@ def test_property_errors_come_whole_out_of_another_process(error):
 
 GROUP = '''"""A group."""
 
-from templates.core.template import Template, given, require
+from templates.core.language.template import Template, given, require
 
 
 class Sized(Template):
@@ -169,7 +169,7 @@ class Sized(Template):
 MEMBER = '''"""A member."""
 
 import {group}
-from templates.core.template import formula
+from templates.core.language.template import formula
 
 
 class Member({group}.Sized):
