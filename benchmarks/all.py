@@ -1,17 +1,18 @@
-"""Every line of issue 20's table, with its aim: `python -m benchmarks.all [films elements serving shell]`.
+"""What the program costs, each line with its aim: `python -m benchmarks.all [films elements serving shell]`.
 
 `python -m benchmarks.all kept` prints the table that is kept, without measuring.
 
 Each kind of work runs in a process of its own, one after the other, on one thread of BLAS. Processor time
 decides, as other work of the machine disturbs it least; figures by the clock say so. The whole takes less
 than 15 minutes on two idle cores. Prints a table in Markdown and, if all was measured, writes
-benchmarks/results/all.json.
+benchmarks/results/all.json and the table of docs/costs.md.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import re
 import sys
 import time
 from concurrent.futures import ProcessPoolExecutor
@@ -22,10 +23,11 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from benchmarks.service_rows import commit, machine
 from benchmarks.speed.figures import Figure
+from benchmarks.speed.servers import commit, machine
 
 RESULTS = Path(__file__).parent / "results" / "all.json"
+PAGE = Path(__file__).parents[1] / "docs" / "costs.md"
 HEAD = "| work | measured | aim | | how |\n|---|---|---|---|---|"
 KINDS = ("shell", "serving", "films", "elements")
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
@@ -60,6 +62,15 @@ def main(kinds: list[str]) -> None:
             "figures": [{**asdict(row), "is_met": row.is_met} for row in rows],
         }
         RESULTS.write_text(json.dumps(kept, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+        PAGE.write_text(page(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+def page(text: str) -> str:
+    """Return the page of costs with the kept table and its date in the place of the former ones."""
+    before, after = text[: text.index(HEAD)], text[text.index(HEAD) :]
+    day = datetime.fromisoformat(json.loads(RESULTS.read_text(encoding="utf-8"))["date"])
+    before = re.sub(r"\(\d+ \w+ \d{4}\)", f"({day:%-d %B %Y})", before)
+    return before + table() + after[after.index("\n\n") :]
 
 
 def table() -> str:

@@ -30,9 +30,8 @@ import numpy as np
 
 from app.calculations.schemas import OIL_FILM
 from benchmarks.processor_time import used
-from benchmarks.service_process import Server, crankwright
-from benchmarks.service_rows import commit, machine
 from benchmarks.speed.figures import processor_seconds
+from benchmarks.speed.servers import Server, commit, crankwright, machine
 from templates.core.language.evaluate import evaluate
 from templates.oil_film.oil_film_v1 import OilFilm
 from templates.physics.films.reynolds import static_film

@@ -1,17 +1,14 @@
-"""Cost of the torsional stiffness of the reference throw, against CalculiX on second-order tetrahedra.
+"""Cost of the torsional stiffness of the reference throw, at each level.
 
     python -m benchmarks.torsion
 
-Both start from the same STEP bytes, mesh the same half with Netgen, hold and load it alike (the traction
-(-y, x, 0)/J), and tell the work of the load. CalculiX climbs a list of meshes until its error is no greater
-than 0.5 %, and on until it is no greater than ours. Each run has a process of its own on one thread; loading
-the libraries is not timed. Results in benchmarks/results/torsion.json.
+Each run has a process of its own on one thread; loading the libraries is not timed. Results in
+benchmarks/results/torsion.json.
 """
 
 import json
 import os
 import resource
-import tempfile
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
@@ -19,7 +16,6 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from benchmarks.torsion_calculix import stiffness
 from cad.analysis.analyse import AnalysisRequest, analyse
 from cad.analysis.levels import NAMES
 from cad.shaft import Shaft
@@ -32,16 +28,6 @@ THROW = {
     "web_thickness": 0.018, "web_width": 0.080, "throw": 0.042, "fillet": 0.003,
 }  # fmt: skip
 TOLERANCE = 5e-3
-SIZES = (
-    (0.5, 1.0),
-    (0.4, 1.5),
-    (0.38, 1.6),
-    (0.36, 1.7),
-    (0.34, 1.8),
-    (0.3, 2.0),
-    (0.25, 2.5),
-    (0.2, 3.0),
-)  # in radii, and elements by radius
 
 
 def throw() -> dict[str, Any]:
@@ -71,13 +57,6 @@ def greatest_stress(step: bytes) -> dict[str, Any]:
     return {"stress": stress["value"], "estimated error": stress["error"], **stress["mesh"]}
 
 
-def calculix(step: bytes, size: float, curvature: float) -> dict[str, Any]:
-    """CalculiX's stiffness [N·m/rad] on one mesh."""
-    with tempfile.TemporaryDirectory() as folder:
-        value, elements, nodes = stiffness(step, SHAFT, size, curvature, Path(folder))
-    return {"stiffness": value, "elements": elements, "degrees_of_freedom": 3 * nodes, "size": size}
-
-
 def alone(action: Callable[..., dict[str, Any]], *inputs: Any, times: int = 3) -> dict[str, Any]:
     """Do something in a new process, some times, and measure it; the quickest counts."""
     runs = []
@@ -105,16 +84,6 @@ def timed(action: Callable[..., dict[str, Any]], *inputs: Any) -> dict[str, Any]
     }
 
 
-def climb(step: bytes, error: float) -> list[dict[str, Any]]:
-    """CalculiX on finer and finer meshes until it errs no more than this."""
-    steps: list[dict[str, Any]] = []
-    for size in SIZES:
-        steps.append(alone(calculix, step, *size))
-        if abs(steps[-1]["error"]) <= error:
-            break
-    return steps
-
-
 def main() -> None:
     """Measure, print and keep the results."""
     os.environ["OMP_NUM_THREADS"] = "1"
@@ -122,18 +91,10 @@ def main() -> None:
     own = alone(ours, step, AnalysisRequest(tolerance=TOLERANCE))
     levels = {level: alone(ours, step, AnalysisRequest(level=level)) for level in NAMES}
     stress = alone(greatest_stress, step, times=1)
-    others = climb(step, abs(own["error"]))
-    ratios = [
-        {"error": other["error"], "time": other["seconds"] / own["seconds"]}
-        for other in others
-        if abs(other["error"]) <= TOLERANCE
-    ]
     table = {
         "ours at 0.5 %": own,
         "levels": levels,
         "greatest stress": stress,
-        "CalculiX": others,
-        "CalculiX by ours": ratios,
     }
     RESULTS.write_text(json.dumps(table, indent=1) + "\n")
     print(json.dumps(table, indent=1))

@@ -6,12 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.all import table
+from benchmarks.all import PAGE, page
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted((ROOT / "docs" / "decisions").glob("*.md"))
 TEXTS = (".py", ".md", ".toml", ".yml", ".yaml", ".html", ".js", ".typ", ".css", ".txt", ".json")
 NAMED = re.compile(r"decisions/(\d{3}(?:-[\w-]+)?)|\b[Dd]ecisions? \[?(\d{3})\b|\[(\d{3})\]\(")
+
+OLDER = re.compile(r"`([0-9a-f]{8}:benchmarks/\w+\.py)`")
 
 
 def files():
@@ -45,6 +47,36 @@ def test_every_reference_to_a_decision_finds_its_page():
     assert [(str(path), name) for path, name in mentioned if name not in there] == []
 
 
+def test_every_benchmark_that_is_named_can_be_run():
+    named = {(path, name) for path in files() if path.suffix in TEXTS for name in scripts(path)}
+    assert len(named) > 20
+    missing = [name for _, name in named if not exists(name)]
+    assert missing == []
+
+
+def scripts(path):
+    """Yield the name of each benchmark that a file says how to run."""
+    yield from re.findall(r"python -m (benchmarks[.\w]*\w)", path.read_text(encoding="utf-8"))
+
+
+def exists(name):
+    """Return whether a module or package of this dotted name is in the repository."""
+    place = ROOT / name.replace(".", "/")
+    return place.with_suffix(".py").is_file() or (place / "__main__.py").is_file()
+
+
+def test_every_script_of_an_older_commit_is_in_the_history():
+    named = {
+        old for path in files() if path.suffix in TEXTS for old in OLDER.findall(path.read_text("utf-8"))
+    }
+    assert len(named) > 10
+    shallow = ["git", "rev-parse", "--is-shallow-repository"]
+    if subprocess.run(shallow, cwd=ROOT, capture_output=True, text=True).stdout.strip() != "false":
+        pytest.skip("a clone without its history")
+    for old in named:
+        subprocess.run(["git", "cat-file", "-e", old], cwd=ROOT, check=True)
+
+
 def test_the_page_of_costs_shows_the_run_that_is_kept():
-    page = (ROOT / "docs" / "costs.md").read_text(encoding="utf-8")
-    assert table() in page
+    text = PAGE.read_text(encoding="utf-8")
+    assert text == page(text)

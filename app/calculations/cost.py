@@ -1,8 +1,7 @@
 """Estimate how long a calculation will take, from measured costs of the levels and the number of points.
 
 An order of magnitude, known before anything is calculated, and rather too high than too low: what is
-expensive leaves the server's process (see `app.calculations.pool`). `benchmarks/service_flood.py` holds the
-estimates against measured times.
+expensive leaves the server's process (see `app.calculations.pool`).
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ START = Fineness(size=0.7, curvature=0.8, turn=np.pi / 4)
 ORDER = 3
 STEPS = 5
 SMALL, CONVERGED = 0.05, 0.01  # relative changes from mesh to mesh, of the last step but one and of the last
-FLOOR = 0.008  # relative: what the last change does not show (benchmarks.random_shoulders)
+FLOOR = 0.008  # relative: what the last change does not show (docs/finite_elements.md)
 
 _END_ZONE = 0.3  # of the radius of the loaded end: nothing is looked at there
 _PLAIN = 0.9  # of the distance from an end to where the next faces begin: nor there, if that is less

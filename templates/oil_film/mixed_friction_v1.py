@@ -66,9 +66,10 @@ class MixedFriction(Oil):
     contact, running-in and boundary layers are not counted; the friction coefficient of the contact is given.
     Gaps are those between the mean lines of the faces. Where these would meet, the load is refused.
     Level map takes the film of smooth faces; level averaged that of the average Reynolds equation of Patir
-    and Cheng with isotropic roughness. Measured by `benchmarks/mixed_friction.py` at a width of half the
-    diameter and a roughness of 0.02 of the radial clearance: faces of equal roughness bear 1, 5, 10 and 42 %
-    more at gaps of 5, 3, 2 and 0.5 times the roughness; a rough journal in a smooth bearing 2 to 3 % less at
+    and Cheng with isotropic roughness. Measured by `c29dd3ed:benchmarks/mixed_friction.py` at a width of
+    half the diameter and a roughness of 0.02 of the radial clearance: faces of equal roughness bear 1, 5,
+    10 and 42 % more at gaps of 5, 3, 2 and 0.5 times the roughness; a rough journal in a smooth bearing 2
+    to 3 % less at
     5 to 2, a rough bearing 5 to 23 % more. Between the eccentricities at which it is solved its load errs by
     0.3 %. The tables end at a gap of half the roughness; below it both levels differ as they do there.
     The oil's friction is the shear over the full circle at the mean gap; factors of its shear stress are not

@@ -30,9 +30,9 @@ class ThrustBearing(Oil):
     same at all radii. Pads with a flat part, and pads that tilt, have other films.
     Level sector solves the Reynolds equation of a sector; level mean_rectangle that of a rectangle of the
     pad's mean length and its width, which is what slider_bearing 1 calculates. Measured by
-    `benchmarks/thrust_bearing.py` for pads of 15° to 60°, the rectangle's torque is 3 to 4 % low at outer
-    over inner diameter 1.5, 8 to 10 % at 2 and 16 to 20 % at 3; its smallest film at a load within 0.2, 2 and
-    8 %. So the sector, which costs as little, is the default.
+    `c29dd3ed:benchmarks/thrust_bearing.py` for pads of 15° to 60°, the rectangle's torque is 3 to 4 % low
+    at outer over inner diameter 1.5, 8 to 10 % at 2 and 16 to 20 % at 3; its smallest film at a load
+    within 0.2, 2 and 8 %. So the sector, which costs as little, is the default.
     Both solve 16 × 4 and 32 × 8 intervals and extrapolate. Against finer meshes the sector's load errs by
     0.1 %, its flows by 0.06 % of the inlet's for film ratios to 5, b/l 0.3 to 3 and diameters to 3; at the
     worst corner of what is taken (film ratio 100, b/l 10, diameters 5) by 0.7 % and 7 %.

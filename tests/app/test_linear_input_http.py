@@ -12,7 +12,7 @@ from serving import API, HANG, created, problem
 
 from app.api.gate.heads import LONGEST_HEAD, MOST_FIELDS, MOST_HEADERS
 from app.designs.explain import DEEPEST
-from benchmarks.hostile_texts import EVERY
+from tests.app.hostile_texts import EVERY
 
 ANSWERED = {
     "Prefer of waits": 404,

@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 
-from benchmarks.elastic_ensemble import begun, second
-from benchmarks.elastic_reference import Bore
 from templates.physics.elastic.bore_film import BoreSoftness, bore_balances
 from templates.physics.elastic.bore_modes import BENDING, modes_along, modes_around
 from templates.physics.elastic.elastic_journal import measured
 from tests.recorded_bore import recorded_bore
+from tests.references.elastic_bore import Bore, begun, second
 
 SO, RATIO, TO_LOAD = 3.0, 0.5, 0.6
 

@@ -4,11 +4,11 @@ from math import pi, sqrt
 
 import pytest
 
-from benchmarks.first_harmonic import HalfPlane, bending, factor, torsion
-from benchmarks.shoulder_fillet import END, FILLET, shoulder
 from cad.analysis.analyse import AnalysisRequest, analyse
 from cad.analysis.kinds import BOUNDARIES, LOADS, Boundary, Kind
 from cad.shaft import STEEL_MATERIAL, Shaft
+from tests.references.half_plane import HalfPlane, bending, factor, torsion
+from tests.references.shoulder_fillet import END, FILLET, shoulder
 
 LENGTH, RADIUS = 200.0, 20.0  # [mm], of a cylinder
 YOUNG = STEEL_MATERIAL.young * 1e-6  # MPa

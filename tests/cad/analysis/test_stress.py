@@ -3,7 +3,16 @@
 import pytest
 from cadquery import Shape, Workplane
 
-from benchmarks.shoulder_fillet import (
+from cad.analysis.analyse import AnalysisRequest, analyse
+from cad.analysis.kinds import Kind
+from cad.analysis.solid import read_solid
+from cad.analysis.stress import CONVERGED, SMALL, Peak, Peaks, searched
+from cad.errors import AnalysisError
+from cad.header import Header
+from cad.model import Part
+from cad.shaft import Shaft
+from cad.step import write_step
+from tests.references.shoulder_fillet import (
     END,
     FILLET,
     LOADS,
@@ -14,15 +23,6 @@ from benchmarks.shoulder_fillet import (
     peterson,
     shoulder,
 )
-from cad.analysis.analyse import AnalysisRequest, analyse
-from cad.analysis.kinds import Kind
-from cad.analysis.solid import read_solid
-from cad.analysis.stress import CONVERGED, SMALL, Peak, Peaks, searched
-from cad.errors import AnalysisError
-from cad.header import Header
-from cad.model import Part
-from cad.shaft import Shaft
-from cad.step import write_step
 
 
 @pytest.mark.slow

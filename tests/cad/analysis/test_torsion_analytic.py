@@ -10,7 +10,6 @@ import pytest
 from cadquery import Shape, Workplane
 from netgen.occ import OCCGeometry
 
-from benchmarks.shoulder_fillet import END, FILLET, NARROW, SHOULDER, shoulder
 from cad.analysis.corners import sharp_inner_edges
 from cad.analysis.elastic import System, respond
 from cad.analysis.kinds import BOUNDARIES, DEFAULT_LEVEL, Boundary
@@ -22,6 +21,7 @@ from cad.header import Header
 from cad.model import Part
 from cad.shaft import STEEL_MATERIAL, Shaft
 from cad.step import write_step
+from tests.references.shoulder_fillet import END, FILLET, NARROW, SHOULDER, shoulder
 
 SHEAR = STEEL_MATERIAL.young / 2 / (1 + STEEL_MATERIAL.poisson)
 FINE = LEVELS[-1]

@@ -143,7 +143,7 @@ class TestRefusals:
 
     @pytest.mark.slow  # test_catalogue_properties.py asks the same of points that cost less
     def test_random_bearings_are_finite_or_refused(self):
-        """Decades away from the example; more of them in benchmarks/thermal_film.py."""
+        """Decades away from the example."""
         rng = np.random.default_rng(17)
         raw = {
             "radial_load": {"value": 6 * 10 ** rng.uniform(-1, 1, 6), "unit": "kN"},

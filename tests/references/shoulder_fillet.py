@@ -1,16 +1,10 @@
 """The stress in a shoulder fillet by finite elements, mesh by mesh, against Peterson's factors.
 
-    python -m benchmarks.shoulder_fillet
-
 Under torsion the von Mises stress is √3 times the shear stress; factors of bending are of the first principal
-stress. Results in benchmarks/results/shoulder_fillet.json.
+stress.
 """
 
-import json
 from math import pi, sqrt
-from pathlib import Path
-from time import perf_counter
-from typing import Any
 
 import numpy as np
 from cadquery import Shape, Workplane
@@ -24,7 +18,6 @@ from cad.shaft import STEEL_MATERIAL, Shaft
 from cad.step import write_step
 from templates.physics.shafts.stress_concentration import shoulder_fillet_Pilkey_2008
 
-RESULTS = Path("benchmarks/results/shoulder_fillet.json")
 WIDE, NARROW, FILLET = 60.0, 40.0, 4.0  # mm
 SHOULDER, END = 60.0, 130.0
 
@@ -66,29 +59,3 @@ def factors(load: Kind, stresses: Peaks) -> list[float]:
 def peterson(load: Kind) -> float:
     """The published factor."""
     return float(shoulder_fillet_Pilkey_2008(load, *np.array([WIDE, NARROW, FILLET])))
-
-
-def row(load: Kind) -> dict[str, Any]:
-    """One load: factors mesh by mesh, and the published one."""
-    start = perf_counter()
-    stresses = peaks(load)
-    ours = factors(load, stresses)
-    return {
-        "Peterson": peterson(load),
-        "factors": ours,
-        "degrees of freedom": [peak.degrees_of_freedom for peak in stresses.steps],
-        "converged": stresses.converged,
-        "against Peterson": ours[-1] / peterson(load) - 1,
-        "seconds": perf_counter() - start,
-    }
-
-
-def main() -> None:
-    """Measure, print and keep."""
-    table = {load: row(load) for load in LOADS}
-    RESULTS.write_text(json.dumps(table, indent=1) + "\n")
-    print(json.dumps(table, indent=1))
-
-
-if __name__ == "__main__":
-    main()

@@ -20,8 +20,11 @@ from scipy.sparse import coo_array, csc_array, diags_array
 from scipy.sparse.linalg import splu
 
 from templates.core.arrays import Array, Mask
+from templates.physics.elastic.bore_film import BoreFilm, BoreSoftness, bore_balances
+from templates.physics.elastic.bore_modes import HIGHEST
 from templates.physics.elastic.compliance import HARMONICS
 from templates.physics.films.film_mesh import ring_mesh
+from templates.physics.journals.static_journal import static_film_at
 
 _STEPS = 60
 _ACCURACY = 1e-9
@@ -329,3 +332,38 @@ def _top(phi: Array, values: Array) -> float:
     x, y = phi[i - 1 : i + 2] - phi[i], values[i - 1 : i + 2, j]
     bend, slope, top = np.polyfit(x / x[2], y, 2)
     return float(top - slope**2 / (4 * bend)) if bend < 0 else float(y[1])
+
+
+SIZES, SURE = ((96, 8), (192, 16), (384, 32)), 2e-3
+"""Elements around and across, and the change over three at which they suffice."""
+
+
+def second(So: float, film: Film) -> tuple[dict[str, float], float, Film]:
+    """Extrapolated values of the second method, how far its smallest film is sure, and the finest film.
+
+    A third mesh follows where the change between two says so.
+    """
+    places, solved = places_for(film), []
+    unsure = np.inf
+    for size in SIZES:
+        film = balanced(carried(film, places.mesh(film.ratio, *size)), So)
+        solved.append(measured(film))
+        if len(solved) > 1:
+            unsure = max(abs(solved[-1][name] / solved[-2][name] - 1) / 3 for name in ("least", "P_max"))
+            if unsure < SURE:
+                break
+    coarse, fine = solved[-2:]
+    return {name: fine[name] + (fine[name] - coarse[name]) / 3 for name in fine}, unsure, film
+
+
+def begun(So: float, ratio: float, softness: BoreSoftness, to_load: float) -> Film:
+    """The film of level elastic, for the second method to begin at."""
+    eps = min(float(static_film_at("map", np.array(So), np.array(ratio)).eps), 1 - 1e-6)
+    film = bore_balances(So, ratio, eps, softness, to_load)[-1][1].film
+    assert isinstance(film, BoreFilm)
+    bore = Bore(
+        softness.matrix, HIGHEST, 2, softness.ring * (np.arange(HARMONICS + 1) > HIGHEST), softness.liner,
+        softness.share, to_load, softness.size, softness.scale, softness.power,
+    )  # fmt: skip
+    mesh = elements(film.mesh.phi, film.mesh.zeta)
+    return Film(mesh, ratio, bore, film.P.ravel(), film.eps, film.softness.turn)

@@ -1,13 +1,11 @@
-"""A stepped shaft by elements in its half plane (r, z) alone, against the elements on its solid.
-
-    python -m benchmarks.first_harmonic
+"""A stepped shaft by elements in its half plane (r, z) alone, a second method beside `cad.analysis`.
 
 A body of revolution under a bending moment moves in the first harmonic: u_r = U cos θ, u_θ = V sin θ,
 u_z = W cos θ, with U, V and W in the half plane (Wilson 1965). In torsion u_θ = r ψ is all there is
 (Timoshenko and Goodier 1970). The unknowns are U, v = (U + V)/r and w = W/r: so no strain divides by r, and
 the axis needs no conditions. Elements are of sixth order on a graded mesh of the half plane. Nothing but the
 library's elements is shared with `cad.analysis`: not the mesh, the symmetry, the curving, the solver, nor the
-recovery of stress. Results in benchmarks/results/first_harmonic.json.
+recovery of stress.
 
 References
 ----------
@@ -17,22 +15,18 @@ S. P. Timoshenko and J. N. Goodier, Theory of Elasticity, 3rd edition, 1970, § 
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from math import pi, sqrt
-from pathlib import Path
 from typing import Any
 
 import ngsolve as ng
 import numpy as np
 from netgen.geom2d import SplineGeometry
 
-from benchmarks.shoulder_fillet import END, FILLET, LOADS, NARROW, SHOULDER, WIDE, peaks, shoulder
-from cad.analysis.analyse import AnalysisRequest, analyse
-from cad.analysis.kinds import BOUNDARIES, Boundary, Kind
-from cad.shaft import STEEL_MATERIAL, Material, Shaft
+from cad.analysis.kinds import Boundary, Kind
+from cad.shaft import STEEL_MATERIAL, Material
+from tests.references.shoulder_fillet import END, FILLET, LOADS, NARROW, SHOULDER, WIDE, peaks
 
-RESULTS = Path("benchmarks/results/first_harmonic.json")
 ORDER = 6
 _LARGEST, _AT_FILLET = 8.0, 0.7  # [mm], of elements
 _INSIDE, _PLACES = 1e-6, 400  # [mm]; points at which the stress of the fillet is read
@@ -174,25 +168,6 @@ def _greatest(half: HalfPlane, mesh: Any, field: Any) -> float:
     return max(float(field(mesh(x, y))) for x, y in zip(r.tolist(), z.tolist(), strict=True))
 
 
-def compared() -> dict[str, Any]:
-    """Both ways: stiffnesses of every load and boundary, and stress concentration factors."""
-    half, step = HalfPlane(), shoulder(FILLET)
-    table: dict[str, Any] = {}
-    for load in LOADS:
-        for boundary in BOUNDARIES:
-            plane = torsion(half) if load == "torsion" else bending(half, boundary)
-            asked = AnalysisRequest(load, boundary)
-            solid = analyse(step, Shaft(0.0, END), asked, ["stiffness"], _quietly).outputs["stiffness"]
-            table[f"stiffness, {load}, {boundary}"] = {
-                "half plane": plane.stiffness,
-                "solid": solid["value"],
-                "difference": solid["value"] / plane.stiffness - 1,
-                "estimated error": solid["error"],
-            }
-        table[f"factor, {load}"] = factor(load)
-    return table
-
-
 def factor(load: Kind) -> dict[str, float]:
     """The stress concentration factor both ways, and how far the one on the solid says it has settled."""
     half = HalfPlane()
@@ -205,18 +180,3 @@ def factor(load: Kind) -> dict[str, float]:
         "difference": solid / plane - 1,
         "estimated error": found.error,
     }
-
-
-def _quietly(done: float, what: str) -> None:
-    pass
-
-
-def main() -> None:
-    """Compare, print and keep."""
-    table = compared()
-    RESULTS.write_text(json.dumps(table, indent=1) + "\n")
-    print(json.dumps(table, indent=1))
-
-
-if __name__ == "__main__":
-    main()

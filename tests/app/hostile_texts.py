@@ -1,7 +1,7 @@
 """Relatives of the request that froze the service: texts on which a careless reader goes back and forth.
 
 Each is `(method, path, headers, body)`; `{design}` in a path stands for the id of some design. The tests send
-them all and want an answer; `benchmarks.service_hostile` times them.
+them all and want an answer.
 """
 
 from __future__ import annotations
