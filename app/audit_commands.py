@@ -18,10 +18,8 @@ from app.settings import Settings
 from app.storage.connecting import require_connection, require_database
 from app.storage.engines import reading_engine, sqlite_file
 from app.storage.errors import StorageError
-from app.storage.migrations import known_schemas, schema_of
+from app.storage.migrations import refuse_unknown, schema_of
 from templates.core.errors import plain
-
-FIRST = "0007"  # the schema with which the audit begins
 
 _data = click.option(
     "--data", type=click.Path(path_type=Path), default=None, help="folder of designs and artifacts"
@@ -105,14 +103,8 @@ def _url(settings: Settings) -> str:
 
 
 def _require_audit(session: Session) -> None:
-    """Return if the database has an audit that this program can read; raises CannotRun."""
+    """Return if the database has an audit that this program can read; raises CannotRun or StorageError."""
     schema = schema_of(session.connection())
     if schema is None:
         raise CannotRun("The database holds no tables of Crankwright.")
-    if schema not in known_schemas():
-        raise CannotRun(f"The database has schema {schema}, newer than {known_schemas()[0]}: upgrade.")
-    if schema < FIRST:
-        raise CannotRun(
-            f"The database has schema {schema}, and the audit begins with {FIRST}: start the service once, "
-            "which brings it up to date."
-        )
+    refuse_unknown(schema)

@@ -1,12 +1,14 @@
 """Measure every level of `oil_film` against the converged solution, and what a point of it costs.
 
-python -m benchmarks.accuracy measure    about 6 minutes: writes templates/oil_film/*.accuracy.json
+python -m benchmarks.accuracy measure    about 9 minutes: writes templates/oil_film/*.accuracy.json
 python -m benchmarks.accuracy costs      the costs alone
 python -m benchmarks.accuracy_picture  docs/pictures/oil_film_accuracy.png from those files
 
 The converged film: solutions extrapolated from 256 × 32 and 512 × 64 intervals at 1500 random places, which
 `benchmarks.film_map` keeps. Levels map, reynolds and mass_conserving are compared with those; the closed
 forms with the map on a dense grid, the map's own error added. Of each cell the largest error found counts.
+A plain, aligned bearing without grooves is measured; `benchmarks.shapes` compares meshes of the others, and
+`benchmarks.heat_balance_accuracy` measures what a heat balance adds, which stands in the same file.
 Errors are relative, of an angle to 90°, of a stiffness or damping to the largest of its four.
 """
 
@@ -21,13 +23,22 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.truths import COEFFICIENTS, FILM, FULL_SHEAR, OIL_SHEAR, RELATIVE_TO, meanings, truth_of
+from benchmarks.heat_balance_accuracy import heat_balance
+from benchmarks.truths import (
+    COEFFICIENTS,
+    FILM,
+    FULL_SHEAR,
+    OIL_SHEAR,
+    RELATIVE_TO,
+    converged,
+    meanings,
+    truth_of,
+)
 from templates.core.arrays import Array
 from templates.core.language.template import Template
 from templates.oil_film.oil_film_v1 import OilFilm as Paper
-from templates.oil_film.oil_film_v2 import OilFilm
+from templates.oil_film.oil_film_v3 import OilFilm
 from templates.physics.films.film_fit import load_ISO_7902
-from templates.physics.films.film_map import _DAMPING_SCALE, _STIFFNESS_SCALE, decode
 from templates.physics.films.short_bearing import load_Ocvirk_1952
 from templates.physics.journals.journal_coefficients import coefficients_at
 from templates.physics.journals.static_journal import WIDTHS, JournalFilm, static_film_at
@@ -36,7 +47,6 @@ from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
 from templates.physics.numerics.power_fit import exponent_k2, factor_k1
 
 FOLDER = Path("templates/oil_film")
-CHECKS = Path("benchmarks/film_map_checks.npz")
 
 EPS = [0, 0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.93, 0.95, 0.97, 0.98, 0.99, 0.995, 0.998,
        0.999, 0.9995, 0.9999, 1 - 1e-5, 1 - 1e-6, 1]  # fmt: skip
@@ -133,31 +143,6 @@ def closed_form(level: str, load: Callable[..., Array], own: dict[str, Array]) -
     }
     cells = {name: error.reshape(eps.shape).max(axis=-1) for name, error in errors.items()}
     return {name: MARGIN * cell + own[name] for name, cell in cells.items()}
-
-
-def converged(*, streamers: bool) -> tuple[Array, Array, JournalFilm, tuple[Array, Array]]:
-    """Places x = atanh(eps), y = ln(B/D), films and coefficients of the converged solutions.
-
-    Shear acts over the full circle, as in the standards, or with `streamers` as there is oil.
-    """
-    with np.load(CHECKS) as checks:
-        x, y, truth = checks["x"], checks["y"], checks["truth"]
-    eps, ratio = np.tanh(x), np.exp(y)
-    film = decode(eps, ratio, truth[:, :8].T)
-    shear = np.pi / np.sqrt((1 - eps) * (1 + eps))
-    if streamers:
-        shear = film["friction_streamers"] - eps * film["So"] * np.sin(film["attitude"]) / 2
-    names = ("So", "attitude", "P_max", "peak", "side_flow")
-    cos, sin = np.cos(film["attitude"]), np.sin(film["attitude"])
-    turn = np.stack([np.stack([cos, -sin], axis=-1), np.stack([sin, cos], axis=-1)], axis=-2)
-    thin = np.sqrt((1 - eps) / (1 + eps))[:, None, None]
-    scale = (film["So"] / eps)[:, None, None]
-    matrices = [
-        turn @ (scale * truth[:, part].reshape(-1, 2, 2) / thin**power) @ turn.swapaxes(-1, -2)
-        for part, power in ((slice(8, 12), _STIFFNESS_SCALE), (slice(12, 16), _DAMPING_SCALE))
-    ]
-    film_of = JournalFilm(eps=eps, shear=shear, **{name: film[name] for name in names})
-    return x, y, film_of, (matrices[0], matrices[1])
 
 
 def solved(level: str) -> dict[str, Array]:
@@ -289,14 +274,15 @@ def measure() -> None:
     }
     width = axis("b", "width_ratio", WIDTH)
     truths = meanings(FILM, FULL_SHEAR, OIL_SHEAR)
-    write(OilFilm, content_of(OilFilm, truths, [axis("eps", "relative_eccentricity", EPS), width], levels))
+    content = content_of(OilFilm, truths, [axis("eps", "relative_eccentricity", EPS), width], levels)
+    write(OilFilm, {**content, "conditions": [heat_balance()]})
     axes = [axis("S_0", "sommerfeld_number", LOADS), axis("b", "width_ratio", PAPER_WIDTH)]
     write(Paper, content_of(Paper, meanings(FILM), axes, {"only": {"cost": {}, **paper()}}))
 
 
 def costs() -> None:
     """Measure the costs again, and nothing else."""
-    path = FOLDER / "oil_film_v2.accuracy.json"
+    path = FOLDER / "oil_film_v3.accuracy.json"
     content = json.loads(path.read_text(encoding="utf-8"))
     for level, about in content["levels"].items():
         about["cost"] = cost(level)

@@ -1,8 +1,8 @@
-"""How much a heat balance adds to the errors of `oil_film` 2: measured on an ensemble of random bearings.
+"""How much a heat balance adds to the errors of `oil_film` 3: measured on an ensemble of random bearings.
 
-    python -m benchmarks.heat_balance_accuracy     three minutes; writes into oil_film_v2.accuracy.json
+    python -m benchmarks.heat_balance_accuracy     three minutes; prints what the accuracy file states
 
-Run it after `benchmarks.accuracy measure`, which writes the tables. Their errors are those of a film at a
+`benchmarks.accuracy measure` calls it and writes the file. The errors of its tables are those of a film at a
 given viscosity. With a heat balance, friction and side flow make the temperature, and the temperature the
 viscosity, so the errors of the map, from which every level takes both, reach every output.
 
@@ -18,25 +18,21 @@ convention than the balance: of friction and power nothing is stated there. Last
 of the other convention would change. That is no error, as ISO 7902-1 has shear all around.
 """
 
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from benchmarks.accuracy import converged
-from benchmarks.truths import FILM, FRICTION
+from benchmarks.truths import FILM, FRICTION, converged
 from templates.core.arrays import Array
 from templates.core.language.spec import Text
 from templates.core.units.quantity import Typed
-from templates.oil_film.oil_film_v2 import OilFilm
+from templates.oil_film.oil_film_v3 import OilFilm
 from templates.physics.journals.heat_balance import HOTTEST, HeatBalance
 from templates.physics.journals.static_journal import JournalFilm
 from templates.physics.numerics.roots import bracketed_root
 
-FILE = Path("templates/oil_film/oil_film_v2.accuracy.json")
 SEED = 13
 MARGIN = 1.5
 GRADES = ("iso_vg_10", "sae_15w_40", "iso_vg_320")
@@ -48,6 +44,8 @@ HOT = 250.0 + 273.15
 """Bearings hotter than this are left out: their oil would burn [K]."""
 HEAT_CAPACITY = 1.8e6
 """The template's default [J/(m³ K)]."""
+ZERO = ("couple_across_load", "couple_along_load")
+"""Outputs that vanish in an aligned bearing, as all of these are."""
 ANGLES = ("attitude_angle", "maximum_pressure_angle")
 INPUTS = ("supply_temperature", "ambient_temperature")
 
@@ -150,11 +148,13 @@ def value_of(template: OilFilm, output: str) -> Array:
 
 
 def dependent() -> list[str]:
-    """The outputs that a heat balance reaches."""
+    """Return the outputs that a heat balance reaches."""
     return [
         name
         for name, formula in OilFilm.formulas.items()
-        if not isinstance(formula, Text) and "balance" in OilFilm.ancestors(formula.attribute)
+        if name not in ZERO
+        and not isinstance(formula, Text)
+        and "balance" in OilFilm.ancestors(formula.attribute)
     ]
 
 
@@ -218,32 +218,31 @@ def other_convention() -> None:
     print(f"shear where oil is would make the film thicker by {low:.1%} to {high:.1%}, median {middle:.1%}")
 
 
-def main() -> None:
-    """Measure and write."""
+def heat_balance() -> dict[str, Any]:
+    """Measure what a heat balance adds at each level, as the accuracy file states it."""
     every = list(ensemble(SEED))
     count = sum(one.T.size for one in every)
     fast = {level: largest(added(one, level) for one in every) for level in set(LEVELS.values())}
     measured = {level: fast[source] for level, source in LEVELS.items()}
     measured[SLOW] = slowly(every, fast["map"])
-    tables = {
-        level: {name: upwards(MARGIN * error) for name, error in errors.items()}
-        for level, errors in measured.items()
+    return {
+        "name": "heat balance",
+        "inputs": list(INPUTS),
+        "made_by": "python -m benchmarks.accuracy measure",
+        "truth": f"{FILM}, at the temperature at which its shear all around heats what carries heat off",
+        "error": f"comes on top; the largest of {count} random bearings, half of it added; of a "
+        f"temperature relative to the absolute one; at level {SLOW} checked on {PICKED * len(every)} of "
+        "them, and null for friction and power, whose convention is not the balance's",
+        "added": {
+            level: {name: upwards(MARGIN * error) for name, error in errors.items()}
+            for level, errors in measured.items()
+        },
     }
-    content = json.loads(FILE.read_text(encoding="utf-8"))
-    content["conditions"] = [
-        {
-            "name": "heat balance",
-            "inputs": list(INPUTS),
-            "made_by": "python -m benchmarks.heat_balance_accuracy",
-            "truth": f"{FILM}, at the temperature at which its shear all around heats what carries heat off",
-            "error": f"comes on top; the largest of {count} random bearings, half of it added; of a "
-            f"temperature relative to the absolute one; at level {SLOW} checked on {PICKED * len(every)} of "
-            "them, and null for friction and power, whose convention is not the balance's",
-            "added": tables,
-        }
-    ]
-    FILE.write_text(json.dumps(content, ensure_ascii=False, separators=(",", ":")) + "\n", encoding="utf-8")
-    for level, table in tables.items():
+
+
+def main() -> None:
+    """Print the additions, and what a balance of the other convention would change."""
+    for level, table in heat_balance()["added"].items():
         print(level, table)
     other_convention()
 

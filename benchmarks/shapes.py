@@ -1,14 +1,12 @@
-"""Additions of `oil_film` 3 to version 2: error table, meshes, start line, and grooves under load.
+"""Bearings of `oil_film` 3 that are not plain: meshes, start line, and grooves under load.
 
-    python -m benchmarks.shapes accuracy    a minute: writes templates/oil_film/oil_film_v3.accuracy.json
     python -m benchmarks.shapes mesh        ten minutes: 60 bearings, benchmarks/results/shapes_mesh.json
     python -m benchmarks.shapes start_line  K_xx and the whirl limit with both start lines
     python -m benchmarks.shapes groove      what a film with a groove in the load line bears
 
-For a plain, aligned bearing without grooves version 3 calls the functions of version 2, so that its table is
-that of version 2 (tests/templates/oil_film/test_oil_film_v3.py holds the answers equal); only the costs are
-measured again. `mesh` compares the film that version 3 states with one extrapolated from 128 × 16 and
-256 × 32 intervals. It keeps what it has and goes on there.
+The errors of a plain, aligned bearing without grooves are measured by `benchmarks.accuracy`. `mesh` compares
+the film that version 3 states with one extrapolated from 128 × 16 and 256 × 32 intervals. It keeps what it
+has and goes on there.
 """
 
 import json
@@ -20,7 +18,6 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.accuracy import FOLDER, cost
 from templates.core.arrays import Array
 from templates.physics.cavities import shaped_balance
 from templates.physics.cavities.fed_film import Feed
@@ -35,21 +32,6 @@ RESULTS = Path("benchmarks/results/shapes_mesh.json")
 FINER = (*shaped_balance.MESHES, (256, 32))
 COUNT = 60
 PLAIN = Shape("plain", 2, *(np.array(v) for v in (0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0)))
-
-
-def accuracy() -> None:
-    """Write the table of version 3: that of version 2, with the costs measured again."""
-    content = json.loads((FOLDER / "oil_film_v2.accuracy.json").read_text(encoding="utf-8"))
-    content["template"]["version"] = 3
-    content["made_by"] = (
-        "python -m benchmarks.accuracy measure, for version 2, whose functions version 3 calls; "
-        "costs: python -m benchmarks.shapes accuracy"
-    )
-    for level, about in content["levels"].items():
-        about["cost"] = cost(level)
-    path = FOLDER / "oil_film_v3.accuracy.json"
-    path.write_text(json.dumps(content, ensure_ascii=False, separators=(",", ":")) + "\n", encoding="utf-8")
-    print(path)
 
 
 def drawn(seed: int) -> Loaded:
@@ -176,4 +158,4 @@ def _force(angle: float, pressure: float, eps: float, attitude: float) -> Array:
 
 
 if __name__ == "__main__":
-    {"accuracy": accuracy, "mesh": mesh, "start_line": start_line, "groove": groove}[sys.argv[1]]()
+    {"mesh": mesh, "start_line": start_line, "groove": groove}[sys.argv[1]]()

@@ -1,6 +1,14 @@
-"""Names of the solutions against which errors are measured, and the conventions that they follow."""
+"""Solutions against which errors are measured: their names, their conventions, the converged films."""
+
+from pathlib import Path
 
 import numpy as np
+
+from templates.core.arrays import Array
+from templates.physics.films.film_map import _DAMPING_SCALE, _STIFFNESS_SCALE, decode
+from templates.physics.journals.static_journal import JournalFilm
+
+CHECKS = Path("benchmarks/film_map_checks.npz")
 
 FILM = "Swift-Stieber"
 FULL_SHEAR = f"{FILM}, shear all around"
@@ -37,3 +45,28 @@ def truth_of(level: str, output: str) -> str:
     if output not in FRICTION:
         return FILM
     return OIL_SHEAR if level == "mass_conserving" else FULL_SHEAR
+
+
+def converged(*, streamers: bool) -> tuple[Array, Array, JournalFilm, tuple[Array, Array]]:
+    """Places x = atanh(eps), y = ln(B/D), films and coefficients of the converged solutions.
+
+    Shear acts over the full circle, as in the standards, or with `streamers` as there is oil.
+    """
+    with np.load(CHECKS) as checks:
+        x, y, truth = checks["x"], checks["y"], checks["truth"]
+    eps, ratio = np.tanh(x), np.exp(y)
+    film = decode(eps, ratio, truth[:, :8].T)
+    shear = np.pi / np.sqrt((1 - eps) * (1 + eps))
+    if streamers:
+        shear = film["friction_streamers"] - eps * film["So"] * np.sin(film["attitude"]) / 2
+    names = ("So", "attitude", "P_max", "peak", "side_flow")
+    cos, sin = np.cos(film["attitude"]), np.sin(film["attitude"])
+    turn = np.stack([np.stack([cos, -sin], axis=-1), np.stack([sin, cos], axis=-1)], axis=-2)
+    thin = np.sqrt((1 - eps) / (1 + eps))[:, None, None]
+    scale = (film["So"] / eps)[:, None, None]
+    matrices = [
+        turn @ (scale * truth[:, part].reshape(-1, 2, 2) / thin**power) @ turn.swapaxes(-1, -2)
+        for part, power in ((slice(8, 12), _STIFFNESS_SCALE), (slice(12, 16), _DAMPING_SCALE))
+    ]
+    film_of = JournalFilm(eps=eps, shear=shear, **{name: film[name] for name in names})
+    return x, y, film_of, (matrices[0], matrices[1])

@@ -42,7 +42,7 @@ from cad.step import Body, read_step, write_step
 from cad.step_text import KERNEL
 from cad.toleranced import REPEATED, Limits, carried, in_unit, limits, limits_of
 from cad.toleranced import written as with_limits
-from templates.core.catalogue.digests import content_digest
+from templates.core.catalogue.digests import digest
 from templates.core.catalogue.loading import is_outside
 from templates.core.errors import InvalidInputs
 
@@ -265,7 +265,7 @@ def _key(cls: type[CadModel], texts: Mapping[str, str]) -> str:
 def _code(cls: type[CadModel]) -> tuple[str, ...]:
     """The digest of a team's file, which may change while the service runs; nothing of a built-in model."""
     if cls not in _codes:
-        _codes[cls] = (content_digest(cls),) if is_outside(cls) else ()
+        _codes[cls] = (digest(cls),) if is_outside(cls) else ()
     return _codes[cls]
 
 

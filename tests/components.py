@@ -59,7 +59,7 @@ def running_cluster():
 
 @cache
 def migrated_file():
-    """A migrated and empty SQLite file, to be copied: eight migrations take longer than most tests."""
+    """A migrated and empty SQLite file, to be copied: a migration takes longer than most tests."""
     from app.storage.migrations import migrate
 
     folder = tempfile.mkdtemp(prefix="crankwright-tests-")

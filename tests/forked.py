@@ -2,9 +2,8 @@
 
 `python -m app serve` takes seconds to import the geometry kernel, and so does each fork server of a server;
 a fork takes none of them. All come from one process in each worker of pytest, which has imported what the
-command line and all fork servers need. All else is the same. `test_embedded_start.py`, the slow run of
-`test_demo.py` and `test_version_0_1.py` start the real command, tests with the fixture `real_fork_servers`
-real fork servers.
+command line and all fork servers need. All else is the same. `test_embedded_start.py` and the slow run of
+`test_demo.py` start the real command, tests with the fixture `real_fork_servers` real fork servers.
 """
 
 import importlib

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from app.calculations import criteria
 from app.plain import JsonObject
-from templates.core.catalogue.digests import content_digest, digest
+from templates.core.catalogue.digests import digest
 from templates.core.language.evaluate import Answer, Echo, Evaluation
 from templates.core.language.ledger import Notice
 from templates.core.language.template import Template
@@ -20,26 +20,20 @@ if TYPE_CHECKING:
 
 
 class Identity(TypedDict):
-    """A version of a template, with both digests of its code."""
+    """A version of a template, with the digest of its code."""
 
     id: str
     version: int
     digest: str
-    content_digest: str
 
 
 _identities: dict[type[Template], Identity] = {}
 
 
 def identity(cls: type[Template]) -> Identity:
-    """Which version calculated: id, version and both digests of its code."""
+    """Which version calculated: id, version and the digest of its code."""
     if cls not in _identities:
-        identified: Identity = {
-            "id": cls.id,
-            "version": cls.version,
-            "digest": digest(cls),
-            "content_digest": content_digest(cls),
-        }
+        identified: Identity = {"id": cls.id, "version": cls.version, "digest": digest(cls)}
         if cls.sheet:
             return identified  # worksheets come and go, and know their digest
         _identities[cls] = identified

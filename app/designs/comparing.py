@@ -142,7 +142,7 @@ def _versions(steps: Mapping[str, JsonObject], calculated: Mapping[str, JsonObje
     texts: dict[str, str] = {}
     for name, step in steps.items():
         done = calculated.get(name, {})
-        digest = done.get("template", {}).get("content_digest")
+        digest = done.get("template", {}).get("digest")
         code = f", code {digest[:12]}" if digest else ""
         texts[name] = f"{step['template']} version {step['version']}{code}"
         if isinstance(level := done.get("level"), str):

@@ -100,7 +100,7 @@ def _calculated(
         return None
     try:
         cls = catalogue.get(step.template.id, step.template.version)
-        if step.record and identity(cls)["content_digest"] == step.template.content_digest:
+        if step.record and identity(cls)["digest"] == step.template.digest:
             if not (with_arrays and step.record.has_arrays):
                 return restored(cls, step.record, step.level if isinstance(step.level, str) else None)
         return None if _is_edited(cls, step) else _evaluated(cls, step).template
@@ -110,8 +110,7 @@ def _calculated(
 
 def _is_edited(cls: type[Template], step: RevisionStep) -> bool:
     """Return whether a team has edited its file since it calculated a step."""
-    calculated_by = step.template.content_digest
-    return is_outside(cls) and calculated_by not in (None, identity(cls)["content_digest"])
+    return is_outside(cls) and step.template.digest not in (None, identity(cls)["digest"])
 
 
 def _retyped(used: UsedInput) -> Raw:

@@ -10,9 +10,10 @@ from pathlib import Path
 
 from app.maintenance.errors import CannotRun
 from app.storage.engines import sqlite_file
+from app.storage.errors import StorageError
 from app.storage.folder import LOCK
 from app.storage.integrity import is_damage, marker_of
-from app.storage.migrations import known_schemas
+from app.storage.migrations import known_schemas, refuse_unknown
 
 NOT_SQLITE = (
     "The database is not SQLite, and lost files are not repaired beside it: the servers make them again when "
@@ -81,12 +82,13 @@ def refuse_other_schema(connection: sqlite3.Connection, *, older_too: bool) -> s
             raise
         raise CannotRun("The file is not a database of Crankwright.") from None
     schema = str(rows[0][0]) if rows else "none"
-    schemas = known_schemas()
-    if schema not in schemas:
-        raise CannotRun(f"The database has schema {schema}, newer than this program's {schemas[0]}: upgrade.")
-    if older_too and schema != schemas[0]:
+    try:
+        refuse_unknown(schema)
+    except StorageError as error:
+        raise CannotRun(str(error)) from None
+    if older_too and schema != (newest := known_schemas()[0]):
         raise CannotRun(
-            f"The database has schema {schema}, older than this program's {schemas[0]}: start the service "
+            f"The database has schema {schema}, older than this program's {newest}: start the service "
             "once, which brings it up to date."
         )
     return schema

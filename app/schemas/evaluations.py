@@ -13,10 +13,9 @@ from app.schemas.criteria import Criterion, Verdict
 
 
 class CalculatedBy(Version):
-    """The version that calculated, with the digests of its code."""
+    """The version that calculated, with the digest of its code."""
 
-    digest: str | None = Field(None, description="absent in revisions of program version 0.1")
-    content_digest: str | None = Field(None, description="absent in revisions of program version 0.1")
+    digest: str | None = Field(None, description="SHA-256 of the code; absent where nothing calculated")
 
 
 class UsedInput(Answer):

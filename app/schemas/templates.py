@@ -96,8 +96,7 @@ class Described(Answer):
     summary: str
     status: Literal["released", "withdrawn"]
     withdrawn: str | None = Field(description="why it was withdrawn")
-    digest: str = Field(description="SHA-256 of the code, import lines included")
-    content_digest: str = Field(description="SHA-256 of the code without the paths of its imports")
+    digest: str = Field(description="SHA-256 of the code without the paths of its imports")
     outputs: Schema = Field(description="JSON Schema of the object `outputs`")
     formulas: list[Formula]
     levels: list[str] = Field(description="levels of fidelity, the cheapest first")

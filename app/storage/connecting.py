@@ -28,7 +28,7 @@ def opened_database(
     ------
     NotForTeams
         The settings do not fit together; the text names the remedy.
-    DatabaseDamaged, DatabaseNewer, DatabaseUnavailable
+    DatabaseDamaged, DatabaseBeforeRelease, DatabaseNewer, DatabaseUnavailable
         It cannot be used.
     """
     require_answer(settings)

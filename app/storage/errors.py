@@ -1,18 +1,19 @@
 """Errors of storage.
 
 StorageError
- ├── DataFolderInUse     another process holds the data folder
- ├── DatabaseNewer       the database was written by a newer program
- ├── DatabaseClosed      a unit of work came after `close`
- ├── CommitFailed        a unit of work ran, but it could not be made durable
+ ├── DataFolderInUse       another process holds the data folder
+ ├── DatabaseBeforeRelease the database was written by a program before the first release
+ ├── DatabaseNewer         the database was written by a newer program
+ ├── DatabaseClosed        a unit of work came after `close`
+ ├── CommitFailed          a unit of work ran, but it could not be made durable
  │    └── CommitUnknown  … and nobody knows whether it is
- ├── DatabaseUnavailable the database server cannot be reached, or does no work at present
- ├── NotForTeams         the settings do not let several servers share the data
- ├── DatabaseDamaged     pages or rows of the database cannot be read as they were written
- ├── ArtifactMissing     no artifact has this hash
- ├── ArtifactDamaged     the bytes of an artifact no longer have its hash
+ ├── DatabaseUnavailable   the database server cannot be reached, or does no work at present
+ ├── NotForTeams           the settings do not let several servers share the data
+ ├── DatabaseDamaged       pages or rows of the database cannot be read as they were written
+ ├── ArtifactMissing       no artifact has this hash
+ ├── ArtifactDamaged       the bytes of an artifact no longer have its hash
  ├── ArtifactsUnreachable  the store of the artifacts does not answer now
- └── StoreRefused        the settings name a store that cannot be used
+ └── StoreRefused          the settings name a store that cannot be used
 """
 
 from collections.abc import Sequence
@@ -35,6 +36,20 @@ class DataFolderInUse(StorageError):
         return (
             f"The data folder {self.folder} is in use by process {self.owner or 'unknown'}. "
             "Stop that server, or give this one a folder of its own by CRANKWRIGHT_DATA."
+        )
+
+
+class DatabaseBeforeRelease(StorageError):
+    """The database has a schema from before the first release, which this program does not read."""
+
+    def __init__(self, version: str) -> None:
+        super().__init__(version)
+        self.version = version
+
+    def __str__(self) -> str:
+        return (
+            f"The database has schema {self.version}, from before the first release, which this program does "
+            "not read: start with a new data folder or an empty database."
         )
 
 

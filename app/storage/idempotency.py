@@ -21,18 +21,13 @@ from app.storage.tables import Base, IdempotencyRow
 from app.storage.units import repeatable
 from app.storage.upserts import insert_new_values, upsert_values
 
-BEFORE_CLIENTS = ""  # the client of keys that version 0.1 kept, which asked for none
-
-
 _ROWS = Base.metadata.tables[IdempotencyRow.__tablename__]
 _KEPT = Statement(
-    select(_ROWS.c.client, _ROWS.c.fingerprint, _ROWS.c.location)
-    .where(
+    select(_ROWS.c.fingerprint, _ROWS.c.location).where(
         _ROWS.c.key == bindparam("of"),
         _ROWS.c.scope == bindparam("within"),
-        _ROWS.c.client.in_((bindparam("by"), BEFORE_CLIENTS)),
-    )
-    .order_by(_ROWS.c.client.desc()),  # that of version 0.1 is empty, the last
+        _ROWS.c.client == bindparam("by"),
+    ),
     "of",
     "within",
     "by",
@@ -58,8 +53,9 @@ class Once:
         """
         if not self.key:
             return None
-        kept = self._kept(session)
-        return self._answer(*next(iter(kept.values()))) if kept else None
+        asked = {"of": self.key, "within": self.scope, "by": self.client}
+        kept = next(iter(_KEPT.run(session, asked)), None)
+        return self._answer(*kept) if kept else None
 
     def begin(self, session: Session) -> JsonObject | None:
         """The stored answer of an equal earlier request; else let `keep` follow, for which a key is reserved.
@@ -76,9 +72,6 @@ class Once:
         if DRIVER in session.info:  # SQLite runs one unit after another: nobody else carries it out meanwhile
             return self.find(session)
         repeatable(session)
-        kept = self._kept(session)
-        if self.client != BEFORE_CLIENTS and BEFORE_CLIENTS in kept:
-            return self._answer(*next(iter(kept.values())))
         mine = self._new(operated(session), status=0, location={})
         if insert_new_values(session, _ROWS, mine):
             return None
@@ -105,10 +98,3 @@ class Once:
         if fingerprint != self.fingerprint:
             raise KeyReused(self.key or "")
         return location
-
-    def _kept(self, session: Session) -> dict[str, tuple[str, JsonObject]]:
-        """Fingerprint and answer by client: of this client first, then of version 0.1."""
-        asked = {"of": self.key, "within": self.scope, "by": self.client}
-        return {
-            client: (fingerprint, location) for client, fingerprint, location in _KEPT.run(session, asked)
-        }

@@ -43,7 +43,7 @@ import time
 from cadquery import Location, Solid, Vector
 
 from cad.model import Box, CadModel, Part, mm
-from templates.core.template import Array, choice, given
+from templates.core.language.template import Array, choice, given
 
 
 class Moody(CadModel):
@@ -90,7 +90,7 @@ class Moody(CadModel):
 DOUBLE = '''
 """Twice a length."""
 
-from templates.core.template import Array, Template, formula, given
+from templates.core.language.template import Array, Template, formula, given
 
 
 class Double(Template):
@@ -115,7 +115,7 @@ from cadquery import Solid, Vector
 
 from cad.model import Box, CadModel, Part, mm
 from cad.shaft import Shaft
-from templates.core.template import Array, choice, given
+from templates.core.language.template import Array, choice, given
 
 
 class Bar(CadModel):

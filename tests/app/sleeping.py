@@ -16,7 +16,7 @@ import numpy as np
 
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.progress import report
-from templates.core.template import Array, Template, choice, formula, given, units
+from templates.core.language.template import Array, Template, choice, formula, given, units
 
 
 ALARM = "no such file"

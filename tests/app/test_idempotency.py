@@ -1,12 +1,8 @@
 """A key belongs to the client that sent it, and to nobody else's request."""
 
-import pytest
 from serving import API, moody, problem
-from sqlalchemy import update
 
-from app.storage.errors import KeyReused
-from app.storage.idempotency import BEFORE_CLIENTS, Once
-from app.storage.tables import IdempotencyRow
+from app.storage.idempotency import Once
 
 SCOPE = "POST /designs"
 ANNA, BEN = "name:anna", "name:ben"
@@ -29,19 +25,6 @@ def test_two_clients_may_choose_the_same_key(database):
     assert [looked_up(database, once)["id"] for once in (anna, ben)] == ["anna's", "ben's"]
 
 
-def test_a_key_of_before_there_were_clients_is_honoured(database):
-    kept(database, Once("key", SCOPE, "body", BEFORE_CLIENTS), id="old")
-    assert looked_up(database, Once("key", SCOPE, "body", ANNA)) == {"id": "old"}
-    with pytest.raises(KeyReused):
-        looked_up(database, Once("key", SCOPE, "another body", ANNA))
-
-
-def test_a_clients_own_key_comes_before_an_old_one(database):
-    kept(database, Once("key", SCOPE, "body", BEFORE_CLIENTS), id="old")
-    kept(database, Once("key", SCOPE, "another body", ANNA), id="own")
-    assert looked_up(database, Once("key", SCOPE, "another body", ANNA)) == {"id": "own"}
-
-
 def test_no_key_finds_nothing(database):
     once = Once(None, SCOPE, "body", ANNA)
     kept(database, once, id="not kept")
@@ -60,9 +43,3 @@ class TestOverHttp:
         again = self.post(http, "anna")
         assert again.json()["id"] == anna.json()["id"]
         problem(self.post(http, "anna", name="another"), 422, "idempotency-key-reused")
-
-    def test_a_request_of_before_the_upgrade_is_repeated_after_it(self, http, served):
-        first = self.post(http, "cara", key="old-key")
-        old = update(IdempotencyRow).where(IdempotencyRow.key == "old-key").values(client=BEFORE_CLIENTS)
-        served.app.state.services.database.write(lambda session: session.execute(old).rowcount)
-        assert self.post(http, "cara", key="old-key").json()["id"] == first.json()["id"]

@@ -6,7 +6,7 @@ from alembic.runtime.migration import MigrationContext
 from sqlalchemy import inspect, text
 
 from app.storage.engines import migrating_engine, writing_engine
-from app.storage.errors import DatabaseNewer
+from app.storage.errors import DatabaseBeforeRelease, DatabaseNewer
 from app.storage.migrations import migrate
 from app.storage.tables import Base
 
@@ -70,3 +70,15 @@ def test_database_of_a_newer_program_is_refused(url):
     engine.dispose()
     with pytest.raises(DatabaseNewer, match="9999"):
         migrate(url)
+
+
+@pytest.mark.parametrize("schema", ["0001", "0009"])
+def test_database_of_before_the_first_release_is_refused_by_name(url, schema):
+    engine = writing_engine(url)
+    with engine.begin() as connection:
+        connection.execute(text("create table alembic_version (version_num varchar(32) not null)"))
+        connection.execute(text(f"insert into alembic_version values ('{schema}')"))
+    with pytest.raises(DatabaseBeforeRelease, match=f"schema {schema}, from before the first release"):
+        migrate(url)
+    assert inspect(engine).get_table_names() == ["alembic_version"]
+    engine.dispose()

@@ -84,6 +84,7 @@ def test_damage_is_no_other_error(error, damaged):
         (errors.DataFolderInUse("/data", "42"), ["/data", "process 42", "CRANKWRIGHT_DATA"]),
         (errors.DataFolderInUse("/data", ""), ["/data", "process unknown"]),
         (errors.DatabaseNewer("9999"), ["9999", "Upgrade"]),
+        (errors.DatabaseBeforeRelease("0009"), ["0009", "new data folder"]),
         (
             errors.DatabaseDamaged("file.sqlite", ["page 3", "page 5"]),
             ["file.sqlite", "page 3; page 5", "restore"],

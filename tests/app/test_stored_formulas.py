@@ -65,7 +65,7 @@ def test_a_step_of_a_changed_version_is_calculated_again(film, templates):
     name = type(film.template).formulas["minimum_film_thickness"].attribute
     wrong["record"]["computed"][name] = 1.0
     assert formulas(wrong, templates) != formulas(stored(film), templates)
-    wrong["template"]["content_digest"] = "that of another text"
+    wrong["template"]["digest"] = "that of another text"
     assert formulas(wrong, templates) == formulas(stored(film), templates)
 
 

@@ -14,7 +14,7 @@ import os
 from pathlib import Path
 
 from cad.model import Box, CadModel, mm
-from templates.core.template import Array, given
+from templates.core.language.template import Array, given
 
 
 class Endless(CadModel):

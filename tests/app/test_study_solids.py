@@ -26,7 +26,7 @@ import ctypes
 from cadquery import Solid, Vector
 
 from cad.model import Box, CadModel, Part, mm
-from templates.core.template import Array, given
+from templates.core.language.template import Array, given
 
 
 class Fussy(CadModel):

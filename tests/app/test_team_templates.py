@@ -208,10 +208,10 @@ class TestReload:
         problem(doubled(http, 9), 404, "unknown-template")
         file.write_text(TWICE)
         until(lambda: value(http, 9) == 6)
-        digest = http.get(f"{DOUBLED}/9").json()["content_digest"]
+        digest = http.get(f"{DOUBLED}/9").json()["digest"]
         file.write_text(TWICE.replace("2 * self.a", "5 * self.a"))
         until(lambda: value(http, 9) == 15)
-        assert http.get(f"{DOUBLED}/9").json()["content_digest"] != digest
+        assert http.get(f"{DOUBLED}/9").json()["digest"] != digest
         file.unlink()
         until(lambda: value(http, 9) is None)
         problem(doubled(http, 9), 404, "unknown-template")

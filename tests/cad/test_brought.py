@@ -23,7 +23,7 @@ from cad.header import Header
 from cad.model import Part
 from cad.regenerate import as_text, build_key, regenerate_shape
 from cad.step import read_step, write_step
-from templates.core.catalogue.digests import content_digest
+from templates.core.catalogue.digests import digest
 from templates.core.errors import InvalidInputs
 
 BORE = Parameter("bore", "bore", "mm", 20.0, "Sizes.cell.bore", 0.0, 1e3, "diameter")
@@ -50,7 +50,7 @@ def test_a_class_has_id_version_title_and_defaults():
     cls = class_of(RING.text, "ring", 3)
     assert (cls.id, cls.version, cls.title()) == ("ring", 3, "Ring")
     assert as_text(cls.from_quantities({})) == {"bore": "20 mm"}
-    assert content_digest(cls) == RING.digest()
+    assert digest(cls) == RING.digest()
 
 
 def test_class_and_shape_pass_between_processes():

@@ -22,7 +22,7 @@ FLAGS = [
 THIRD = '''
 """A third of a length, for tests of the pages."""
 
-from templates.core.template import Array, Template, formula, given
+from templates.core.language.template import Array, Template, formula, given
 
 
 class Third(Template):
@@ -40,7 +40,7 @@ class Third(Template):
 AWKWARD = '''
 """A template whose inputs are called like parts of a form of HTML, for tests of the pages."""
 
-from templates.core.template import Array, Template, formula, given
+from templates.core.language.template import Array, Template, formula, given
 
 
 class Awkward(Template):

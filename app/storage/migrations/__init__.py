@@ -9,8 +9,10 @@ from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, func, select
 
 from app.storage.engines import is_sqlite, migrating_engine
-from app.storage.errors import DatabaseNewer
+from app.storage.errors import DatabaseBeforeRelease, DatabaseNewer
 
+BEFORE_RELEASE = frozenset(f"{number:04}" for number in range(1, 10))
+"""Schemas of programs before the first release, which nobody had."""
 _LOCK = 0x4372616E6B  # of PostgreSQL: simultaneous starts would create the same tables
 
 
@@ -19,8 +21,8 @@ def migrate(url: str) -> None:
 
     Raises
     ------
-    DatabaseNewer
-        The database has been migrated by a newer program.
+    DatabaseBeforeRelease, DatabaseNewer
+        The database was written by a program before the first release, or by a newer one.
     """
     config = Config()
     config.set_main_option("script_location", str(Path(__file__).parent).replace("%", "%%"))
@@ -29,7 +31,8 @@ def migrate(url: str) -> None:
         with engine.begin() as connection:
             if not is_sqlite(url):
                 connection.execute(select(func.pg_advisory_xact_lock(_LOCK)))
-            _refuse_newer(connection)
+            if (current := schema_of(connection)) is not None:
+                refuse_unknown(current)
             config.attributes["connection"] = connection
             command.upgrade(config, "head")
     finally:
@@ -47,7 +50,17 @@ def known_schemas() -> list[str]:
     return [script.revision for script in scripts]
 
 
-def _refuse_newer(connection: Connection) -> None:
-    current = schema_of(connection)
-    if current is not None and current not in known_schemas():
-        raise DatabaseNewer(current)
+def refuse_unknown(schema: str) -> None:
+    """Return if this program can bring a schema up to date.
+
+    Raises
+    ------
+    DatabaseBeforeRelease
+        It is older than the first release; there is no way from it to this program.
+    DatabaseNewer
+        It is newer than this program.
+    """
+    if schema in BEFORE_RELEASE:
+        raise DatabaseBeforeRelease(schema)
+    if schema not in known_schemas():
+        raise DatabaseNewer(schema)

@@ -19,7 +19,7 @@ class BuildRow(Base):
     measurements: Mapped[JsonObject]
     created: Mapped[str]
     operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when last wanted [s of operation]
-    made_by: Mapped[str] = mapped_column(default="")  # kernel and recipe; empty in builds of version 0.1
+    made_by: Mapped[str] = mapped_column(default="")  # kernel and recipe
 
     artifacts: Mapped[list["ArtifactRow"]] = relationship(order_by="ArtifactRow.kind")
 

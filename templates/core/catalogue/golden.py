@@ -1,4 +1,4 @@
-"""Frozen versions: digests of the code, some inputs, every result; so a change beneath shows in its results.
+"""Frozen versions: the digest of the code, some inputs, every result; a change beneath shows in the results.
 
 `crankwright freeze` writes the record of a released version once; a test compares for ever after. A file that
 exists is never overwritten: a change to a released version is a new version.
@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.catalogue.digests import digests, release_file
+from templates.core.catalogue.digests import digest, release_file
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import is_reported
 from templates.core.language.intake import Input
@@ -39,7 +39,7 @@ def record(cls: type[Template], more: Iterable[Mapping[str, Any]] = ()) -> dict[
     return {
         "id": cls.id,
         "version": cls.version,
-        **digests(cls),
+        "digest": digest(cls),
         "precision": cls.precision,
         "cases": list(_cases(cls)),
         "levels": [*cases_of_levels(cls), *(_case(cls, about["inputs"], about["level"]) for about in more)],
@@ -57,7 +57,7 @@ def golden_file(cls: type[Template], folder: Path) -> Path:
 
 
 def freeze(cls: type[Template], folder: Path) -> Path:
-    """Write the record of a version that is to be released, and its digests beside its file; where it stands.
+    """Write the record of a version that is to be released, and its digest beside its file; where it stands.
 
     Cases besides those around the example stand in the folder's `more`, in a file of the record's name.
 
@@ -106,13 +106,13 @@ def _to(digits: int, value: Any) -> Any:
 
 
 def mark_released(cls: type[Template]) -> Path | None:
-    """Record the digests of a version beside its file, where the service reads them; never over a record.
+    """Record the digest of a version beside its file, where the service reads them; never over a record.
 
     A worksheet has no file: whoever keeps its text records its release.
     """
     path = release_file(cls)
     if path and not path.exists():
-        path.write_text(json.dumps(digests(cls), indent=1) + "\n", encoding="utf-8")
+        path.write_text(json.dumps({"digest": digest(cls)}) + "\n", encoding="utf-8")
     return path
 
 

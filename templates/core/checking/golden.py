@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from templates.core.catalogue.digests import content_digest, release_file
+from templates.core.catalogue.digests import digest, release_file
 from templates.core.catalogue.golden import results
 from templates.core.checking.faults import FileFault
 from templates.core.errors import InvalidInputs
@@ -31,7 +31,7 @@ def faults_of_release(cls: type[Template], path: Path) -> Iterator[FileFault]:
             yield from _against(cls, file)
     release = release_file(cls)
     recorded = _read(release) if release else None
-    if release and recorded is not None and recorded.get("content_digest") != content_digest(cls):
+    if release and recorded is not None and recorded.get("digest") != digest(cls):
         what = f"the code is not that of the release: {release.name} holds another digest"
         yield FileFault("released", what, NEW_VERSION, quarantines=False)
 

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from templates.core.catalogue.digests import content_digest, digest
+from templates.core.catalogue.digests import digest
 from templates.core.judging.criterion import Limit
 from templates.core.language.intake import Input, is_single
 from templates.core.language.meaning import Bounds
@@ -42,7 +42,6 @@ def describe(cls: type[Template]) -> dict[str, Any]:
         "status": "withdrawn" if cls.withdrawn else "released",
         "withdrawn": cls.withdrawn,
         "digest": digest(cls),
-        "content_digest": content_digest(cls),
         "inputs": inputs_schema(cls),
         "outputs": outputs_schema(cls),
         "formulas": [formula_on_paper(cls, formula) for formula in cls.formulas.values()],

@@ -19,7 +19,7 @@ from templates.physics.cavities.shaped_balance import SMALLEST, Balance, Loaded,
 from templates.physics.films.film_map import mapped_load
 from templates.physics.films.film_shape import Bore, Lie, narrowest
 from templates.physics.journals.journal_coefficients import Linear, coefficients_at
-from templates.physics.journals.static_journal import FED, WIDTHS, is_fed, static_film_at
+from templates.physics.journals.static_journal import FED, WIDTHS, JournalFilm, is_fed, static_film_at
 from templates.physics.journals.whirl import threshold_mass
 
 BORES = ("plain", "lemon", "offset", "multi_lobe")
@@ -157,7 +157,7 @@ def journal_film_at(
     )
     So, ratio, pressure, away, *numbers = parts
     solved = (away > 0) | (is_fed(pressure, grooves) & (level == FED))
-    film = _plain(level, np.where(solved | np.isnan(away), np.nan, So), ratio)
+    film = plain_film(static_film_at(level, np.where(solved | np.isnan(away), np.nan, So), ratio))
     names = [field.name for field in fields(StaticFilm)]
     values = {name: np.array(getattr(film, name), float) for name in names}
     low, high = WIDTHS[level]
@@ -173,9 +173,8 @@ def journal_film_at(
     return StaticFilm(**{name: value[()] for name, value in values.items()})
 
 
-def _plain(level: str, So: Array, ratio: Array) -> StaticFilm:
-    """The film of a plain, aligned bearing that is fed along its widest gap."""
-    film = static_film_at(level, So, ratio)
+def plain_film(film: JournalFilm) -> StaticFilm:
+    """Return the film of a plain, aligned bearing that is fed along its widest gap, as that of any bore."""
     nought, matrix = np.zeros_like(film.eps), np.full((*np.shape(film.eps), 2, 2), np.nan)
     with np.errstate(invalid="ignore"):
         couple = film.So * np.where(np.isinf(film.eps), np.nan, film.eps) * np.sin(film.attitude) / 2

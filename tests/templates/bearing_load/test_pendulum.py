@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from templates.bearing_load.engine_v1 import Engine
-from templates.core.evaluate import evaluate
+from templates.core.language.evaluate import evaluate
 from templates.core.paper import report
 from templates.physics.engine.crank_loads import GRAVITY
 

@@ -10,6 +10,7 @@ from newest import older_slow
 from app.catalogue.checking import check_content
 from cad.catalogue import models
 from templates.core.catalogue import golden
+from templates.core.catalogue.digests import digest
 from templates.core.catalogue.finding import declared_in_file, find
 from templates.core.checking.check import faults_of
 from templates.core.language.template import Template
@@ -17,7 +18,7 @@ from templates.door import built_in
 
 BUSH = '''"""Duty of a plain bush."""
 
-from templates.core.template import Array, Template, Truth, derived, formula, given, require
+from templates.core.language.template import Array, Template, Truth, derived, formula, given, require
 
 
 class BushDuty(Template):
@@ -212,5 +213,5 @@ def test_two_contents_of_one_file_live_beside_each_other(tmp_path):
     values = [cls.from_quantities(cls.example).u for cls in classes]
     assert values[0] == pytest.approx(values[1] * 3 / 2)
     assert faults_of(classes[0], path) == faults_of(classes[1], path) == []
-    digests = {golden.digests(cls)["content_digest"] for cls in classes}
+    digests = {digest(cls) for cls in classes}
     assert len(digests) == 2

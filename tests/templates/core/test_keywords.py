@@ -47,7 +47,9 @@ def complaints(tmp_path_factory):
     """What mypy prints of each line; one run for all of them, for it reads half the library first."""
     file = tmp_path_factory.mktemp("typed") / "own.py"
     assigned = "".join(f"width_{number} = {line}\n" for number, line in enumerate(LINES))
-    file.write_text(f"from templates.core.template import formula, given\n{assigned}", encoding="utf-8")
+    file.write_text(
+        f"from templates.core.language.template import formula, given\n{assigned}", encoding="utf-8"
+    )
     settings = file.with_suffix(".ini")
     settings.write_text(SETTINGS, encoding="utf-8")
     options = [f"--config-file={settings}", f"--cache-dir={file.parent}"]

@@ -199,7 +199,8 @@ class TestFiles:
             find([tmp_path], Template)
 
     def test_a_file_with_two_templates_is_refused(self, tmp_path):
-        one = "from templates.core.template import Template\nclass {0}(Template):\n    example = {{}}\n"
+        base = "from templates.core.language.template import Template\n"
+        one = base + "class {0}(Template):\n    example = {{}}\n"
         (tmp_path / "two_v1.py").write_text(one.format("A") + one.format("B"))
         with pytest.raises(UnusableFile, match="2 templates"):
             find([tmp_path], Template)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import templates
-from templates.core.catalogue.digests import content_digest, digests, source_digest
+from templates.core.catalogue.digests import digest
 from templates.core.catalogue.finding import find
 from templates.core.catalogue.golden import freeze, golden_file, record
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, Unreachable, UnusableFile
@@ -16,7 +16,7 @@ from templates.core.language.template import Template
 
 SOURCE = '''"""A team's own template."""
 
-from templates.core.template import Template, choice, derived, formula, given
+from templates.core.language.template import Template, choice, derived, formula, given
 
 
 class Own(Template):
@@ -65,8 +65,7 @@ class TestFinding:
         other = only(written(tmp_path / "other", source=SOURCE.replace("2 * self.a", "3 * self.a")))
         results = [evaluate(cls, cls.example).outputs["twice_the_length"].value for cls in (one, other)]
         assert results == [4, 6]
-        assert source_digest(one) != source_digest(other)
-        assert content_digest(one) != content_digest(other)
+        assert digest(one) != digest(other)
         with pytest.raises(UnusableFile, match="another file already"):
             find([tmp_path], Template)
 
@@ -108,7 +107,7 @@ class TestFreezing:
         own = only(written(tmp_path / "own"))
         path = freeze(own, tmp_path / "golden")
         assert path == golden_file(own, tmp_path / "golden") == tmp_path / "golden" / "own_v1.json"
-        assert json.loads((tmp_path / "own" / "own_v1.release.json").read_text()) == digests(own)
+        assert json.loads((tmp_path / "own" / "own_v1.release.json").read_text()) == {"digest": digest(own)}
         before = path.read_bytes()
         with pytest.raises(FileExistsError):
             freeze(own, tmp_path / "golden")
@@ -154,7 +153,7 @@ def test_property_errors_come_whole_out_of_another_process(error):
 
 GROUP = '''"""A group."""
 
-from templates.core.template import Template, given, require
+from templates.core.language.template import Template, given, require
 
 
 class Sized(Template):
@@ -170,7 +169,7 @@ class Sized(Template):
 MEMBER = '''"""A member."""
 
 import {group}
-from templates.core.template import formula
+from templates.core.language.template import formula
 
 
 class Member({group}.Sized):
@@ -196,8 +195,8 @@ class TestGroups:
         """The member's own file differs by the name of its group alone."""
         one = self.member(tmp_path / "one", monkeypatch, "group_one", 2)
         two = self.member(tmp_path / "two", monkeypatch, "group_two", 3)
-        bare = {kind(cls) for kind in (source_digest, content_digest) for cls in (one, two)}
+        bare = {digest(cls) for cls in (one, two)}
         monkeypatch.setattr(one.__mro__[1], "__module__", two.__mro__[1].__module__)
-        assert {source_digest(one), content_digest(one)}.isdisjoint(bare)
+        assert digest(one) not in bare
         assert list(one.inputs) == ["length"]
         assert evaluate(one, one.example).outputs["twice_the_length"].value == 4

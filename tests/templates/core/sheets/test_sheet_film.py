@@ -11,7 +11,7 @@ from seeds import seeded
 import benchmarks
 from app.calculations.sources import SheetSource, loaded, source_of
 from templates.core.catalogue import golden
-from templates.core.catalogue.digests import content_digest, digest, is_digest_of, release_file
+from templates.core.catalogue.digests import digest, release_file
 from templates.core.checking.check import faults_of
 from templates.core.errors import InvalidInputs
 from templates.core.language import dimensions
@@ -113,10 +113,8 @@ class TestTheSameKindOfTemplate:
     def test_asks_for_no_file(self, film):
         assert (accuracy_file(film), accuracy(film), release_file(film)) == (None, None, None)
 
-    def test_has_one_digest(self, film):
-        own = film.sheet.digest()
-        assert (digest(film), content_digest(film)) == (own, own)
-        assert is_digest_of(own, film)
+    def test_has_the_digest_of_its_sheet(self, film):
+        assert digest(film) == film.sheet.digest()
 
     def test_reports_every_formula_on_paper(self, film):
         template = evaluate(film, film.example).template
