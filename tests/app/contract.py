@@ -1,4 +1,4 @@
-"""How files of STEP, XLSX and Mathcad are sent, which schemathesis cannot know (`tests/schemathesis.toml`)."""
+"""How files of STEP, XLSX and Mathcad are sent, which schemathesis cannot know; see `schemathesis.toml`."""
 
 import schemathesis
 
