@@ -35,6 +35,13 @@ def test_the_readme_is_short_and_has_the_two_commands():
     assert "No licence has been chosen" in README
 
 
+def test_the_readme_begins_with_four_lines_of_the_comparison():
+    comparison = (ROOT / "docs" / "comparison.md").read_text(encoding="utf-8").splitlines()
+    table = [line for line in README.splitlines()[:10] if line.startswith("| ")]
+    assert len(table) == 1 + 4
+    assert set(table) <= set(comparison)
+
+
 @pytest.mark.parametrize("id", [*built_in().ids, *cad_models().ids])
 def test_the_readme_names_every_template_and_model(id):
     assert f"`{id}`" in README
