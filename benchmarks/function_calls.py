@@ -108,7 +108,10 @@ class Bench:
 
     def change(self, design: str, width: str) -> None:
         """Change the width of the film's bearing, and run the job of the revision."""
-        patch = {"steps": {"film": {"inputs": {"bearing_width": width}}}}
+        self.patch(design, {"steps": {"film": {"inputs": {"bearing_width": width}}}})
+
+    def patch(self, design: str, patch: dict[str, Any]) -> None:
+        """Change a design by a merge patch, and run the job of the revision."""
         self._finished(self.designs.change(design, patch, None, None, _once()))
 
     def _finished(self, saved: Any) -> Any:

@@ -1,9 +1,9 @@
-"""Imports between the parts of `app`, how many of them point against the layers, and what is typed as `Any`.
+"""The structure of the program: imports, circles, short modules, names, `Any`, and files entered.
 
-`python -m benchmarks.structure` prints the counts, every import that points upwards, and files with `Any`.
-The layers are those of docs/architecture and of the import contracts in pyproject.toml; a module at the top
-of `app` is a part too. `Any` is counted as a word; its reason stands beside it or at the head of its module.
-`Json` and `JsonObject` are counted apart: they too are `Any`, for values that a model or a schema checks.
+`python -m benchmarks.structure` prints them, with the size of `app`. The layers are those of the import
+contracts in pyproject.toml; a module at the top of `app` is a part too. `Any` is counted as a word; its
+reason stands beside it or at the head of its module. `Json` and `JsonObject` are counted apart: they too
+are `Any`, for values that a model or a schema checks.
 """
 
 from __future__ import annotations
@@ -13,11 +13,24 @@ import re
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterator, Mapping
 from pathlib import Path
+
+from benchmarks import files_entered
 
 ROOT = Path(__file__).parents[1]
 APP = ROOT / "app"
+PACKAGES = ("app", "cad", "templates")
+SHORT = 60  # lines; a shorter module that one other imports belongs into that one
+RESOURCE = frozenset({"routes", "schemas", "repository", "service", "tasks", "tables"})
+"""The files of a resource: the same names in each folder, however short."""
+
+REASONS: dict[str, str] = {}
+"""Short modules with a single importer, and why each is a file of its own."""
+
+ENDINGS = re.compile(r"(?:ings?|eds?|ions?|ers?|es|e|s|d)$")
+NOUNS = frozenset({"spring", "string", "bearing"})
+"""Names that end like a gerund and are nouns of the field."""
 
 
 def layers() -> tuple[frozenset[str], ...]:
@@ -96,19 +109,127 @@ def upward(counted: Counter[tuple[str, str]]) -> list[tuple[str, str]]:
     return sorted(pair for pair in counted if rank(pair[1]) <= rank(pair[0]))
 
 
+def modules(root: Path = ROOT, packages: tuple[str, ...] = PACKAGES) -> dict[str, Path]:
+    """Return the files of the packages by the dotted name of their module."""
+    found = {}
+    for package in packages:
+        for path in sorted((root / package).rglob("*.py")):
+            parts = path.relative_to(root).with_suffix("").parts
+            found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return found
+
+
+def imported(path: Path, known: Container[str], name: str) -> set[str]:
+    """Return the modules that a file imports, wherever in the file, without itself."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            for alias in node.names:
+                full = f"{node.module}.{alias.name}"
+                found.add(full if full in known else node.module)
+        elif isinstance(node, ast.Import):
+            found.update(alias.name for alias in node.names)
+    return {one for one in found if one in known and one != name}
+
+
+def graph(root: Path = ROOT, packages: tuple[str, ...] = PACKAGES) -> dict[str, set[str]]:
+    """Return for each module those that it imports."""
+    known = modules(root, packages)
+    return {name: imported(path, known, name) for name, path in known.items()}
+
+
+def circles(arrows: Mapping[str, set[str]]) -> list[list[str]]:
+    """Return the groups of modules that import each other, directly or by way of others."""
+    reached = {name: _reached(name, arrows) for name in arrows}
+    groups = {
+        tuple(sorted({name} | {other for other in reached[name] if name in reached[other]}))
+        for name in arrows
+        if name in reached[name]
+    }
+    return sorted(map(list, groups))
+
+
+def _reached(name: str, arrows: Mapping[str, set[str]]) -> set[str]:
+    """Return what a module imports, directly or by way of others."""
+    found, left = set[str](), [name]
+    while left:
+        for other in arrows.get(left.pop(), ()):
+            if other not in found:
+                found.add(other)
+                left.append(other)
+    return found
+
+
+def single_importers(arrows: Mapping[str, set[str]], root: Path = ROOT) -> dict[str, str]:
+    """Return the short modules of `app` that one other module alone imports, and that module."""
+    known = modules(root)
+    found = {}
+    for name, path in known.items():
+        if not name.startswith("app.") or path.name == "__init__.py" or _may_be_short(name):
+            continue
+        if len(path.read_text(encoding="utf-8").splitlines()) >= SHORT:
+            continue
+        by = [other for other, targets in arrows.items() if name in targets]
+        if len(by) == 1:
+            found[name] = by[0]
+    return found
+
+
+def _may_be_short(name: str) -> bool:
+    """Return whether the name says why a module may be short: one of a resource, or a command's."""
+    return bool(RESOURCE & set(name.split("."))) or "commands" in name or name.startswith("app.cli.")
+
+
+def pairs(root: Path = ROOT) -> list[tuple[str, str]]:
+    """Return the modules of one folder whose names differ by -ing, -ed, -s or the like alone."""
+    folders: dict[Path, dict[str, list[str]]] = {}
+    for path in sorted((root / "app").rglob("*.py")):
+        stem = ENDINGS.sub("", path.stem)
+        folders.setdefault(path.parent, {}).setdefault(stem, []).append(path.stem)
+    return [
+        (str(folder.relative_to(root)), ", ".join(names))
+        for folder, by_stem in folders.items()
+        for names in by_stem.values()
+        if len(names) > 1
+    ]
+
+
+def participles(root: Path = ROOT) -> list[str]:
+    """Return the modules of `app` that are named by a participle or a gerund."""
+    return sorted(
+        str(path.relative_to(root))
+        for path in (root / "app").rglob("*.py")
+        if re.search(r"(?:^|_)\w+(?:ing|ed)(?:_|$)", path.stem) and path.stem not in NOUNS
+    )
+
+
 def main() -> None:
     """Print the counts, every arrow that points upwards, and every file with `Any`."""
-    counted = arrows()
+    counted, graphed = arrows(), graph()
     against = upward(counted)
     print(
         f"{len(counted)} arrows between the parts of app ({counted.total()} imports), {len(against)} against"
     )
     for source, target in against:
         print(f"  {source} → {target}: {counted[source, target]} imports")
+    for title, lines in {
+        "circles": [" ".join(circle) for circle in circles(graphed)],
+        f"modules of app under {SHORT} lines with a single importer and no reason": [
+            f"{name} ← {by}" for name, by in single_importers(graphed).items() if name not in REASONS
+        ],
+        "names of one folder that differ by an ending": [f"{folder}: {names}" for folder, names in pairs()],
+        "files named by a participle or gerund": participles(),
+    }.items():
+        print(f"{len(lines)} {title}")
+        for line in lines:
+            print(f"  {line}")
     untyped, json = words("Any"), words("Json|JsonObject")
     print(f"{untyped.total()} times Any in {len(untyped)} files ({json.total()} times Json or JsonObject)")
     for path, count in untyped.most_common():
         print(f"  {path}: {count}")
+    sizes = [len(path.read_text(encoding="utf-8").splitlines()) for path in APP.rglob("*.py")]
+    print(f"app: {len(sizes)} files, {sum(sizes)} lines")
+    files_entered.main()
     sys.exit(bool(against))
 
 

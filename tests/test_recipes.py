@@ -85,6 +85,12 @@ def count_passed(printed):
     return int(re.search(r"(\d+) passed", summary)[1])
 
 
+def going_through_templates(copy):
+    """Return the test files that go through all templates, but those of a server and this one."""
+    files = [*(copy / "tests").glob("test_handbook.py"), *(copy / "tests" / "templates").rglob("test_*.py")]
+    return [str(file) for file in files if "built_in()" in file.read_text(encoding="utf-8")]
+
+
 @pytest.fixture
 def copy(tmp_path):
     """The files that git knows or would add, in a folder of their own."""
@@ -118,6 +124,7 @@ def test_one_more_output_is_a_new_version(copy):
     before = digest(1)
     *_, tests = carry_out(recipe(OUTPUT), copy)
     assert count_passed(tests) > 40  # of both versions
+    assert count_passed(run(["pytest", "-n", "2", "-q", *going_through_templates(copy)], copy)) > 100
     assert "journal_friction-2" in run(
         ["pytest", "--collect-only", "-q", "tests/templates/test_catalogue_properties.py"], copy
     )

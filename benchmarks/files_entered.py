@@ -1,0 +1,166 @@
+"""Files of `app` and of `templates` that a request enters, counted on the design of the paper.
+
+`python -m benchmarks.files_entered` prints them for a change from the merge patch to the checked STEP file
+(without HTTP, queue and the kernel's process), and for a PATCH of one closed-form step and an evaluation,
+with HTTP. With `--list` it names the files.
+
+A file counts once one of its functions is called, in any thread of the service, while the request is
+answered. Each request is sent a few times before, so that every cache is warm, and each time with a new
+value.
+"""
+
+from __future__ import annotations
+
+import json
+import socket
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import httpx
+import uvicorn
+
+from benchmarks.function_calls import PACKAGES, WARM_UP, Bench, Calls
+
+ROOT = Path(__file__).parents[1]
+API = "/api/v1"
+QUIET = {"If-Match": "*", "Prefer": "wait=60"}
+
+
+class Files:
+    """The files of each package that one request entered."""
+
+    def __init__(self, calls: Calls, root: Path) -> None:
+        names = {Path(code.co_filename).relative_to(root) for code in calls.counts}
+        self.by_package = {
+            package: sorted(str(name) for name in names if name.parts[0] == package) for package in PACKAGES
+        }
+
+    @property
+    def app(self) -> int:
+        """How many files of `app`."""
+        return len(self.by_package["app"])
+
+    @property
+    def templates(self) -> int:
+        """How many files of `templates`."""
+        return len(self.by_package["templates"])
+
+
+def change_to_step(root: Path = ROOT) -> Files:
+    """Return the files that a change enters, from the merge patch to the checked STEP file."""
+    from app.designs.schemas import PAPER
+
+    with _profiled(root) as calls, TemporaryDirectory() as folder, ExitStack() as stack:
+        bench = Bench(Path(folder), stack)
+        design = bench.create(dict(PAPER))
+        for turn in range(WARM_UP):
+            bench.patch(design, scale(turn))
+        with calls.counting():
+            bench.patch(design, scale(WARM_UP))
+        if not bench.is_current(design):
+            raise RuntimeError("the change that was counted did not lead to a solid")
+        return Files(calls, root)
+
+
+def scale(turn: int) -> dict[str, Any]:
+    """Return the merge patch that sets another scale of the bearing."""
+    return {"parameters": {"scale": f"{1.05 + 0.05 * turn}"}}
+
+
+def changed_step(root: Path = ROOT) -> Files:
+    """Return the files that a PATCH of one closed-form step enters, with HTTP."""
+    from app.designs.schemas import PAPER
+
+    document = {name: part for name, part in PAPER.items() if name != "model"}
+    with _profiled(root) as calls, TemporaryDirectory() as folder, _server(Path(folder)) as http:
+        design = http.post(f"{API}/designs", json=document, headers=QUIET).raise_for_status().json()
+
+        def patch(turn: int) -> httpx.Response:
+            change = {"steps": {"film": {"inputs": {"bearing_width": f"{20 + turn} mm"}}}}
+            return http.patch(f"{API}/designs/{design['id']}", json=change, headers=QUIET)
+
+        return _counted(calls, root, patch)
+
+
+def evaluation(root: Path = ROOT) -> Files:
+    """Return the files that an evaluation of one template enters, with HTTP."""
+    from app.calculations.schemas import OIL_FILM
+
+    with _profiled(root) as calls, TemporaryDirectory() as folder, _server(Path(folder)) as http:
+
+        def evaluate(turn: int) -> httpx.Response:
+            body = {"inputs": {**OIL_FILM, "bearing_width": f"{20 + turn} mm"}}
+            return http.post(f"{API}/templates/oil_film/versions/1/evaluate", json=body)
+
+        return _counted(calls, root, evaluate)
+
+
+COUNTED: dict[str, Callable[[], Files]] = {
+    "PATCH → STEP without HTTP, queue and the kernel's process": change_to_step,
+    "PATCH of one closed-form step": changed_step,
+    "evaluate": evaluation,
+}
+"""What is counted."""
+
+LIMITS = dict(zip(COUNTED, (50, 45, 20), strict=True))
+"""The most files of `app` that each may enter."""
+
+
+def _counted(calls: Calls, root: Path, ask: Callable[[int], httpx.Response]) -> Files:
+    for turn in range(WARM_UP):
+        ask(turn).raise_for_status()
+    with calls.counting():
+        answer = ask(WARM_UP).raise_for_status()
+    if not json.loads(answer.content):
+        raise RuntimeError("the request that was counted has no answer")
+    return Files(calls, root)
+
+
+@contextmanager
+def _profiled(root: Path) -> Iterator[Calls]:
+    """Count the calls of all threads that start meanwhile."""
+    calls = Calls(root)
+    threading.setprofile(calls)
+    try:
+        yield calls
+    finally:
+        threading.setprofile(None)
+
+
+@contextmanager
+def _server(folder: Path) -> Iterator[httpx.Client]:
+    """Run the service in a thread of this process."""
+    from app.main import create_app
+    from app.server import configuration
+    from app.settings import Settings
+
+    settings = Settings(data=folder / "data")
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        server = uvicorn.Server(configuration(create_app(settings), settings))
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
+        thread.start()
+        url = f"http://127.0.0.1:{listener.getsockname()[1]}"
+        try:
+            with httpx.Client(base_url=url, trust_env=False, timeout=120) as http:
+                yield http
+        finally:
+            server.should_exit = True
+            thread.join()
+
+
+def main() -> None:
+    """Print the counts; with `--list` the files too."""
+    for name, count in COUNTED.items():
+        files = count()
+        print(f"{name}: {files.app} files of app (limit {LIMITS[name]}), {files.templates} of templates")
+        for file in files.by_package["app"] if "--list" in sys.argv else ():
+            print(f"  {file}")
+
+
+if __name__ == "__main__":
+    main()
