@@ -36,7 +36,7 @@ CRANK: dict[str, JsonValue] = {
             "outputs": ["natural_frequencies", "largest_torque", "worst_speed", "torque_envelope"],
         },
         "life": {
-            "template": "fatigue_life",
+            "template": "stress_life",
             "version": 1,
             "inputs": {
                 "stress_amplitude": "= model.torsion.maximum_stress * torsion.largest_torque[1] / 1 N*m",

@@ -202,7 +202,7 @@ class TestLoad:
         document = {
             "name": "life",
             "models": {"bar": bar(length="12 mm", torsion={"torsion": {"load": "300 N*m"}})},
-            "steps": {"life": {"template": "fatigue_life", "version": 1, "inputs": life}},
+            "steps": {"life": {"template": "stress_life", "version": 1, "inputs": life}},
         }
         design = created(http, document)
         assert design["state"] == "current", design["problem"]

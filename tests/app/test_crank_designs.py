@@ -108,7 +108,7 @@ class TestWhatWaitsForTheSolid:
     }
 
     def fatigue(self, **inputs):
-        step = {"template": "fatigue_life", "version": 1, "inputs": {**self.STEEL, **inputs}}
+        step = {"template": "stress_life", "version": 1, "inputs": {**self.STEEL, **inputs}}
         return {"name": "fatigue", "steps": {"life": step}, "model": throw(web_width="73 mm")}
 
     def test_property_a_stress_from_the_solid(self, http):

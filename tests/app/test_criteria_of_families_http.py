@@ -99,7 +99,7 @@ def test_compression_beyond_the_strength_is_named_and_not_met(http):
         "fatigue_strength_coefficient": "1150 MPa", "fatigue_strength_exponent": -0.09, "design_life": 1e7,
         "mean_stress_correction": "morrow",
     }  # fmt: skip
-    path = f"{API}/templates/fatigue_life/versions/1/evaluate"
+    path = f"{API}/templates/stress_life/versions/1/evaluate"
     answer = http.post(path, json={"inputs": inputs}).json()
     assert answer["outputs"]["cycles"]["value"] > 1e12
     assert [w["code"] for w in answer["warnings"] if w["code"] == "static_overload"] == ["static_overload"]

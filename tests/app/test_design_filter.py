@@ -42,7 +42,7 @@ def selected(database, limit=50, cursor=None, **wanted):
 def shelf(database):
     save(database, "Main bearing", ("oil_film", 2))
     save(database, "main SHELL", ("oil_film", 1), models=[("plain_bearing", 1)], state="regenerating")
-    save(database, "100 % Größe", ("engine", 1), ("oil_film_cycle", 1), state="failed")
+    save(database, "100 % Größe", ("flywheel", 1), ("oil_film_cycle", 1), state="failed")
     save(database, "empty")
     return database
 
@@ -75,7 +75,7 @@ def test_the_newest_revision_counts(shelf):
     with shelf.read() as session:
         id = next(row.id for row in repository.designs(session, 9, None) if row.name == "empty")
     written = Written(
-        document("full", ("engine", 1)),
+        document("full", ("flywheel", 1)),
         None,
         [ModelState("m", "crankshaft", 1, {}, {}, (), None)],
         "failed",
@@ -83,7 +83,7 @@ def test_the_newest_revision_counts(shelf):
     )
     shelf.write(lambda session: repository.append(session, id, 1, written))
     assert selected(shelf, name="empty") == []
-    assert selected(shelf, template="engine") == ["full", "100 % Größe"]
+    assert selected(shelf, template="flywheel") == ["full", "100 % Größe"]
     shelf.write(
         lambda session: repository.append(
             session, id, 2, Written(document("bare"), None, [], "current", None)
@@ -95,11 +95,11 @@ def test_the_newest_revision_counts(shelf):
 def test_a_template_is_not_a_word_that_a_user_typed(database):
     """Neither a name nor a value that looks like a step is taken for one."""
     typed = {**document('"template":"oil_film"'), "parameters": {"template": "oil_film"}}
-    typed["steps"] = {"s": {"template": "engine", "version": 1, "inputs": {"template": "oil_film"}}}
+    typed["steps"] = {"s": {"template": "flywheel", "version": 1, "inputs": {"template": "oil_film"}}}
     written = Written(typed, None, [], "current", None)
     database.write(lambda session: repository.create(session, typed["name"], written))
     assert selected(database, template="oil_film") == []
-    assert len(selected(database, template="engine")) == 1
+    assert len(selected(database, template="flywheel")) == 1
 
 
 @pytest.mark.skipif(ON_POSTGRESQL, reason="it reads the query plan of SQLite")

@@ -181,10 +181,10 @@ def test_absent_output_is_no_refusal():
 
 def test_single_input_varies_by_groups():
     """The number of cylinders is one value for all points of a call."""
-    template = built_in().get("engine", 1)
+    template = built_in().get("flywheel", 1)
     given = {n: v for n, v in template.example.items() if n not in ("firing_order", "cylinder_positions")}
     given |= {"firing_order": [1], "cylinder_positions": "0 m"}
-    raw = {"name": "engine", "steps": {"engine": {"template": "engine", "version": 1, "inputs": given}}}
+    raw = {"name": "engine", "steps": {"engine": {"template": "flywheel", "version": 1, "inputs": given}}}
     raw["steps"]["engine"]["outputs"] = ["mean_torque"]
     net = net_of(raw, "engine.cylinders", "engine.bore")
     rows = {

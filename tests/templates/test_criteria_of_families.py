@@ -57,8 +57,8 @@ PRESSED = ("pressure_deforms_bearing", "pressure_thickens_oil")
 FILM_1, FILM, FILM_3 = (("oil_film", version) for version in (1, 2, 3))
 CYCLE, *FED = (("oil_film_cycle", version) for version in (1, 2, 3))
 PAD, PETROV, WARM = ("slider_bearing", 1), ("journal_friction", 1), ("thermal_clearance", 1)
-LOADS, ENGINE = ("bearing_load", 1), ("engine", 1)
-CHAIN, THROW, FATIGUE = ("torsional_vibration", 1), ("crank_stiffness", 1), ("fatigue_life", 1)
+LOADS, ENGINE = ("bearing_load", 1), ("flywheel", 1)
+CHAIN, THROW, FATIGUE = ("torsional_vibration", 1), ("crank_stiffness", 1), ("stress_life", 1)
 
 CASES = [
     *OF_ENGINES,

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from templates.bearing_load.bearing_load_v1 import BearingLoad
-from templates.bearing_load.engine_v1 import Engine as EngineOfEqualCylinders
 from templates.bearing_load.engine_v2 import Engine
+from templates.bearing_load.flywheel_v1 import Flywheel
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.physics.engine.engine_curves import areas_of
@@ -123,9 +123,9 @@ class TestMechanism:
 
     def test_analytic_equal_cylinders_have_the_torque_of_version_1(self):
         """Its angle counts from suction of the first to fire: 360° before."""
-        old = {**EngineOfEqualCylinders.example, "crank_angle_step": "2 deg", "rod_inertia": "0.01 kg*m**2"}
+        old = {**Flywheel.example, "crank_angle_step": "2 deg", "rod_inertia": "0.01 kg*m**2"}
         del old["rod_pendulum_period"]
-        first = evaluate(EngineOfEqualCylinders, old).outputs
+        first = evaluate(Flywheel, old).outputs
         names = {n for n in old if n in Engine.inputs} - {"crank_angle_step"}
         raw = {**{n: old[n] for n in names}, "crank_angle_step": "2 deg", "rod_length": "228 mm"}
         out = values(raw, ["torque", "mean_torque"])

@@ -1,4 +1,4 @@
-"""bearing_load 1 and engine 1 far outside of common sense: a finite answer, or a refusal by name."""
+"""bearing_load 1 and flywheel 1 far outside of common sense: a finite answer, or a refusal by name."""
 
 import json
 
@@ -8,11 +8,11 @@ from seeds import seeded
 
 from app.calculations import rendering
 from templates.bearing_load.bearing_load_v1 import BearingLoad
-from templates.bearing_load.engine_v1 import Engine
+from templates.bearing_load.flywheel_v1 import Flywheel
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 
-BOTH = pytest.mark.parametrize("cls", [BearingLoad, Engine])
+BOTH = pytest.mark.parametrize("cls", [BearingLoad, Flywheel])
 WILD = (0, -1, 1e-3, 1e3, 1e-9, 1e9, 1e-150, 1e150, 1e300)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from templates.bearing_load.engine_v1 import Engine
+from templates.bearing_load.flywheel_v1 import Flywheel
 from templates.core.language.evaluate import evaluate
 from templates.core.paper import report
 from templates.physics.engine.crank_loads import GRAVITY
@@ -14,9 +14,9 @@ def bar():
     """A uniform bar, hung at its end, swings with T = 2 π √(2 L/(3 g))."""
     period = 2 * np.pi * np.sqrt(2 * 0.3 / (3 * GRAVITY))
     rod = {"stroke": "200 mm", "rod_ratio": 3, "rod_mass": "2 kg", "rod_centre": "150 mm"}
-    raw = {name: value for name, value in Engine.example.items() if name != "rod_inertia"}
+    raw = {name: value for name, value in Flywheel.example.items() if name != "rod_inertia"}
     swung = {"rod_pendulum_period": {"value": float(period), "unit": "s"}}
-    return evaluate(Engine, {**raw, **rod, **swung}, outputs=["rod_inertia"])
+    return evaluate(Flywheel, {**raw, **rod, **swung}, outputs=["rod_inertia"])
 
 
 def test_analytic_a_uniform_bar_has_a_twelfth_of_its_mass_times_its_length_squared(bar):

@@ -50,7 +50,7 @@ AT_REST = "at rest, or without speed_fluctuation, there is no swing to even out"
 NO_CRITERION = "needs speed_fluctuation (and a speed) or maximum_acceleration"
 
 
-class Engine(Cylinder):
+class Flywheel(Cylinder):
     """A whole engine of equal cylinders: torque and its evenness, flywheel, balance of forces and couples.
 
     Any number of cylinders that fire at equal intervals, in line or in banks (DYREMI).

@@ -1,4 +1,4 @@
-"""`fatigue_life` 1: Basquin's line, mean stress, notches; limits, monotony, refusals."""
+"""`stress_life` 1: Basquin's line, mean stress, notches; limits, monotony, refusals."""
 
 from math import log10, sqrt
 
@@ -9,7 +9,7 @@ from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.core.language.solve import solve
 from templates.physics.shafts.stress_concentration import shoulder_fillet_Pilkey_2008
-from templates.stiffness.fatigue_life_v1 import FatigueLife
+from templates.stiffness.stress_life_v1 import StressLife
 
 STEEL = {
     "ultimate_strength": "800 MPa",
@@ -41,7 +41,7 @@ LINES = ("goodman", "gerber", "morrow")
 
 
 def answers(raw):
-    return evaluate(FatigueLife, {**STEEL, **raw})
+    return evaluate(StressLife, {**STEEL, **raw})
 
 
 def outputs(raw):
@@ -151,7 +151,7 @@ class TestAnalytic:
 
     def test_analytic_solve_finds_the_amplitude_of_a_life(self):
         raw = {**STEEL, "mean_stress": "100 MPa"}
-        result = solve(FatigueLife, raw, "stress_amplitude", ["100 MPa", "600 MPa"], {"cycles": 1e6})
+        result = solve(StressLife, raw, "stress_amplitude", ["100 MPa", "600 MPa"], {"cycles": 1e6})
         assert result.unknown == pytest.approx((1 - 100 / 800) * 1150 * 2e6**-0.09, rel=1e-9)
 
 
@@ -252,7 +252,7 @@ class TestProperty:
             raw = {"stress_amplitude": {"value": amplitude.tolist(), "unit": "MPa"},
                    "mean_stress": {"value": mean.tolist(), "unit": "MPa"}}  # fmt: skip
             result = evaluate(
-                FatigueLife, {**STEEL, **raw, "mean_stress_correction": line}, outputs=["cycles"]
+                StressLife, {**STEEL, **raw, "mean_stress_correction": line}, outputs=["cycles"]
             )
             return result.outputs["cycles"].value
 

@@ -1,4 +1,4 @@
-"""engine 1: the nine-cylinder set of DYREMI, balance and flywheel against independent sums, refusals."""
+"""flywheel 1: the nine-cylinder set of DYREMI, balance and flywheel against independent sums, refusals."""
 
 import numpy as np
 import pytest
@@ -6,19 +6,19 @@ from nine_cylinders import INPUTS as NINE
 from nine_cylinders import PRINTED
 
 from templates.bearing_load.bearing_load_v1 import BearingLoad
-from templates.bearing_load.engine_v1 import Engine
+from templates.bearing_load.flywheel_v1 import Flywheel
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.physics.engine.balance import Arrangement, two_planes
 
 
 def values(raw, **options):
-    return {name: answer.value for name, answer in evaluate(Engine, raw, **options).outputs.items()}
+    return {name: answer.value for name, answer in evaluate(Flywheel, raw, **options).outputs.items()}
 
 
 def refused(raw):
     with pytest.raises(InvalidInputs) as refusal:
-        evaluate(Engine, raw)
+        evaluate(Flywheel, raw)
     return {(name, fault.code) for fault in refusal.value.faults for name in fault.names}
 
 
@@ -82,7 +82,7 @@ class TestLiteratureNineCylinders:
 
 
 FOUR = {
-    **Engine.example,
+    **Flywheel.example,
     "cylinders": 4,
     "firing_order": [1, 3, 4, 2],
     "cylinder_positions": {"value": [0, 0.1, 0.2, 0.3], "unit": "m"},
@@ -137,7 +137,7 @@ class TestBalance:
 
 class TestTorque:
     def test_analytic_one_cylinder_is_that_of_bearing_load(self):
-        shared = {n: v for n, v in Engine.example.items() if n in BearingLoad.inputs}
+        shared = {n: v for n, v in Flywheel.example.items() if n in BearingLoad.inputs}
         one = {"cylinders": 1, "firing_order": [1], "cylinder_positions": {"value": [0], "unit": "m"}}
         cylinder = evaluate(BearingLoad, shared).outputs
         for level in ("lumped", "rigid"):
@@ -151,7 +151,7 @@ class TestTorque:
     def test_analytic_sum_of_shifted_cylinders(self, count):
         """Against one cylinder at its own shifted angles, which need not fall on the engine's steps."""
         step = 720 / (count * -(-24 // count))
-        raw = {**Engine.example, "cylinders": count, "firing_order": list(range(1, count + 1)),
+        raw = {**Flywheel.example, "cylinders": count, "firing_order": list(range(1, count + 1)),
                "cylinder_positions": {"value": [0.1 * i for i in range(count)], "unit": "m"},
                "crank_angle_step": f"{step:.17g} deg"}  # fmt: skip
         shared = {n: v for n, v in raw.items() if n in BearingLoad.inputs}
@@ -213,13 +213,13 @@ class TestRefusals:
 
     def test_property_what_is_not_given_is_absent_with_its_reason(self):
         left = {"damper_position", "speed_fluctuation", "maximum_acceleration"}
-        outputs = evaluate(Engine, {n: v for n, v in FOUR.items() if n not in left}).outputs
+        outputs = evaluate(Flywheel, {n: v for n, v in FOUR.items() if n not in left}).outputs
         assert "damper_position" in outputs["balance_flywheel"].reason
         assert outputs["flywheel_inertia"].value is None
         assert outputs["rotating_couple"].value is not None
 
     def test_property_at_rest_there_is_no_swing_to_even_out(self):
-        outputs = evaluate(Engine, {**FOUR, "speed": "0 rpm"}).outputs
+        outputs = evaluate(Flywheel, {**FOUR, "speed": "0 rpm"}).outputs
         assert outputs["inertia_for_fluctuation"].reason.startswith("at rest")
         assert np.isfinite(outputs["flywheel_inertia"].value)
 

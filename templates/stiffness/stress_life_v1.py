@@ -55,7 +55,7 @@ ENDLESS = (
 NO_LIMIT = "needs endurance_limit or design_life, and some stress"
 
 
-class FatigueLife(Template):
+class StressLife(Template):
     """Fatigue life by stress: Basquin's line with mean stress by Goodman, Gerber or Morrow.
 
     For parts under a constant amplitude, elastic throughout. The stress is given as it acts locally (by
