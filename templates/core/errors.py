@@ -45,7 +45,7 @@ class Fault:
         return (self.name, *self.also)
 
     def within(self, prefix: str) -> Fault:
-        """The same fault, seen from outside: `speed` becomes `film.speed`."""
+        """Return the same fault, seen from outside: `speed` becomes `film.speed`."""
         name, *also = (f"{prefix}.{name}" for name in self.names)
         return replace(self, name=name, also=tuple(also))
 
@@ -119,19 +119,19 @@ class FaultyText(TemplateError):
         super().__init__(detail)
 
     def fault(self, name: str) -> Fault:
-        """The error as a fault of the input `name`."""
+        """Return the error as a fault of the input `name`."""
         return Fault(name, self.code, str(self))
 
 
 def unknown_name(name: str, candidates: Iterable[str], kind: str) -> Fault:
-    """A fault for a name that nobody declared, with the nearest that somebody did."""
+    """Return a fault for a name that nobody declared, with the nearest that somebody did."""
     near = nearest(name, candidates := list(candidates))
     remedy = f"did you mean {', '.join(near)}?" if near else f"known are {listed(candidates)}"
     return Fault(plain(name), "unknown_name", f"{kind} {plain(name)!r} is unknown; {remedy}")
 
 
 def unknown_names(names: Iterable[str], candidates: Iterable[str], kind: str) -> list[Fault]:
-    """A fault for each name that nobody declared, the first of them with the nearest declared ones."""
+    """Return a fault for each name that nobody declared, the first of them with the nearest declared ones."""
     if not (unknown := list(names)):
         return []
     declared, each = list(candidates), iter(unknown)
@@ -140,7 +140,7 @@ def unknown_names(names: Iterable[str], candidates: Iterable[str], kind: str) ->
 
 
 def listed(names: Sequence[str]) -> str:
-    """Names in a sentence, however many there are."""
+    """Return the names in a sentence, however many there are."""
     more = f" and {len(names) - MOST_LISTED} more" if len(names) > MOST_LISTED else ""
     return ", ".join(names[:MOST_LISTED]) + more
 

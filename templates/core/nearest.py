@@ -23,5 +23,5 @@ def nearest(name: str, declared: Iterable[str]) -> list[str]:
 
 
 def _shared(letters: Counter[str], other: str) -> float:
-    """The share of letters that two names have in common, in any order."""
+    """Return the share of letters that two names have in common, in any order."""
     return 2 * (letters & Counter(other)).total() / max(1, letters.total() + len(other))

@@ -28,7 +28,7 @@ _UNREADABLE = (
 
 
 def place(name: str) -> Path:
-    """Where something of this name is kept."""
+    """Return where something of this name is kept."""
     return Path(cache_from_source(__file__)).parent / name
 
 

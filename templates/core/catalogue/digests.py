@@ -56,7 +56,7 @@ def release_file(cls: type[Template]) -> Path | None:
 
 
 def _sources(cls: type[Template]) -> Iterator[str]:
-    """The text of the template's file, then of the files of its groups."""
+    """Yield the text of the template's file, then of the files of its groups."""
     for base in cls.__mro__:
         if base is cls or _declares(base):
             module = inspect.getmodule(base)
@@ -90,7 +90,7 @@ def _imported(node: Any) -> Iterator[tuple[str, str]]:
 
 
 def _plain(value: Any, within_class: bool = False) -> Any:
-    """A part of a syntax tree as JSON; empty fields are left out."""
+    """Return a part of a syntax tree as JSON; empty fields are left out."""
     if isinstance(value, ast.AST):
         is_class = isinstance(value, ast.ClassDef)
         fields = {k: _plain(v, is_class) for k, v in ast.iter_fields(value) if k not in _SILENT}

@@ -42,7 +42,7 @@ class Catalogue(Generic[T]):
         return tuple(sorted({id for id, _ in self.versions}))
 
     def of(self, id: str) -> dict[int, type[T]]:
-        """The versions of one id, ascending.
+        """Return the versions of one id, ascending.
 
         Raises
         ------
@@ -59,7 +59,7 @@ class Catalogue(Generic[T]):
         return classes
 
     def get(self, id: str, version: int) -> type[T]:
-        """One version of one id.
+        """Return one version of one id.
 
         Raises
         ------
@@ -88,7 +88,7 @@ class Catalogue(Generic[T]):
             raise QuarantinedTemplate(id, f"{self.kind} {id} version {version} is quarantined: {reason}")
 
     def latest(self, id: str) -> type[T]:
-        """The newest version that is not withdrawn, else the newest."""
+        """Return the newest version that is not withdrawn, else the newest."""
         versions = list(self.of(id).values())
         return next((cls for cls in reversed(versions) if not cls.withdrawn), versions[-1])
 
@@ -128,7 +128,7 @@ def find(
 
 
 def declared_in_file(path: Path) -> type[Template]:
-    """The template, or model, that one versioned file declares.
+    """Return the template, or model, that one versioned file declares.
 
     Raises
     ------
@@ -139,14 +139,14 @@ def declared_in_file(path: Path) -> type[Template]:
 
 
 def _imported(path: Path) -> ModuleType:
-    """The module of a file: by its package's name where it has one, else from its content."""
+    """Return the module of a file: by its package's name where it has one, else from its content."""
     if package := package_of(path.parent):
         return importlib.import_module(f"{package}.{path.stem}")
     return load(path, path.read_bytes())
 
 
 def package_of(folder: Path) -> str:
-    """The name of the package that a folder is; empty if it is none."""
+    """Return the name of the package that a folder is; empty if it is none."""
     if not (folder / "__init__.py").exists():
         return ""
     parent = package_of(folder.parent)
@@ -154,7 +154,7 @@ def package_of(folder: Path) -> str:
 
 
 def _usable(path: Path) -> ModuleType:
-    """The module of a file, or the line of it that fails."""
+    """Return the module of a file, or the line of it that fails."""
     try:
         return _imported(path)
     except Exception as error:
@@ -165,7 +165,7 @@ def _usable(path: Path) -> ModuleType:
 
 
 def declared_in(module: ModuleType, path: Path) -> type[Template]:
-    """The template, or model, that the module of a versioned file declares.
+    """Return the template, or model, that the module of a versioned file declares.
 
     Raises
     ------

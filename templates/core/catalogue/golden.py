@@ -52,7 +52,7 @@ def codes(refusal: InvalidInputs) -> list[str]:
 
 
 def golden_file(cls: type[Template], folder: Path) -> Path:
-    """The file of a version's record."""
+    """Return the file of a version's record."""
     return folder / f"{cls.id}_v{cls.version}.json"
 
 
@@ -92,7 +92,7 @@ def _json(value: Any) -> str:
 
 
 def _shortened(case: Mapping[str, Any], precision: float) -> dict[str, Any]:
-    """A case whose outputs have no more digits than a comparison needs."""
+    """Return a case whose outputs have no more digits than a comparison needs."""
     digits = DIGITS - math.floor(math.log10(case.get("precision", precision)))
     return {**case, "outputs": _to(digits, case["outputs"])} if "outputs" in case else dict(case)
 
@@ -129,12 +129,12 @@ def _cases(cls: type[Template]) -> Iterator[dict[str, Any]]:
 
 
 def cases_of_levels(cls: type[Template]) -> Iterator[dict[str, Any]]:
-    """The example at every level but the default one, at which the other cases are."""
+    """Yield the example at every level but the default one, at which the other cases are."""
     yield from (_case(cls, {}, level) for level in cls.levels if level != cls.default_level)
 
 
 def _case(cls: type[Template], others: Mapping[str, Any], level: str) -> dict[str, Any]:
-    """The example at a level, but for other quantities."""
+    """Return the example at a level, but for other quantities."""
     inputs = _given(cls, others)
     case: dict[str, Any] = {"level": level, "inputs": _plain(inputs)}
     if level in cls.level_precision:
@@ -146,7 +146,7 @@ def _case(cls: type[Template], others: Mapping[str, Any], level: str) -> dict[st
 
 
 def _given(cls: type[Template], others: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """The example's inputs in SI with defaults; without what is missing or shown as an output."""
+    """Return the example's inputs in SI with defaults; without what is missing or shown as an output."""
     template = cls.from_quantities({**cls.example, **(others or {})})
     reported = {name: declared for name, declared in cls.inputs.items() if is_reported(template, declared)}
     return {name: getattr(template, declared.attribute) for name, declared in reported.items()}
@@ -164,7 +164,7 @@ def _steps(declared: Input, value: Any) -> list[Any]:
 
 
 def results(cls: type[Template], inputs: Mapping[str, Any], level: str = "") -> dict[str, Any]:
-    """Every output in SI for SI inputs, at the default level unless another is named.
+    """Return every output in SI for SI inputs, at the default level unless another is named.
 
     Raises
     ------

@@ -34,7 +34,7 @@ class _Text:
         self.text = text
 
     def get_source(self, name: str) -> str:
-        """The text of the module."""
+        """Return the text of the module."""
         return self.text
 
 
@@ -72,13 +72,13 @@ def load(path: Path, content: bytes, digest: str = "") -> ModuleType:
 
 
 def origin(module: ModuleType) -> tuple[bytes, str] | None:
-    """The content from which a module was made, and its digest; None if `load` did not make it."""
+    """Return the content from which a module was made, and its digest; None if `load` did not make it."""
     parts = vars(module)
     return (parts[_CONTENT], parts[_DIGEST]) if _CONTENT in parts else None
 
 
 def text_of(module: ModuleType) -> str | None:
-    """The text from which a module was made, if `load` made it."""
+    """Return the text from which a module was made, if `load` made it."""
     return decode_source(source[0]) if (source := origin(module)) else None
 
 
@@ -88,7 +88,7 @@ def is_outside(cls: type) -> bool:
 
 
 def failing_line(error: BaseException, path: Path) -> int | None:
-    """The last line of a file that had a part in an error."""
+    """Return the last line of a file that had a part in an error."""
     if isinstance(error, SyntaxError) and _is_in(error.filename or "", path):
         return error.lineno
     frames = traceback.extract_tb(error.__traceback__)

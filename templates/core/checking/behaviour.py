@@ -76,7 +76,7 @@ def _refused(fault: Fault, line: int | None) -> FileFault:
 
 
 def _raised(cls: type[Template], error: Exception, what: str, line: int | None) -> FileFault:
-    """A fault for an error that no template should raise, at the line of the file that raised it."""
+    """Return a fault for an error that no template should raise, at the line of the file that raised it."""
     file = file_of(cls)
     place = (failing_line(error, file) if file else None) or line
     kind = "raises" if place else "internal"
@@ -84,7 +84,7 @@ def _raised(cls: type[Template], error: Exception, what: str, line: int | None) 
 
 
 def _line_of_example(cls: type[Template]) -> int | None:
-    """The line of the class that sets the example, or begins the class; None of a worksheet."""
+    """Return the line of the class that sets the example, or begins the class; None of a worksheet."""
     if cls.sheet:
         return None
     lines, first = lines_of(cls)

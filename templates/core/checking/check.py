@@ -12,7 +12,7 @@ from templates.core.language.template import Template
 
 
 def faults_of(cls: type[Template], path: Path | None) -> list[FileFault]:
-    """Every fault of a template or model that the file at `path`, or a worksheet, declares."""
+    """Return every fault of a template or model that the file at `path`, or a worksheet, declares."""
     if faults := list(faults_of_structure(cls)):
         return faults
     if faults := list(faults_of_example(cls)):

@@ -49,7 +49,7 @@ def _against(cls: type[Template], file: Path) -> Iterator[FileFault]:
 
 
 def _read(file: Path) -> dict[str, Any] | None:
-    """A record as JSON; None if there is none that can be read."""
+    """Return a record as JSON; None if there is none that can be read."""
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError):

@@ -22,7 +22,7 @@ MOST_CYCLES = 10
 
 
 def faults_of_structure(cls: type[Template]) -> Iterator[FileFault]:
-    """Every fault of the text; if there is one, to calculate the template would only repeat it."""
+    """Yield every fault of the text; if there is one, to calculate the template would only repeat it."""
     if cls.sheet:
         return  # it was read and checked whole
     yield from _docstring(cls)
@@ -35,7 +35,7 @@ def faults_of_structure(cls: type[Template]) -> Iterator[FileFault]:
 
 
 def functions_of(cls: type[Template]) -> dict[str, Callable[..., Any]]:
-    """Every function of the class's own file by attribute: formulas, defaults, rules, methods."""
+    """Return every function of the class's own file by attribute: formulas, defaults, rules, methods."""
     functions: dict[str, Callable[..., Any]] = {}
     for base in cls.__mro__:
         if base.__module__ == cls.__module__:
@@ -44,7 +44,7 @@ def functions_of(cls: type[Template]) -> dict[str, Callable[..., Any]]:
 
 
 def line_of(function: Callable[..., Any]) -> int | None:
-    """The first line of a function."""
+    """Return the first line of a function."""
     if isinstance(function, Body):
         return function.line
     code = getattr(inspect.unwrap(function), "__code__", None)
@@ -82,7 +82,7 @@ def _units(cls: type[Template]) -> Iterator[FileFault]:
 
 
 def _lines_of_declarations(cls: type[Template]) -> dict[str, int]:
-    """The line of the file in which the class sets each of its attributes."""
+    """Return the line of the file in which the class sets each of its attributes."""
     text, first = lines_of(cls)
     tree = parse(textwrap.dedent("".join(text))).body[0]
     lines: dict[str, int] = {}
@@ -94,7 +94,7 @@ def _lines_of_declarations(cls: type[Template]) -> dict[str, int]:
 
 
 def _formulas(cls: type[Template]) -> Iterator[FileFault]:
-    """Formulas that are not a method of one `return`: they cannot be written on paper."""
+    """Yield the formulas that are not a method of one `return`: they cannot be written on paper."""
     for declared in cls.declarations.values():
         if not isinstance(declared, Formula):
             continue
@@ -110,7 +110,7 @@ def _formulas(cls: type[Template]) -> Iterator[FileFault]:
 
 
 def _unknown_attributes(cls: type[Template]) -> Iterator[FileFault]:
-    """Names behind `self.` that nothing declares."""
+    """Yield the names behind `self.` that nothing declares."""
     available = {*dir(cls), *(name for base in cls.__mro__ for name in vars(base).get("__annotations__", ()))}
     for attribute, function in functions_of(cls).items():
         for name, line in _lines(function).items():
@@ -130,7 +130,7 @@ def _lines(function: Callable[..., Any]) -> dict[str, int]:
 
 
 def _cycles(cls: type[Template]) -> Iterator[FileFault]:
-    """Formulas that follow from themselves; of each loop that is left the path."""
+    """Yield the formulas that follow from themselves; of each loop that is left the path."""
     nodes = {**cls.declarations, **cls.intermediates}
     uses = {name: set(getattr(node, "uses", ())) & nodes.keys() for name, node in nodes.items()}
     for _ in range(MOST_CYCLES):

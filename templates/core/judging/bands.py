@@ -60,7 +60,7 @@ class Estimate:
         return not self.error.any()
 
     def bounds(self) -> Bounds:
-        """The band of the value."""
+        """Return the band of the value."""
         if self.is_exact:
             return self.value, self.value
         error = spread(self.error, self.axes)
@@ -76,7 +76,7 @@ class Estimate:
 
 
 def spread(value: Value, axes: int) -> Value:
-    """Values of points as an array that goes with places along a curve."""
+    """Return the values of points as an array that goes with places along a curve."""
     return value[(..., *(None,) * axes)] if axes and isinstance(value, np.ndarray) else value
 
 
@@ -133,7 +133,7 @@ def band_relative_to(value: Value, error: Value, scale: Value) -> Bounds:
 def value_and_bounds(
     side: Relation, estimates: Mapping[str, Estimate], shifts: Sequence[Shift] = ()
 ) -> tuple[Value, Bounds]:
-    """The value of a side of a comparison, and its band.
+    """Return the value of a side of a comparison, and its band.
 
     Each uncertain name is shifted to both ends of its band, the others kept, and the changes are added; so
     are those of `shifts`, by which values from which the names follow were shifted.
@@ -174,7 +174,7 @@ def _changes(side: Relation, middle: Value, low: Mapping[str, Value], high: Mapp
 
 
 def relative_width(value: float, low: float, high: float) -> float | None:
-    """The relative error that a band stands for; None where the band is open or not known."""
+    """Return the relative error that a band stands for; None where the band is open or not known."""
     ends = [end for end in (low, high) if end != value]
     if not ends:
         return 0.0

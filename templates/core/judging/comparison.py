@@ -42,7 +42,7 @@ class Compared:
         return replace(self, codes=codes if codes.ndim else int(codes))
 
     def rows(self) -> Codes:
-        """The verdict at every point: of a curve the worst of its places."""
+        """Return the verdict at every point: of a curve the worst of its places."""
         if not self.axes or isinstance(self.codes, int):
             return self.codes
         worst = self.codes.min(axis=tuple(range(-self.axes, 0)))
@@ -80,7 +80,7 @@ def _spread(values: Mapping[str, Value], estimates: Mapping[str, Estimate], axes
 
 
 def side_of(side: Relation, estimates: Mapping[str, Estimate]) -> Value:
-    """The value of a side [SI]."""
+    """Return the value of a side [SI]."""
     if name := side.only_name:
         return estimates[name].value
     return side.value({name: estimates[name].value for name in side.names})
@@ -111,7 +111,7 @@ def _opposed(sign: Sign, value: Bounds, limit: Bounds) -> tuple[Bounds, Bounds]:
 
 
 def judge_rows(criterion: Criterion, estimates: Mapping[str, Estimate]) -> Codes:
-    """The verdict at every point, as places in `WORST_FIRST`; for arrays of designs.
+    """Return the verdict at every point, as places in `WORST_FIRST`; for arrays of designs.
 
     Raises
     ------

@@ -194,7 +194,7 @@ def read_criterion(name: str, raw: Any, meanings: Mapping[str, Described]) -> Cr
 
 
 def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
-    """The two sides of a comparison and its sign.
+    """Return the two sides of a comparison and its sign.
 
     Raises
     ------
@@ -268,14 +268,14 @@ def _missing(name: str, raw: Any, used: tuple[str, ...], meanings: Mapping[str, 
 
 
 def _ordered(text: str, names: frozenset[str]) -> tuple[str, ...]:
-    """The names in the order in which they stand in the text."""
+    """Return the names in the order in which they stand in the text."""
     return tuple(sorted(names, key=text.find))
 
 
 def _shared_kind(
     value: Relation, limit: Relation, kinds: Mapping[str, Kind], names: Mapping[str, Described]
 ) -> Kind:
-    """The kind of unit of both sides."""
+    """Return the kind of unit of both sides."""
     one, other = value.kind(kinds), limit.kind(kinds)
     if not compatible(one.base, other.base):
         what = f"{one.base:~P}" or "a pure number", f"{other.base:~P}" or "a pure number"
@@ -287,7 +287,7 @@ def _shared_kind(
 
 
 def _shown_unit(kind: Kind, declared: list[str]) -> str:
-    """The unit of the first name that measures what the sides do, else the SI base unit."""
+    """Return the unit of the first name that measures what the sides do, else the SI base unit."""
     fitting = (name for name in declared if compatible(unit(name).base, kind.base))
     return next(fitting, None) or f"{kind.base:~C}" or "1"
 

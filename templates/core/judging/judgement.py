@@ -91,12 +91,12 @@ def sentence(judgement: Judgement) -> str:
 
 
 def not_judged(judgement: Judgement) -> str:
-    """Why there is no verdict, as a sentence."""
+    """Return why there is no verdict, as a sentence."""
     return f"{judgement.words} cannot be judged: {judgement.reason}"
 
 
 def _with_value(text: str, value: float | None, unit: str) -> str:
-    """A side and its value; a number stands for itself."""
+    """Return a side and its value; a number stands for itself."""
     if value is None or text[0].isdigit():
         return text
     return f"{text} {value:.4g}{'' if unit == '1' else ' ' + unit}"

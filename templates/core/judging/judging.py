@@ -55,7 +55,7 @@ class Instead:
         return np.where(np.equal(codes, NOT_MET), NOT_CHECKED, codes).astype(np.int8)
 
     def parts(self) -> Parts:
-        """The members of a judgement of single values in place of these."""
+        """Return the members of a judgement of single values in place of these."""
         if self.judgement.verdict not in ("met", "undecided"):
             return {}
         within = "" if self.judgement.verdict == "met" else "within the error of the calculation: "
@@ -132,7 +132,7 @@ def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: Ma
 
 @lru_cache(maxsize=1024)
 def _lack(absent: tuple[Absent, ...]) -> Mapping[str, Any]:
-    """What to give and why, of names without a value."""
+    """Return what to give and why, of names without a value."""
     give = dict.fromkeys(name for one in absent for name in one.give)
     reasons = dict.fromkeys(one.reason for one in absent if one.reason)
     return {"give": tuple(give), "reason": "; ".join(reasons) or None}
@@ -145,7 +145,7 @@ def _compared(
     along: Along | None,
     is_shifted: bool,
 ) -> Parts:
-    """The members of a judgement about both sides, at the worst place."""
+    """Return the members of a judgement about both sides, at the worst place."""
     worst = worst_of(criterion, compared)
     rows = compared.rows()
     used = [estimates[name] for name in criterion.names]
@@ -185,7 +185,7 @@ def _counted_from_one(index: tuple[int, ...]) -> int | list[int]:
 
 
 def _counted(rows: Codes) -> Parts:
-    """The number of points of each verdict; nothing of a single one."""
+    """Return the number of points of each verdict; nothing of a single one."""
     if isinstance(rows, int):
         return {}
     numbers = np.bincount(rows.ravel(), minlength=len(WORST_FIRST))
@@ -194,7 +194,7 @@ def _counted(rows: Codes) -> Parts:
 
 
 def _no_value(used: list[Estimate], point: tuple[int, ...]) -> str:
-    """Why there is no value at a point."""
+    """Return why there is no value at a point."""
     for reasons in (estimate.reasons for estimate in used if estimate.reasons is not None):
         if reason := reasons[_own_place(point, reasons.shape)]:
             return str(reason)
@@ -202,7 +202,7 @@ def _no_value(used: list[Estimate], point: tuple[int, ...]) -> str:
 
 
 def _own_place(point: tuple[int, ...], shape: tuple[int, ...]) -> tuple[int, ...]:
-    """The place of a point in an array that was broadcast to all points."""
+    """Return the place of a point in an array that was broadcast to all points."""
     return tuple(i % n for i, n in zip(point[len(point) - len(shape) :], shape, strict=True))
 
 
@@ -228,7 +228,7 @@ def _numbers(criterion: Criterion, parts: Parts, worst: Worst, estimates: Mappin
 
 
 def _relative_error(subject: Estimate | None, worst: Worst) -> float | None:
-    """The stated error of a name that is judged alone; of an expression, that of its band."""
+    """Return the stated error of a name that is judged alone; of an expression, that of its band."""
     if subject is None:
         return relative_width(worst.value, worst.low, worst.high) if worst.is_known else None
     at = subject.error
@@ -246,7 +246,7 @@ def _utilisation(criterion: Criterion, worst: Worst) -> float | None:
 
 
 def _needs(worst: Worst, subject: Estimate | None) -> float:
-    """The relative error of the value below which the limit lies outside of its band.
+    """Return the relative error of the value below which the limit lies outside of its band.
 
     Where the limit is uncertain too, the same relative error of both.
     """
@@ -262,7 +262,7 @@ def _needs(worst: Worst, subject: Estimate | None) -> float:
 def _reason(
     criterion: Criterion, parts: Parts, worst: Worst, estimates: Mapping[str, Estimate], needs: float | None
 ) -> str | None:
-    """A remark on a verdict beside its numbers."""
+    """Return a remark on a verdict beside its numbers."""
     if parts["verdict"] != "undecided":
         return None if parts["is_stated"] else "the error of the model is not stated"
     unknown = [name for name in criterion.names if np.isnan(estimates[name].error).any()]

@@ -62,7 +62,7 @@ class GivenLimit:
 
 
 def read_limits(criteria: Iterable[Criterion], raw: Mapping[str, Any]) -> dict[str, GivenLimit]:
-    """The limits that a user gives for criteria, by name.
+    """Return the limits that a user gives for criteria, by name.
 
     Raises
     ------
@@ -98,7 +98,7 @@ def _by_hand(declared: Limit, raw: Any) -> GivenLimit:
 
 
 def _by_row(name: str, raw: Any, declared: Mapping[str, Limit]) -> dict[str, GivenLimit]:
-    """Every limit that a row has a value for."""
+    """Return every limit that a row has a value for."""
     library = _libraries.get(name)
     if library is None:
         raise FaultyText("no_library", f"there is no library {name}; give the limits by hand")
@@ -113,5 +113,5 @@ def _by_row(name: str, raw: Any, declared: Mapping[str, Limit]) -> dict[str, Giv
 
 
 def fault_of(error: FaultyText, name: str) -> Fault:
-    """An error about a criterion as a fault that names it."""
+    """Return an error about a criterion as a fault that names it."""
     return Fault(f"criteria.{name}", error.code, str(error))

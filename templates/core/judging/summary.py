@@ -29,7 +29,7 @@ def worst_first(judgements: Iterable[Judgement]) -> list[Judgement]:
 
 
 def rank(judgement: Judgement) -> tuple[int, float, float, str]:
-    """The place of a judgement in that order."""
+    """Return the place of a judgement in that order."""
     used = judgement.utilisation
     margin = judgement.margin if judgement.margin is not None else 0.0
     return (
@@ -41,7 +41,7 @@ def rank(judgement: Judgement) -> tuple[int, float, float, str]:
 
 
 def summarised(ordered: Sequence[Judgement]) -> Summary:
-    """The verdict over criteria in order.
+    """Return the verdict over criteria in order.
 
     Waived criteria are counted and listed as what they are, but no longer make the verdict worse than met.
     """
@@ -57,6 +57,6 @@ def summarised(ordered: Sequence[Judgement]) -> Summary:
 
 @lru_cache(maxsize=1024)
 def _headline(counts: tuple[int, ...], waived: int) -> str:
-    """The number of criteria of each verdict in `SHOWN`, in words."""
+    """Return the number of criteria of each verdict in `SHOWN`, in words."""
     parts = [f"{n} {verdict.replace('_', ' ')}" for verdict, n in zip(SHOWN, counts, strict=True) if n]
     return ", ".join([*parts, *([f"{waived} waived"] if waived else [])]) or "no criteria"

@@ -42,7 +42,7 @@ class Worst:
 
 
 def worst_of(criterion: Criterion, compared: Compared) -> Worst:
-    """The worst point and place of a comparison."""
+    """Return the worst point and place of a comparison."""
     sides = (compared.value, compared.limit, *compared.value_bounds, *compared.limit_bounds)
     codes = compared.codes
     if isinstance(codes, int):
@@ -58,7 +58,7 @@ def worst_of(criterion: Criterion, compared: Compared) -> Worst:
 
 
 def worst_of_rows(criterion: Criterion, compared: Compared, count: int) -> tuple[Array, list[Array]]:
-    """The verdict of each row, and both sides and their bands at its worst place.
+    """Return the verdict of each row, and both sides and their bands at its worst place.
 
     Parameters
     ----------

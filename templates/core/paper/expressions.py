@@ -52,7 +52,7 @@ _BRACKETS = {
 
 
 def latex(node: Any, symbols: Mapping[str, str], times: str = r"\,", least: int = CONDITION) -> str:
-    """The LaTeX of a tree, in parentheses where it binds more loosely than `least`.
+    """Return the LaTeX of a tree, in parentheses where it binds more loosely than `least`.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def latex(node: Any, symbols: Mapping[str, str], times: str = r"\,", least: int 
 
 
 def relation_latex(raw: object) -> str:
-    """The LaTeX of a relation as typed.
+    """Return the LaTeX of a relation as typed.
 
     Empty where it is a name alone, too deep to be read on paper, a list of relations, or none.
     """
@@ -103,7 +103,7 @@ class _Writer:
         return self.operation(node.operation.sign, node.arguments)
 
     def symbol(self, name: str) -> str:
-        """The symbol of a name; a value of a step has the step as its index."""
+        """Return the symbol of a name; a value of a step has the step as its index."""
         return self.symbols.get(name) or _symbol(*name.rpartition(".")[::2])
 
     def operation(self, sign: str, parts: tuple[Any, ...]) -> Written:
@@ -133,7 +133,7 @@ class _Writer:
         return f"{one}{times}{other}", PRODUCT
 
     def joined(self, part: Any, sign: str) -> str:
-        """A part of `and` or `or`, in parentheses where the two mix."""
+        """Return a part of `and` or `or`, in parentheses where the two mix."""
         inner = part.operation.sign if hasattr(part, "operation") else ""
         return self.within(part, ATOM if inner in ("and", "or") and inner != sign else CONDITION)
 
@@ -157,7 +157,7 @@ class _Writer:
 
 
 def _constant(text: str) -> Written:
-    """A constant as it was typed."""
+    """Return a constant as it was typed."""
     if not text:
         return r"\pi", ATOM
     number, _, unit = text.partition(" ")
@@ -169,14 +169,14 @@ def _constant(text: str) -> Written:
 
 
 def _symbol(block: str, name: str) -> str:
-    """A letter with its index, or words; behind it the block to which it belongs."""
+    """Return a letter with its index, or words; behind it the block to which it belongs."""
     symbol = named_symbol(name)
     own = symbol if not symbol.startswith(r"\mathrm") else _roman(name)
     return _indexed(own, _roman(block))
 
 
 def _indexed(symbol: str, index: str) -> str:
-    """A symbol with an index, behind the one that it has already."""
+    """Return a symbol with an index, behind the one that it has already."""
     if not index:
         return symbol
     return f"{symbol[:-1]},{index}}}" if symbol.endswith("}") and "_{" in symbol else f"{symbol}_{{{index}}}"
@@ -187,5 +187,5 @@ def _roman(name: str) -> str:
 
 
 def _words(text: str) -> str:
-    """A text upright; a percent sign stands outside, where it begins no comment."""
+    """Return a text upright; a percent sign stands outside, where it begins no comment."""
     return r"\%".join(rf"\text{{{part}}}" if part else "" for part in text.split("%"))

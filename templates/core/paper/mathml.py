@@ -51,12 +51,12 @@ _FUNCTIONS = {"log10": r"\lg", "log": r"\ln", "exp": r"\exp", "sin": r"\sin", "c
 
 
 def symbol(declared: Declaration) -> str:
-    r"""The symbol on paper: as declared, else from the attribute, as `nu_1` → `\nu_{1}`."""
+    r"""Return the symbol on paper: as declared, else from the attribute, as `nu_1` → `\nu_{1}`."""
     return declared.meaning.symbol or named_symbol(declared.attribute)
 
 
 def named_symbol(attribute: str) -> str:
-    r"""The symbol that a name makes: `nu_1` is `\nu_{1}`, and `width` an upright word."""
+    r"""Return the symbol that a name makes: `nu_1` is `\nu_{1}`, and `width` an upright word."""
     head, _, index = attribute.partition("_")
     plain = head if len(head) == 1 else rf"\mathrm{{{head}}}"
     letter = _SPECIAL.get(head) or (f"\\{head}" if head in _GREEK else plain)
@@ -68,13 +68,13 @@ def named_symbol(attribute: str) -> str:
 
 
 def number(value: float) -> str:
-    """A number with five significant digits, as LaTeX."""
+    """Return a number with five significant digits, as LaTeX."""
     mantissa, _, exponent = f"{value:.5g}".partition("e")
     return rf"{mantissa}\,\cdot 10^{{{int(exponent)}}}" if exponent else mantissa
 
 
 def unit_symbol(text: str) -> str:
-    """A unit as it is printed, in the order it was written: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
+    """Return a unit as it is printed, in the order it was written: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
 
     Nothing for a pure number.
     """
@@ -85,7 +85,7 @@ def unit_symbol(text: str) -> str:
 
 
 def amount(value: float, unit: str) -> str:
-    """A number with its unit, as LaTeX."""
+    """Return a number with its unit, as LaTeX."""
     printed = unit_symbol(unit)
     shown = r"\%" if printed == "%" else rf"\text{{{printed}}}"  # in a text it would begin a comment
     return number(value) + (rf"\,{shown}" if printed else "")
@@ -109,7 +109,7 @@ def tightness(text: str) -> int:
 
 
 def symbols(cls: type[Template]) -> dict[str, str]:
-    """The symbol of every declaration, by attribute."""
+    """Return the symbol of every declaration, by attribute."""
     return {attribute: symbol(declared) for attribute, declared in cls.declarations.items()}
 
 
@@ -144,7 +144,7 @@ class Writer:
         self.scope, self.attributes, self.names, self.times = scope, attributes, names, times
 
     def write(self, node: ast.expr) -> Written:
-        """The LaTeX of a node.
+        """Return the LaTeX of a node.
 
         Raises
         ------
@@ -171,7 +171,7 @@ class Writer:
         raise TypeError(f"{ast.unparse(node)!r} has no place in a formula; move it to a physics function")
 
     def _in(self, node: ast.expr, tightness: int) -> str:
-        """The LaTeX of a node, in parentheses where it binds more loosely than its place needs."""
+        """Return the LaTeX of a node, in parentheses where it binds more loosely than its place needs."""
         text, own = self.write(node)
         return text if own >= tightness else rf"\left({text}\right)"
 
@@ -203,7 +203,7 @@ class Writer:
         return self._physics(name, [self.write(argument) for argument in node.args])
 
     def _physics(self, name: str, arguments: list[Written]) -> Written:
-        """A physics function: by the LaTeX it carries, written out, or by its name if it cannot be."""
+        """Return a physics function: by the LaTeX it carries, written out, or by its name if it cannot be."""
         function = self.scope.get(name)
         latex = getattr(function, "latex", None)
         if latex:

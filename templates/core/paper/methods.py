@@ -22,14 +22,14 @@ ANY_LEVEL = "solved numerically, by a method that depends on the level"
 def right_side(
     cls: type[Template], formula: Formula[Any], symbols: Mapping[str, str], level: str = ""
 ) -> tuple[str, bool]:
-    """The right side of the equation as LaTeX, and whether it is words and not a formula."""
+    """Return the right side of the equation as LaTeX, and whether it is words and not a formula."""
     if words := _words(cls, formula, level):
         return rf"\text{{{words}}}", True
     return expression(formula, symbols), not getattr(formula.function, "has_numbers", True)
 
 
 def _words(cls: type[Template], formula: Formula[Any], level: str) -> str | None:
-    """The method of a result in words, if no formula says it."""
+    """Return the method of a result in words, if no formula says it."""
     if formula.latex is not None and not formula.latex.startswith(rf"{symbol(formula)}\left("):
         return None
     if isinstance(formula.function, Body):
@@ -57,7 +57,7 @@ def _of_self(node: ast.expr) -> str | None:
 
 
 def _maker(cls: type[Template], node: ast.expr, scope: Mapping[str, Any]) -> Callable[..., Any] | None:
-    """The physics function that returns a value, or the record of which the value is a part."""
+    """Return the physics function that returns a value, or the record of which the value is a part."""
     match node:
         case ast.Call(func=ast.Name(id=name)):
             function: Callable[..., Any] | None = scope.get(name)

@@ -42,7 +42,7 @@ NONE = r"\text{none}"
 
 
 def rows(template: Template, units: Mapping[str, str] | None = None) -> Iterator[Row]:
-    """The report lines of every formula that the template has evaluated so far.
+    """Yield the report lines of every formula that the template has evaluated so far.
 
     `units` names other units than the declared ones, by attribute.
     """
@@ -69,7 +69,7 @@ def rows(template: Template, units: Mapping[str, str] | None = None) -> Iterator
 
 
 def shown(template: Template, attribute: str, units: Mapping[str, str], *, absolute: bool = False) -> str:
-    """The value of a declaration with its unit, as LaTeX; empty where it has none or is an array.
+    """Return the value of a declaration with its unit, as LaTeX; empty where it has none or is an array.
 
     A temperature inside an expression stands in kelvin: only there do sums and ratios hold.
     """

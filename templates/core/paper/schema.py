@@ -32,7 +32,7 @@ _KEYWORDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum"
 
 
 def describe(cls: type[Template]) -> dict[str, Any]:
-    """The description of one version for a form, a client or a reader."""
+    """Return the description of one version for a form, a client or a reader."""
     sections = documentation(cls)
     return {
         "id": cls.id,
@@ -133,7 +133,7 @@ def _default(cls: type[Template], declared: Input) -> dict[str, Any]:
 
 
 def _quantity_in(declared: Declaration) -> dict[str, Any]:
-    """The written forms of a quantity: text, object, and bare numbers where the unit is 1."""
+    """Return the written forms of a quantity: text, object, and bare numbers where the unit is 1."""
     values = {"type": "array", "minItems": 1}
     listed = isinstance(declared, Table) or (isinstance(declared, Curve) and not declared.constant)
     single = is_single(declared)
@@ -169,7 +169,7 @@ def _quantity_out(formula: Formula[Any]) -> dict[str, Any]:
 
 
 def formula_on_paper(cls: type[Template], formula: Formula[Any]) -> dict[str, Any]:
-    """One formula as text, LaTeX and MathML, with its source."""
+    """Return one formula as text, LaTeX and MathML, with its source."""
     latex = f"{symbol(formula)}={right_side(cls, formula, symbols(cls))[0]}"
     return {
         "name": formula.name,
@@ -182,7 +182,7 @@ def formula_on_paper(cls: type[Template], formula: Formula[Any]) -> dict[str, An
 
 
 def _declared_beneath(cls: type[Template], attributes: Iterable[str]) -> Iterator[str]:
-    """The names of declarations that are used, directly or by a shared intermediate."""
+    """Yield the names of declarations that are used, directly or by a shared intermediate."""
     for attribute in attributes:
         if attribute in cls.declarations:
             yield cls.declarations[attribute].name
@@ -222,7 +222,7 @@ def _limits_of_levels(declared: Declaration) -> Iterator[dict[str, Any]]:
 
 
 def documentation(cls: type[Template]) -> Mapping[str, list[str]]:
-    """The sections of the docstring (Limits, Errata, References), each as its paragraphs or lines.
+    """Return the sections of the docstring (Limits, Errata, References), each as its paragraphs or lines.
 
     A line that begins a new sentence begins a new item; other lines go on.
     """

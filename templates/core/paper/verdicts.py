@@ -104,14 +104,14 @@ def _demanded(letter: str, bounds: Bounds, unit: str) -> str:
 
 
 def _share_of(bounds: Bounds, value: Any) -> float | None:
-    """The larger share of what a value uses of its lower and its upper limit."""
+    """Return the larger share of what a value uses of its lower and its upper limit."""
     highs = [worst_share(value, limit) for limit in (bounds.lt, bounds.le) if limit is not None]
     lows = [worst_share(limit, value) for limit in (bounds.gt, bounds.ge) if limit]
     return max((share for share in (*highs, *lows) if share is not None), default=None)
 
 
 def _of_rule(template: Template, rule: Requirement) -> Check | None:
-    """A rule as it was kept or violated; None where it compared nothing, for want of a limit."""
+    """Return a rule as it was kept or violated; None where it compared nothing, for want of a limit."""
     with np.errstate(all="ignore"):
         result = outcome(template, rule)
         decisive = list(result.decisive())
@@ -142,7 +142,7 @@ def _lacks_an_input(template: Template, rule: Requirement) -> bool:
 
 
 def _violation(template: Template, rule: Requirement, decisive: Iterable[Comparison]) -> str:
-    """The violation of a rule, in words; its sentence with a No where it cannot be written."""
+    """Return the violation of a rule, in words; its sentence with a No where it cannot be written."""
     broken = [comparison for comparison in decisive if comparison.actual != comparison.sign]
     sides = [
         (_in_words(template, one.left, one.right), one, _in_words(template, one.right, one.left))
@@ -155,7 +155,7 @@ def _violation(template: Template, rule: Requirement, decisive: Iterable[Compari
 
 
 def _in_words(template: Template, side: Operand, other: Operand) -> str:
-    """A side of a comparison as name and value; empty where it is calculated within the rule."""
+    """Return a side of a comparison as name and value; empty where it is calculated within the rule."""
     declared = template.declarations.get(side.attribute or "")
     scale = _scale(template, side if declared else other)
     if scale is None or (declared is None and side.constant is None):
@@ -166,7 +166,7 @@ def _in_words(template: Template, side: Operand, other: Operand) -> str:
 
 
 def _written(template: Template, comparison: Comparison) -> tuple[str, str]:
-    """A comparison with symbols, and with numbers where all its values are single ones.
+    """Return a comparison with symbols, and with numbers where all its values are single ones.
 
     Empty where a side cannot be written: the sentence of the rule says what it demands.
     """
@@ -200,7 +200,7 @@ def _joined(
 
 
 def _side(template: Template, writer: Writer, side: Operand, other: Operand) -> str:
-    """One side; a number in the unit of the input or output with which it is compared."""
+    """Return one side; a number in the unit of the input or output with which it is compared."""
     scale = _scale(template, other)
     if not side.constant or scale is None or scale.text == "1":
         assert side.node is not None
@@ -211,7 +211,7 @@ def _side(template: Template, writer: Writer, side: Operand, other: Operand) -> 
 
 
 def _scale(template: Template, side: Operand) -> Unit | None:
-    """The unit of a side that is a value of the template, as it stands there."""
+    """Return the unit of a side that is a value of the template, as it stands there."""
     declared = template.declarations.get(side.attribute or "")
     return declared.meaning.scale if declared else None
 

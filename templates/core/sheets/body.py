@@ -29,7 +29,7 @@ PER_OPERATION, PER_PLACE = 1e-6, 5e-9  # of an operation, and beside it at each 
 
 
 def operations_seconds(operations: int, points: int) -> float:
-    """The time that operations take at so many points, as an order of magnitude [s]."""
+    """Return the time that operations take at so many points, as an order of magnitude [s]."""
     return operations * (PER_OPERATION + PER_PLACE * points)
 
 
@@ -72,7 +72,7 @@ class TreeBody(Body):
         return value
 
     def seconds(self, points: int) -> float:
-        """The time that its operations take at so many points, as an order of magnitude [s]."""
+        """Return the time that its operations take at so many points, as an order of magnitude [s]."""
         return operations_seconds(self._operations, points)
 
     @cached_property
@@ -80,7 +80,7 @@ class TreeBody(Body):
         return sum(1 for _ in nodes_of(self.node))
 
     def latex(self, symbols: Mapping[str, str], times: str) -> str:
-        """The expression in LaTeX, with symbols or numbers in the place of attributes."""
+        """Return the expression in LaTeX, with symbols or numbers in the place of attributes."""
         return latex(self.node, {**self._letters, **symbols}, times)
 
     @cached_property
@@ -103,12 +103,12 @@ class RuleBody(TreeBody):
 
 
 def _everywhere(run: Callable[[Any], Any]) -> Callable[[Any], Any]:
-    """A condition on a list: it holds at all its places."""
+    """Return a condition on a list: it holds at all its places."""
     return lambda template: np.all(run(template), axis=-1)
 
 
 def _truth(node: Any) -> Callable[[Any], Any]:
-    """A condition as a function, its comparisons made by Python's operators, which records follow."""
+    """Return a condition as a function, its comparisons made by Python's operators, which records follow."""
     sign = node.operation.sign if isinstance(node, Apply) else ""
     if sign in _SIGNS:
         compare, left, right = _SIGNS[sign], *map(closure, node.arguments)
@@ -120,5 +120,5 @@ def _truth(node: Any) -> Callable[[Any], Any]:
 
 
 def names_in(node: Any) -> Iterator[str]:
-    """The names that a tree reads, in order of appearance."""
+    """Return the names that a tree reads, in order of appearance."""
     return (part.name for part in nodes_of(node) if isinstance(part, Name))

@@ -257,12 +257,12 @@ class Builder:
         return node, bool(sort.axis)
 
     def _node(self, statement: Parsed, name: str, meant: Meaning, axis: str, tree: lark.Tree[Any]) -> Any:
-        """The tree of a value that is a list over an axis exactly where that is declared."""
+        """Return the tree of a value that is a list over an axis exactly where that is declared."""
         part = self.reader.part(statement, tree)
         return self.reader.fitting(statement, part, meant.unit, name, tree, axis)
 
     def _meant(self, statement: Parsed, unit_text: str, words: lark.Token, clauses: Any) -> Meaning:
-        """The meaning of a declaration whose API name is no other's; its example is noted."""
+        """Return the meaning of a declaration whose API name is no other's; its example is noted."""
         if missing := [name for name in declared_by(statement) if name not in self.names.sorts]:
             raise FollowsFromFault(missing[0])
         meant, said = meaning_of(statement, unit_text, words, clauses, self.reader)

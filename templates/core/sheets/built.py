@@ -65,7 +65,7 @@ class Built:
         return {name: copy(part) for name, part in self.parts.items()}
 
     def inputs_beneath(self, names: tuple[str, ...]) -> tuple[str, ...]:
-        """The API names of inputs from which names follow, those nearest first."""
+        """Return the API names of inputs from which names follow, those nearest first."""
         inputs: dict[str, None] = {}
         waiting, seen = list(names), set(names)
         for name in waiting:

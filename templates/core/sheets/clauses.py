@@ -35,7 +35,7 @@ class Said:
 def meaning_of(
     statement: Parsed, unit_text: str, words: lark.Token, clauses: lark.Tree[Any], reader: Reader
 ) -> tuple[Meaning, Said]:
-    """The meaning of a declared number, and its example.
+    """Return the meaning of a declared number, and its example.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def _meaning(statement: Parsed, unit_text: str, words: lark.Token, said: Said) -
 
 
 def words_of(statement: Parsed, words: lark.Token) -> str:
-    """The words between quotation marks.
+    """Return the words between quotation marks.
 
     Raises
     ------
@@ -94,7 +94,7 @@ def said_in(
 
 
 def clause_name(clause: lark.Tree[Any]) -> str:
-    """The first words of a clause."""
+    """Return the first words of a clause."""
     return str(clause.children[0]) if clause.data in ("bound", "said") else str(clause.data)
 
 

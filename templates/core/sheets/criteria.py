@@ -22,7 +22,7 @@ _OPERATORS = frozenset({"+", "-", "*", "/", "**"})
 def criterion_of(
     statement: Parsed, node: Any, words: str, said: Said, declared: Mapping[str, Any]
 ) -> tuple[str, dict[str, str]]:
-    """Name and content of a criterion, as templates declare them.
+    """Return the name and content of a criterion, as templates declare them.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def criterion_of(
 
 
 def relation_text(node: Any, names: Mapping[str, str]) -> str:
-    """A tree as a relation between inputs and outputs by their API names.
+    """Return a tree as a relation between inputs and outputs by their API names.
 
     Raises
     ------

@@ -24,7 +24,7 @@ from templates.core.units.units import compatible, unit
 def curve_of(
     statement: Parsed, reader: Reader, name: str, units: tuple[str, str], points: Sequence[Any], said: Said
 ) -> Call:
-    """The function that a curve is, from the unit of its argument to that of its value.
+    """Return the function that a curve is, from the unit of its argument to that of its value.
 
     Raises
     ------
@@ -80,5 +80,5 @@ def _called(name: str, units: tuple[str, str], operation: Partial) -> Call:
 
 
 def points_of(parts: Sequence[Any]) -> list[lark.Tree[Any]]:
-    """The points among the parts of a statement."""
+    """Return the points among the parts of a statement."""
     return [part for part in parts if isinstance(part, lark.Tree) and part.data == "point"]

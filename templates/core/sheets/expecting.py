@@ -22,7 +22,7 @@ Parts = Mapping[str, Any]
 
 
 def test_of(statement: Parsed, reader: Reader, every: Parts) -> SheetTest:
-    """The test that a statement describes.
+    """Return the test that a statement describes.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def _set(statement: Parsed, reader: Reader, declared: Declaration, tree: lark.Tr
 
 
 def _value(statement: Parsed, reader: Reader, declared: Declaration, tree: lark.Tree[Any], name: str) -> Any:
-    """The SI value of an expression without names."""
+    """Return the SI value of an expression without names."""
     part = reader.part(statement, tree)
     body = TreeBody(reader.fitting(statement, part, declared.meaning.unit, name, tree), statement.chunk.line)
     if body.uses:

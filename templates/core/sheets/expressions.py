@@ -28,7 +28,7 @@ class Reader:
     sort_of = staticmethod(sort_of)
 
     def part(self, statement: Parsed, tree: lark.Tree[Any]) -> Part:
-        """An expression and what it gives.
+        """Return an expression and what it gives.
 
         Raises
         ------
@@ -55,7 +55,7 @@ class Reader:
     def fitting(
         self, statement: Parsed, part: Part, unit_text: str, name: str, at: Any, axis: str | None = None
     ) -> Any:
-        """The tree of an expression that gives what is declared; the `axis` is any, if None.
+        """Return the tree of an expression that gives what is declared; the `axis` is any, if None.
 
         Raises
         ------
@@ -91,7 +91,7 @@ class Reader:
             raise statement.refuse("axis_mismatch", message, at, _along_of(got.axis))
 
     def limit(self, statement: Parsed, tree: lark.Tree[Any], unit_text: str) -> float:
-        """A limit in the declared unit: typed in it without a unit, or in any other with one.
+        """Return a limit in the declared unit: typed in it without a unit, or in any other with one.
 
         Raises
         ------
@@ -122,7 +122,7 @@ class Reader:
         return self.number(statement, node, tree, unit_text, name)
 
     def number(self, statement: Parsed, node: Any, tree: lark.Tree[Any], unit_text: str, name: str) -> Any:
-        """A checked tree without names as a user types it.
+        """Return a checked tree without names as a user types it.
 
         Raises
         ------
@@ -143,7 +143,7 @@ class Reader:
         return {"value": shown.tolist(), "unit": unit_text}
 
     def declared_unit(self, statement: Parsed, text: lark.Token) -> str:
-        """The unit between brackets.
+        """Return the unit between brackets.
 
         Raises
         ------
@@ -165,17 +165,17 @@ def is_literal(axis: str) -> bool:
 
 
 def _given_in(unit_text: str) -> str:
-    """The advice to write a value in a unit."""
+    """Return the advice to write a value in a unit."""
     return "write it without a unit" if unit_text == "1" else f"write it in {unit_text} or its like"
 
 
 def _along_of(axis: str) -> str:
-    """The advice to declare what runs over an axis, or over none."""
+    """Return the advice to declare what runs over an axis, or over none."""
     return f"declare it over {axis}" if axis else "leave out over and the name behind it"
 
 
 def no_temperature(parameter: str) -> str:
-    """Why a value that is not a temperature does not fit a parameter in degC, and what would."""
+    """Return why a value that is not a temperature does not fit a parameter in degC, and what would."""
     return (
         f"{parameter} is a temperature, and this is a difference of temperatures, or no plain one; "
         "give a temperature, or declare the parameter in K"

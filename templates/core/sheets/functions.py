@@ -31,7 +31,7 @@ class Function:
     node: Any = None  # the expression of its parameters
 
     def call(self, arguments: list[Part]) -> Part:
-        """The expression with arguments in the place of parameters.
+        """Return the expression with arguments in the place of parameters.
 
         Raises
         ------
@@ -89,6 +89,6 @@ def function_of(statement: Parsed, reader: Reader) -> Function:
 
 
 def _taken(parameter: lark.Tree[Any]) -> str:
-    """A parameter in words: `x in mm`, `g in bar over cycle`."""
+    """Return a parameter in words: `x in mm`, `g in bar over cycle`."""
     name, unit_text, axis = parameter.children
     return f"{name} in {str(unit_text)[1:-1]}" + (f" over {axis}" if axis else "")

@@ -50,17 +50,17 @@ class Parsed:
         return self.tree.children
 
     def text_of(self, tree: lark.Tree[Any]) -> str:
-        """A part as it was written, in one line."""
+        """Return a part as it was written, in one line."""
         return " ".join(self.chunk.text[tree.meta.start_pos : tree.meta.end_pos].split())
 
     def refuse(
         self, code: str, message: str, at: lark.Token | lark.Tree[Any] | None = None, remedy: str = ""
     ) -> Refusal:
-        """A fault of this statement, at one of its words or parts."""
+        """Return a fault of this statement, at one of its words or parts."""
         return self.at(code, message, getattr(at, "meta", at), remedy)
 
     def at(self, code: str, message: str, meta: Any, remedy: str = "") -> Refusal:
-        """A fault of this statement, at a position of the parser's."""
+        """Return a fault of this statement, at a position of the parser's."""
         line = self.chunk.line + (getattr(meta, "line", None) or 1) - 1
         column = getattr(meta, "column", None) or 1
         ends_here = getattr(meta, "end_line", None) == getattr(meta, "line", None)
@@ -69,7 +69,7 @@ class Parsed:
 
 
 def parsed(chunk: Chunk) -> Parsed:
-    """The tree of a statement.
+    """Return the tree of a statement.
 
     Raises
     ------
@@ -97,13 +97,13 @@ def _tree(text: str) -> tuple[lark.Tree[Any], tuple[str, ...]]:
 
 
 def name_of(chunk: Chunk) -> str:
-    """The name that a statement seems to declare which is not understood."""
+    """Return the name that a statement seems to declare which is not understood."""
     match = _DECLARED.match(chunk.text)
     return match[1] if match else ""
 
 
 def declared_by(statement: Parsed) -> list[str]:
-    """The names that a statement declares, if it does."""
+    """Return the names that a statement declares, if it does."""
     if statement.kind == "system":
         return [str(unknown.children[0]) for unknown in statement.parts[:-1]]
     return [str(statement.parts[0]).rstrip("(")] if statement.kind not in ("require", "check", "test") else []
@@ -114,7 +114,7 @@ def _parts(tree: lark.Tree[Any]) -> int:
 
 
 def _not_understood(chunk: Chunk, error: lark.exceptions.UnexpectedInput) -> SheetFault:
-    """The fault of a statement that is not understood; at its end, where the parser says no place."""
+    """Return the fault of a statement that is not understood; at its end, where the parser says no place."""
     lines = chunk.text.split("\n")
     is_at_end = isinstance(error, lark.exceptions.UnexpectedEOF) or getattr(error, "token", None) == ""
     row, column = (

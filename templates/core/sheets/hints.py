@@ -35,7 +35,7 @@ _FORMS = {
 
 
 def remedy_of(statement: str, before: str, there: str, expected: Collection[str]) -> str:
-    """A remedy of a statement.
+    """Return a remedy of a statement.
 
     Parameters
     ----------

@@ -48,7 +48,7 @@ class System:
         self._right = [closure(row[""]) if "" in row else _zero for row in rows]
 
     def numbers(self, template: Any) -> tuple[NDArray[Any], NDArray[Any]]:
-        """The matrices and right sides [SI] for the values of a template.
+        """Return the matrices and right sides [SI] for the values of a template.
 
         Raises
         ------
@@ -63,7 +63,7 @@ class System:
 
 
 def _zero(template: Any) -> float:
-    """The coefficient of an unknown that does not stand in an equation."""
+    """Return the coefficient of an unknown that does not stand in an equation."""
     return 0.0
 
 
@@ -104,12 +104,12 @@ class LinearBody(Body):
         return solutions[..., self._place][()]
 
     def latex(self, symbols: Mapping[str, str], times: str) -> str:
-        """The equations, with symbols or numbers in the place of attributes."""
+        """Return the equations, with symbols or numbers in the place of attributes."""
         return rf"\text{{solution of }}\ {latex(self.node, symbols, times)}"
 
 
 def solved(matrices: NDArray[Any], right: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.bool_]]:
-    """The solutions of linear systems, and where a matrix is singular.
+    """Return the solutions of linear systems, and where a matrix is singular.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def _sizes(matrices: NDArray[Any], axis: int) -> NDArray[Any]:
 
 
 def system_of(statement: Parsed, reader: Reader, tree: lark.Tree[Any], unknowns: Sequence[str]) -> System:
-    """The equations behind `so that`, joined by `and`.
+    """Return the equations behind `so that`, joined by `and`.
 
     Raises
     ------
@@ -175,7 +175,7 @@ def system_of(statement: Parsed, reader: Reader, tree: lark.Tree[Any], unknowns:
 
 
 def _joined(node: Any) -> Iterator[Any]:
-    """The conditions that `and` joins."""
+    """Yield the conditions that `and` joins."""
     left = [node]
     while left:
         first = left.pop()
@@ -186,7 +186,7 @@ def _joined(node: Any) -> Iterator[Any]:
 
 
 def _terms(node: Any, unknowns: Sequence[str]) -> Terms:
-    """The coefficients of unknowns in a tree that is linear in them.
+    """Return the coefficients of unknowns in a tree that is linear in them.
 
     Raises
     ------
@@ -211,7 +211,7 @@ def _terms(node: Any, unknowns: Sequence[str]) -> Terms:
 
 
 def _combined(operation: Any, left: Terms, right: Terms) -> Terms:
-    """The terms of a sum or a difference."""
+    """Return the terms of a sum or a difference."""
     terms = dict(left)
     for name, term in right.items():
         if name in left:

@@ -30,12 +30,12 @@ class Chunk:
 
 
 def normal(text: str) -> str:
-    """A text without a byte order mark, its lines ended as the language ends them."""
+    """Return a text without a byte order mark, its lines ended as the language ends them."""
     return text.removeprefix("\ufeff").replace("\r\n", "\n")
 
 
 def chunks_of(text: str) -> list[Chunk]:
-    """The statements of a text, prose and remarks included, in the order of its lines.
+    """Return the statements of a text, prose and remarks included, in the order of its lines.
 
     Raises
     ------

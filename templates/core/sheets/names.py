@@ -48,7 +48,7 @@ class Names:
     fuel: int = FUEL
 
     def name(self, text: str) -> Part:
-        """The part for which a name stands.
+        """Return the part for which a name stands.
 
         Raises
         ------
@@ -67,7 +67,7 @@ class Names:
         raise FaultyText("unknown_name", fault.detail)
 
     def function(self, name: str) -> Call | None:
-        """The function of the worksheet with this name, if it has one.
+        """Return the function of the worksheet with this name, if it has one.
 
         Raises
         ------
@@ -114,7 +114,7 @@ class Names:
 
 
 def sort_of(text: str) -> Sort:
-    """The sort of a value that is declared in a unit.
+    """Return the sort of a value that is declared in a unit.
 
     Raises
     ------

@@ -13,7 +13,7 @@ from templates.core.sheets.grammar import Parsed, declared_by
 
 
 def latex_of(cls: type[Template], built: Built) -> dict[int, str]:
-    """The LaTeX of every statement that has a formula or a symbol, by line."""
+    """Return the LaTeX of every statement that has a formula or a symbol, by line."""
     letters = {name: named_symbol(name) for name in built.named} | symbols(cls)
     return {s.chunk.line: _written(s, built, letters) for s in built.statements}
 

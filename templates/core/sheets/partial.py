@@ -40,7 +40,7 @@ Explained = tuple[Partial, list[Callable[[Any], Any]]]
 
 
 def explained_in(node: Any) -> list[Explained]:
-    """The partial operations of a tree, with functions for their arguments."""
+    """Return the partial operations of a tree, with functions for their arguments."""
     applied = (part for part in nodes_of(node) if isinstance(part, Apply))
     applied_to = ((_ITEM if part.operation is ITEM else part.operation, part.arguments) for part in applied)
     return [(one, list(map(closure, arguments))) for one, arguments in applied_to if isinstance(one, Partial)]

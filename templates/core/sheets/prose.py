@@ -12,7 +12,7 @@ _HEADING = re.compile(r"(#{1,6})[ \t]*(.*)")
 
 
 def title_of(chunks: Iterable[Chunk]) -> str:
-    """The text of the first heading."""
+    """Return the text of the first heading."""
     headings = (_HEADING.match(chunk.text) for chunk in chunks if chunk.kind == "prose")
     return next((heading[2].strip() for heading in headings if heading), "")
 
@@ -25,7 +25,7 @@ def markdown_of(chunk: Chunk) -> str:
 
 
 def documentation_of(chunks: Iterable[Chunk]) -> str:
-    """The prose as a docstring: the title is its first sentence, three headings are its sections."""
+    """Return the prose as a docstring: the title is its first sentence, three headings are its sections."""
     return "\n".join(_lines(chunk for chunk in chunks if chunk.kind == "prose")).strip()
 
 

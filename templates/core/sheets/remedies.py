@@ -44,7 +44,7 @@ _GENERAL = {
 
 
 def remedy_at(code: str, tree: lark.Tree[Any], meta: Any, names: Names) -> str:
-    """A remedy of an expression.
+    """Return a remedy of an expression.
 
     Parameters
     ----------
@@ -65,17 +65,17 @@ def remedy_at(code: str, tree: lark.Tree[Any], meta: Any, names: Names) -> str:
 
 
 def declared_in(name: str, base: pint.Unit) -> str:
-    """The advice to declare a name in a unit that fits what its formula gives."""
+    """Return the advice to declare a name in a unit that fits what its formula gives."""
     return f"declare {name} in {common_unit(base)}, or correct the formula"
 
 
 def common_unit(base: pint.Unit) -> str:
-    """A unit that engineers write for a base unit, such as MPa for a pressure."""
+    """Return a unit that engineers write for a base unit, such as MPa for a pressure."""
     return next((text for text in _COMMON if compatible(unit(text).base, base)), f"{base:~C}")
 
 
 def _equal(at: lark.Tree[Any], names: Names) -> str:
-    """A sentence on what the operation at a place needs."""
+    """Return a sentence on what the operation at a place needs."""
     called = str(at.children[0])[:-1] if at.data == "call" else ""
     if at.data in _EQUAL or called in _EQUAL_CALLS:
         return "write both in the same unit"
@@ -89,7 +89,7 @@ def _equal(at: lark.Tree[Any], names: Names) -> str:
 
 
 def _units(at: lark.Tree[Any], names: Names) -> str:
-    """The units of the names of an expression: `F is in kN, D in mm`."""
+    """Return the units of the names of an expression: `F is in kN, D in mm`."""
     used = map(str, at.scan_values(lambda token: getattr(token, "type", "") == "NAME"))
     shown = {name: text for name in used if (text := _unit_of(name, names))}
     parts = [f"{name} in {text}" for name, text in list(shown.items())[:MOST_NAMES]]

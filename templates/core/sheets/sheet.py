@@ -100,7 +100,7 @@ class Sheet:
         return Statement(kind, name, chunk.line, chunk.last_line, words, written.get(chunk.line, ""))
 
     def template(self, id: str, version: int) -> type[Template]:
-        """The class of the worksheet under an id and version.
+        """Return the class of the worksheet under an id and version.
 
         Raises
         ------

@@ -79,7 +79,7 @@ class SolveBody(Body):
         return roots[()]
 
     def seconds(self, points: int) -> float:
-        """The time that the search takes at so many points, as an order of magnitude [s]."""
+        """Return the time that the search takes at so many points, as an order of magnitude [s]."""
         return STEPS * (PER_STEP + operations_seconds(self._operations, points))
 
     @cached_property
@@ -89,7 +89,7 @@ class SolveBody(Body):
     def _roots(
         self, values: Mapping[str, Any], low: NDArray[Any], high: NDArray[Any]
     ) -> tuple[NDArray[Any], NDArray[Any]]:
-        """The roots, NaN where there is none, and the points at which both bounds are roots."""
+        """Return the roots, NaN where there is none, and the points at which both bounds are roots."""
         flat = {name: self._flat(name, value, low.shape) for name, value in values.items()}
         places = np.arange(low.size)
         ends = np.minimum(low, high).ravel(), np.maximum(low, high).ravel()
@@ -108,7 +108,7 @@ class SolveBody(Body):
         return roots.reshape(low.shape), several.reshape(low.shape)
 
     def _flat(self, name: str, value: Any, shape: tuple[int, ...]) -> Callable[[NDArray[Any]], Any]:
-        """A value at some of the points, which are counted in one row."""
+        """Return a value at some of the points, which are counted in one row."""
         if not isinstance(value, np.ndarray):
             return lambda at: value
         if name in self._lists:
@@ -122,7 +122,7 @@ class SolveBody(Body):
         return f"between {low} and {high}" if low and high else "between its bounds"
 
     def latex(self, symbols: Mapping[str, str], times: str) -> str:
-        """The equation, with symbols or numbers in the place of attributes."""
+        """Return the equation, with symbols or numbers in the place of attributes."""
         return rf"\text{{root of }}\ {latex(self.equation, symbols, times)}"
 
 
@@ -131,7 +131,7 @@ def _is_number(value: Any) -> bool:
 
 
 def equation_of(statement: Parsed, reader: Reader, tree: lark.Tree[Any], name: str) -> Apply:
-    """The equation behind `so that`: two sides that are equal.
+    """Return the equation behind `so that`: two sides that are equal.
 
     Raises
     ------

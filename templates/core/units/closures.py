@@ -40,7 +40,7 @@ _PLAIN: dict[
 
 
 def closure(node: Any, attributes: Mapping[str, str] | None = None) -> Closure:
-    """A tree as a function; of a condition it gives truths, and what is not known is not true.
+    """Return a tree as a function; of a condition it gives truths, and what is not known is not true.
 
     The function takes an object with an attribute for each name of the tree, in SI: single values, or arrays
     whose first axis is that of the points. `attributes` are those of the names, where they are called

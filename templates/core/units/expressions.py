@@ -51,7 +51,7 @@ class Scope(Protocol):
     """The names of an expression."""
 
     def name(self, text: str) -> Part:
-        """The node of a name, and what it gives.
+        """Return the node of a name, and what it gives.
 
         Raises
         ------
@@ -81,7 +81,7 @@ class FaultyPlace(FaultyText):
 
 
 def checked(tree: lark.Tree[Any], scope: Scope) -> Part:
-    """A checked expression, and what it gives.
+    """Return a checked expression, and what it gives.
 
     Raises
     ------
@@ -147,7 +147,7 @@ class _Builder:
         return Name(text), Sort()
 
     def item(self, whole: Any, index: lark.Token) -> Part:
-        """An item of an array or of a list that is written out."""
+        """Return an item of an array or of a list that is written out."""
         shown = excerpt(f"{whole if isinstance(whole, lark.Token) else 'the list'}[{index}]")
         if whole in CONSTANTS or index in CONSTANTS:
             raise FaultyText("syntax", f"{shown}: pi is not an array, and no index")
@@ -179,7 +179,7 @@ class _Builder:
         return self.apply(operation, arguments)
 
     def compared(self, sides: list[Part], signs: list[str]) -> Part:
-        """A comparison; of a chain, all of them hold.
+        """Return a comparison; of a chain, all of them hold.
 
         Raises
         ------
@@ -262,7 +262,7 @@ def _place(shown: str, number: float) -> int:
 
 
 def constant(text: str) -> Constant:
-    """A number, or a number and its unit; its sign belongs to it, so that -20 degC is a temperature.
+    """Return a number, or a number and its unit; its sign belongs to it, so that -20 degC is a temperature.
 
     Raises
     ------

@@ -53,7 +53,7 @@ def deviations(zone: str, size: float) -> tuple[float, float]:
 
 @lru_cache(maxsize=1)
 def zones() -> Mapping[str, Sequence[Step]]:
-    """The steps of every zone that is shipped, by increasing size."""
+    """Return the steps of every zone that is shipped, by increasing size."""
     text = files(__package__).joinpath("iso286.csv").read_text(encoding="utf-8")
     steps = defaultdict[str, list[Step]](list)
     for row in csv.DictReader(line for line in text.splitlines() if not line.startswith("#")):
@@ -63,7 +63,7 @@ def zones() -> Mapping[str, Sequence[Step]]:
 
 
 def _unknown(zone: str) -> str:
-    """A sentence on the grades of a zone's letter that are shipped, or on the letters."""
+    """Return a sentence on the grades of a zone's letter that are shipped, or on the letters."""
     letters = zone.rstrip("0123456789")
     alike = [name for name in zones() if name.rstrip("0123456789") == letters]
     if alike:

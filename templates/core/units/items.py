@@ -31,7 +31,7 @@ def check_index(item: Item, kinds: Mapping[str, Kind]) -> None:
 
 
 def item_of(item: Item, values: Mapping[str, Value], rows: Container[str] = ()) -> Value:
-    """The item of an array along its first axis, or along the first behind that of the rows.
+    """Return the item of an array along its first axis, or along the first behind that of the rows.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def item_of(item: Item, values: Mapping[str, Value], rows: Container[str] = ()) 
 
 
 def _places(item: Item, values: Mapping[str, Value], rows: Container[str], length: int) -> NDArray[np.intp]:
-    """The index as places from 0: a single one, or one for each row."""
+    """Return the index as places from 0: a single one, or one for each row."""
     raw = np.asarray(values[item.index] if isinstance(item.index, str) else item.index, dtype=float)
     if raw.ndim > (item.index in rows):
         raise FaultyText("index", f"{item.text}: an index is a single number, not an array")

@@ -122,7 +122,7 @@ def _read_text(text: str, declared: str) -> Typed:
 
 
 def _toleranced(number: float, written: Written, declared: str) -> Typed:
-    """A quantity whose text holds a tolerance."""
+    """Return a quantity whose text holds a tolerance."""
     if written.unit == "1" != declared:
         raise FaultyText("missing_unit", f'the unit is missing; write it at the end, as in "… {declared}"')
     typed = _quantity(number, written.unit, declared)
@@ -132,7 +132,7 @@ def _toleranced(number: float, written: Written, declared: str) -> Typed:
 
 
 def _parted(text: str) -> tuple[str, str] | None:
-    """Number and unit of a text; None if it does not begin with a number, or is too long."""
+    """Return the number and unit of a text; None if it does not begin with a number, or is too long."""
     match = _PATTERN.fullmatch(text.strip()) if len(text) <= LONGEST_TEXT else None
     return (match[1], match[2]) if match else None
 
@@ -165,7 +165,7 @@ def _read_list(raw: list[Any], declared: str) -> Typed:
 
 
 def _read_each(raw: list[Any], declared: str) -> Typed:
-    """A list of quantities, each in its own unit; shown in the declared one."""
+    """Return a list of quantities, each in its own unit; shown in the declared one."""
     parts = [read(item, declared) for item in raw]
     if len({np.shape(part.si) for part in parts}) > 1:
         raise FaultyText("uneven", "the items of an array must be of one length; give each a single value")
@@ -216,7 +216,7 @@ def _finite(number: float) -> float:
 
 
 def _array(raw: Sequence[Any]) -> Array:
-    """A list of numbers, nested evenly, as an array; `true` and texts are not numbers."""
+    """Return a list of numbers, nested evenly, as an array; `true` and texts are not numbers."""
     flat, shape = list(raw), [len(raw)]
     while flat and isinstance(flat[0], (list, tuple)) and len(shape) < _DEEPEST:
         shape.append(len(flat[0]))
@@ -237,7 +237,7 @@ def _array(raw: Sequence[Any]) -> Array:
 
 
 def _joined(rows: Sequence[Any], length: int) -> list[Any]:
-    """The items of all rows, which must be lists of one length."""
+    """Return the items of all rows, which must be lists of one length."""
     if not all(isinstance(row, (list, tuple)) and len(row) == length for row in rows):
         raise FaultyText("uneven", "the rows of an array must be of equal length")
     return [item for row in rows for item in row]

@@ -23,7 +23,7 @@ def quotient(over: str, under: str) -> str:
 
 
 def difference(name: str) -> str:
-    """The unit of a change: of temperatures in a scale of their own, kelvin or its like."""
+    """Return the unit of a change: of temperatures in a scale of their own, kelvin or its like."""
     return f"delta_{name}" if unit(name).absolute else name
 
 
@@ -36,7 +36,7 @@ def _quotient(over: str, under: str) -> str:
 
 
 def _parts(name: str) -> tuple[list[str], list[str]]:
-    """The factors above and below the line; `1` is none."""
+    """Return the factors above and below the line; `1` is none."""
     top, bottom = list[str](), list[str]()
     for sign, product, factor in _PART.findall(name.replace("**", "^")):
         factors = re.split("[*·]", product) if product else [factor]

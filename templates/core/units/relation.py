@@ -70,7 +70,7 @@ class Relation:
         return tuple((choice.name, word.text) for choice, word in nodes if isinstance(choice, Name))
 
     def decided(self, words: Mapping[str, str]) -> Relation:
-        """The relation with a word in place of each choice that it tests."""
+        """Return the relation with a word in place of each choice that it tests."""
         return replace(
             self,
             names=self.names - self.choices,
@@ -90,7 +90,7 @@ class Relation:
         return any(node.operation in CONDITIONS for node in applied_in(self.tree))
 
     def kind(self, kinds: Mapping[str, Kind]) -> Kind:
-        """The kind of the relation's value, from the kinds of its names.
+        """Return the kind of the relation's value, from the kinds of its names.
 
         Raises
         ------
@@ -101,7 +101,7 @@ class Relation:
         return _checked(self.text, tuple((name, kinds[name]) for name in sorted(self.names - self.choices)))
 
     def value(self, values: Mapping[str, Value]) -> Value:
-        """The value in SI, from the SI values of its names; not finite where the arithmetic is not.
+        """Return the value in SI, from the SI values of its names; not finite where the arithmetic is not.
 
         Items that are known already stand among the values, by their text: `loads.main_load_x[2]`.
 
@@ -129,7 +129,7 @@ class Relation:
             raise FaultyText("shape", f"{self.text!r} joins arrays of different lengths") from None
 
     def _with_items(self, values: Mapping[str, Value]) -> Mapping[str, Value]:
-        """The values, and those of items of arrays by their text."""
+        """Return the values, and those of items of arrays by their text."""
         chosen = {item.text: item_of(item, values) for item in self.items if item.text not in values}
         return {**values, **chosen}
 
@@ -180,7 +180,7 @@ def _where(body: str, error: lark.exceptions.UnexpectedInput) -> str:
 
 @lru_cache(maxsize=REMEMBERED)
 def _checked(text: str, kinds: tuple[tuple[str, Kind], ...]) -> Kind:
-    """The kind of a relation, from those of its names; raises as `Relation.kind`."""
+    """Return the kind of a relation, from those of its names; raises as `Relation.kind`."""
     forget_units()
     sort = _sort(parse(text).tree, dict(kinds))
     if sort.truth:

@@ -14,7 +14,7 @@ MAX_EXPONENT, MAX_UNIT_POWER = 12, 1000
 
 
 def same(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    """All in units of one kind."""
+    """Return all in units of one kind."""
     for other in kinds[1:]:
         if not compatible(kinds[0].base, other.base):
             what = f"{in_words(kinds[0])} and {in_words(other)}"
@@ -32,19 +32,19 @@ def relative(operation: Operation, kinds: list[Kind]) -> None:
 
 
 def summed(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -> Kind:
-    """A sum or a difference."""
+    """Return a sum or a difference."""
     relative(operation, kinds)
     return same(operation, kinds, arguments)
 
 
 def product(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    """A product or a quotient."""
+    """Return a product or a quotient."""
     relative(operation, kinds)
     return Kind(reduce(lambda a, b: a / b if operation.sign == "/" else a * b, (k.base for k in kinds)))
 
 
 def power(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -> Kind:
-    """A power; of a quantity with a unit its exponent is known beforehand."""
+    """Return a power; of a quantity with a unit its exponent is known beforehand."""
     relative(operation, kinds)
     base, exponent = kinds
     if not is_number(exponent):
@@ -76,18 +76,18 @@ def plain_number(node: Any) -> float | None:
 
 
 def root(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    """A square root."""
+    """Return a square root."""
     relative(operation, kinds)
     return Kind(registry.Unit(kinds[0].base ** 0.5))
 
 
 def keep(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    """The kind of the first operand."""
+    """Return the kind of the first operand."""
     return kinds[0]
 
 
 def pure(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    """A function of a pure number or an angle."""
+    """Return a function of a pure number or an angle."""
     if not is_number(kinds[0]):
         raise FaultyText(
             "unit_mismatch", f"{operation.sign} takes an angle or a pure number, not {in_words(kinds[0])}"
@@ -96,7 +96,7 @@ def pure(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
 
 
 def angle(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -> Kind:
-    """The angle of two lengths, or of two values of any one kind."""
+    """Return the angle of two lengths, or of two values of any one kind."""
     same(operation, kinds, arguments)
     return Kind(RADIAN)
 
@@ -117,7 +117,7 @@ def is_number(kind: Kind) -> bool:
 
 
 def in_words(kind: Kind) -> str:
-    """A kind in words: by the unit that has a name, `N` for `kg·m/s²`."""
+    """Return a kind in words: by the unit that has a name, `N` for `kg·m/s²`."""
     named = (name for name, base in _named().items() if base == kind.base)
     return next(named, f"{kind.base:~P}") or "a pure number"
 

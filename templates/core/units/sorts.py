@@ -51,7 +51,7 @@ Part = tuple[Any, Sort]
 
 
 def applied(operation: Operation, parts: Sequence[Part]) -> Part:
-    """An operation applied to its parts, and what it gives.
+    """Return an operation applied to its parts, and what it gives.
 
     A single value that meets a list is given a trailing axis here, once.
 
@@ -67,7 +67,7 @@ def applied(operation: Operation, parts: Sequence[Part]) -> Part:
 
 
 def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> Sort:
-    """The sort of an operation's result, whatever its lists run over.
+    """Return the sort of an operation's result, whatever its lists run over.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def _truth(operation: Operation, sorts: list[Sort]) -> bool:
 
 
 def _axis(operation: Operation, sorts: list[Sort]) -> tuple[str, bool]:
-    """The axis of the result, and whether single values meet a list."""
+    """Return the axis of the result, and whether single values meet a list."""
     axes = list(dict.fromkeys(sort.axis for sort in sorts if sort.axis))
     if operation is LIST:
         if axes:
@@ -138,7 +138,7 @@ def _single_item(whole: Sort, index: Sort) -> str:
 
 
 def literal_axis(count: int) -> str:
-    """The axis of a list that is written out."""
+    """Return the axis of a list that is written out."""
     return f"{count} item{'s' if count > 1 else ''}"
 
 
@@ -167,7 +167,7 @@ def _weight(operation: Operation, kind: Kind, parts: Sequence[Part]) -> float | 
 
 
 def _scaled(sign: str, nodes: list[Any], one: float | None, other: float | None) -> float | None:
-    """The weight of a product or quotient with a plain number; of nothing else but of differences."""
+    """Return the weight of a product or quotient with a plain number; of nothing else but of differences."""
     factor, divided = plain_number(nodes[1]), plain_number(nodes[0])
     if factor is not None and one is not None:
         return one * factor if sign == "*" else one / factor if factor else None

@@ -66,7 +66,7 @@ class Written:
     zone: str | None = None
 
     def of(self, si: float, name: str, declared: str) -> tuple[Tolerance, dict[str, Any]]:
-        """The tolerance of a value [SI] in the unit `name`, and how an answer states it.
+        """Return the tolerance of a value [SI] in the unit `name`, and how an answer states it.
 
         Raises
         ------
@@ -81,7 +81,7 @@ class Written:
 
 
 def split(text: str) -> Written | None:
-    """The text behind the number of a quantity, where it holds a tolerance; None where it does not.
+    """Return the text behind the number of a quantity, where it holds a tolerance; None where it does not.
 
     Raises
     ------
@@ -109,13 +109,13 @@ def split(text: str) -> Written | None:
 
 
 def _written(first: str, lower: float, upper: float, last: str) -> Written:
-    """Limits in the unit that stands last, or else in that of the value; the value likewise."""
+    """Return the limits in the unit that stands last, or else in that of the value; the value likewise."""
     last = last.strip()
     return Written(first or last or "1", lower, upper, last or first or "1")
 
 
 def _signed(sign: str, number: str) -> float:
-    """A deviation; only nothing needs no sign."""
+    """Return a deviation; only nothing needs no sign."""
     size = float(number)
     if not sign and size:
         raise FaultyText("not_a_tolerance", f"give {number} a sign, as in {FORMS}")
@@ -151,7 +151,7 @@ def is_zone(text: str) -> bool:
 
 
 def from_object(raw: Mapping[str, Any], name: str, declared: str, si: Value) -> Tolerance | None:
-    """The tolerance of an object whose value is `si` [SI] in the unit `name`; None if it has none.
+    """Return the tolerance of an object whose value is `si` [SI] in the unit `name`; None if it has none.
 
     `plus` and `minus` are how far the value may lie above and below; `upper` and `lower` are deviations with
     their sign, for limits that lie on one side. Each is a number in the value's unit, or a text.
@@ -182,7 +182,7 @@ def _distribution(raw: Any) -> Distribution:
 
 
 def _deviation(raw: Any, name: str, declared: str) -> float:
-    """A deviation [SI], from a number in the value's unit or from a text."""
+    """Return a deviation [SI], from a number in the value's unit or from a text."""
     if isinstance(raw, str):
         match = re.fullmatch(rf"([+\-−]?)\s*({NUMBER})\s*(.*)", raw.strip(), re.DOTALL)
         if not match or len(raw) > LONGEST_TEXT:
@@ -199,7 +199,7 @@ def _deviation(raw: Any, name: str, declared: str) -> float:
 
 
 def _of_text(name: str, declared: str) -> Unit:
-    """The unit of a tolerance in a text of its own, where a temperature is a difference: not degC."""
+    """Return the unit of a tolerance in a text of its own, where a temperature is a difference: not degC."""
     if not name and declared != "1":
         raise FaultyText("missing_unit", f'the tolerance has no unit; add it, as in "5 {declared}"')
     scale = unit(name or "1")
@@ -209,7 +209,7 @@ def _of_text(name: str, declared: str) -> Unit:
 
 
 def _difference(name: str, declared: str) -> Unit:
-    """The unit of a deviation; 5 degC beside a temperature are 5 K."""
+    """Return the unit of a deviation; 5 degC beside a temperature are 5 K."""
     scale = unit(name)
     return scale if scale.difference and _is_temperature(declared) else require_same_kind(name, declared)
 
@@ -247,7 +247,7 @@ def _of_zone(
 def in_zone(
     zone: str, si: float, name: str, distribution: Distribution = "normal"
 ) -> tuple[Tolerance, dict[str, Any]]:
-    """The tolerance of a nominal size [m] in a zone of ISO 286, and how an answer states it.
+    """Return the tolerance of a nominal size [m] in a zone of ISO 286, and how an answer states it.
 
     Raises
     ------
@@ -270,7 +270,7 @@ def _between(lower: float, upper: float, distribution: Distribution = "normal") 
 
 
 def stated(tolerance: Tolerance, scale: Unit) -> dict[str, Any]:
-    """A tolerance in a unit, as an answer states it: `plus`, `minus`; `upper`, `lower` on one side."""
+    """Return a tolerance in a unit, as an answer states it: `plus`, `minus`; `upper`, `lower` on one side."""
     lower, upper = (_short(float(end) / scale.factor) for end in (tolerance.lower, tolerance.upper))
     if lower <= 0 <= upper:
         return {"plus": upper, "minus": 0.0 if lower == 0 else -lower}
@@ -278,12 +278,12 @@ def stated(tolerance: Tolerance, scale: Unit) -> dict[str, Any]:
 
 
 def _short(number: float) -> float:
-    """A number without the last digits, which come from conversions."""
+    """Return a number without the last digits, which come from conversions."""
     return float(f"{number:.12g}")
 
 
 def joined(tolerances: list[Tolerance | None]) -> Tolerance | None:
-    """The tolerances of the items of a list as one; None if no item has any.
+    """Return the tolerances of the items of a list as one; None if no item has any.
 
     Raises
     ------

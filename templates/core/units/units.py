@@ -62,11 +62,11 @@ class Unit:
         return self.offset != 0.0
 
     def to_si(self, value: Value) -> Value:
-        """The value [this unit] in SI."""
+        """Return the value [this unit] in SI."""
         return value * self.factor + self.offset
 
     def from_si(self, value: Value) -> Value:
-        """The value [SI] in this unit."""
+        """Return the value [SI] in this unit."""
         shifted = value - self.offset if self.offset else value
         return shifted if self.factor == 1 else shifted / self.factor
 
@@ -126,7 +126,7 @@ def compatible(one: pint.Unit, other: pint.Unit) -> bool:
 
 
 def dimension_of(base: pint.Unit) -> str:
-    """A text that is equal for base units that are compatible."""
+    """Return a text that is equal for base units that are compatible."""
     dimensions = dict(registry.get_dimensionality(base))
     radians = _radians(base) if dimensions.keys() == {"[time]"} else 0.0
     powers = sorted([*dimensions.items(), *([("rad", radians)] if radians else [])])
@@ -140,7 +140,7 @@ def _radians(base: pint.Unit) -> float:
 
 @lru_cache(maxsize=4096)
 def require_same_kind(typed: str, declared: str) -> Unit:
-    """The unit `typed`, if a quantity declared in `declared` can be given in it.
+    """Return the unit `typed`, if a quantity declared in `declared` can be given in it.
 
     Raises
     ------
@@ -197,7 +197,7 @@ _KINDS = {
 
 
 def _measured(scale: Unit) -> str:
-    """The quantity that a unit measures, in words where there are usual ones."""
+    """Return the quantity that a unit measures, in words where there are usual ones."""
     dimensions = registry.get_dimensionality(scale.base)
     if _radians(scale.base) and not dimensions:
         return "an angle"

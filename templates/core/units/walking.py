@@ -17,7 +17,7 @@ LISTWISE = frozenset({LIST, ITEM, *OVER_LISTS.values()})
 
 
 def value_of(node: Any, values: Mapping[str, Value]) -> Value:
-    """The value of a tree, from those of its names and items by their text.
+    """Return the value of a tree, from those of its names and items by their text.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def value_of(node: Any, values: Mapping[str, Value]) -> Value:
 
 
 def listwise(operation: Operation, parts: list[Value], ranks: list[int]) -> Value:
-    """An operation that takes or makes a list, of parts that have so many axes at one point.
+    """Return an operation that takes or makes a list, of parts that have so many axes at one point.
 
     Raises
     ------
@@ -71,12 +71,12 @@ def check_ranks(operation: Operation, ranks: list[int]) -> None:
 
 
 def applied_in(node: Any) -> Iterator[Apply]:
-    """The operations of a tree."""
+    """Return the operations of a tree."""
     return (part for part in nodes_of(node) if isinstance(part, Apply))
 
 
 def nodes_of(node: Any) -> Iterator[Any]:
-    """The nodes of a tree, each before its arguments."""
+    """Yield the nodes of a tree, each before its arguments."""
     left = [node]
     while left:
         yield (first := left.pop())

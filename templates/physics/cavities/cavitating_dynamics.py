@@ -36,14 +36,14 @@ class LinearFilm:
     """(2, 2) by velocity over omega_h times the radial clearance."""
 
     def turned(self, attitude: float) -> "LinearFilm":
-        """The same in axes x, y, of which x lies behind the line of centres by the attitude [rad]."""
+        """Return the same in axes x, y, of which x lies behind the line of centres by the attitude [rad]."""
         cos, sin = np.cos(attitude), np.sin(attitude)
         turn = np.array([[cos, -sin], [sin, cos]])
         return LinearFilm(turn @ self.force, turn @ self.K @ turn.T, turn @ self.B @ turn.T)
 
 
 def linear_film(film: SolvedRing) -> LinearFilm:
-    """Force, stiffness and damping of a solved film."""
+    """Return the force, stiffness and damping of a solved film."""
     ring, P, fill = film.ring, film.solution.P, 1 - film.solution.void
     phi, middle = ring.phi, midpoints(ring.phi)
     respond, storage = _response(film), 12 * ring.cells()
@@ -58,7 +58,7 @@ def linear_film(film: SolvedRing) -> LinearFilm:
 
 
 def _response(film: SolvedRing) -> Callable[[Array], tuple[Array, Array]]:
-    """A function from what nodes lose to the changes of pressure and void that make up for it."""
+    """Return a function from what nodes lose to the changes of pressure and void that make up for it."""
     network, free = film.network, film.network.free
     full = film.solution.void == 0
     slopes, is_full = ColumnScaledSum.of(network.A, network.T).among(free), full[free]

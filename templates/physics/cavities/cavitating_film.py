@@ -134,13 +134,13 @@ def _interpolated(solved: SolvedRing, finer: Ring) -> tuple[Array, Array]:
 
 
 def _between(nodes: Array, places: Array) -> tuple[NDArray[np.intp], Array]:
-    """The node before each place, and how much of the way to the next one it lies."""
+    """Return the node before each place, and how much of the way to the next one it lies."""
     before = np.clip(np.searchsorted(nodes, places, side="right") - 1, 0, nodes.size - 2)
     return before, np.clip((places - nodes[before]) / np.diff(nodes)[before], 0.0, 1.0)
 
 
 def force(ring: Ring, P: Array) -> Array:
-    """Force along and ahead of the line of centres of a pressure at the nodes, as So, (2,) [-]."""
+    """Return the force along and ahead of the line of centres of a pressure at the nodes, as So, (2,) [-]."""
     weight = dual_widths(ring.phi)
     axes = np.array([np.cos(ring.phi), np.sin(ring.phi)]) * weight
     return axes @ ring.closed(P) @ dual_widths(ring.zeta) / 2

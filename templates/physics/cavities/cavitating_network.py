@@ -47,7 +47,7 @@ class Ring:
     """(m + 1,) axial places, 0 (middle) … 1 (end)."""
 
     def closed(self, values: Array) -> Array:
-        """Node values as an array around × across whose last row repeats the first."""
+        """Return the node values as an array around × across whose last row repeats the first."""
         rows = values.reshape(self.phi.size - 1, self.zeta.size, *values.shape[1:])
         return np.concatenate([rows, rows[:1]])
 
@@ -58,7 +58,7 @@ class Ring:
 
 
 def grooved_ring(eps: float, ratio: float, grooves: list[Groove], n: int, m: int) -> Ring:
-    """A graded mesh whose nearest nodes are moved to the edges of the grooves."""
+    """Return a graded mesh whose nearest nodes are moved to the edges of the grooves."""
     mesh = ring_mesh(eps, ratio, n, m)
     edges = [groove.centre + side * groove.width / 2 for groove in grooves for side in (-1, 1)]
     phi = _snapped(mesh.phi, _wrapped(np.array(edges)))
@@ -66,7 +66,7 @@ def grooved_ring(eps: float, ratio: float, grooves: list[Groove], n: int, m: int
 
 
 def _wrapped(angle: Array) -> Array:
-    """The same angle in [−pi, pi)."""
+    """Return the same angle in [−pi, pi)."""
     return (angle + np.pi) % (2 * np.pi) - np.pi
 
 
@@ -85,7 +85,7 @@ def _inside(groove: Groove, phi: Array, zeta: Array) -> Mask:
 
 
 def fed_network(ring: Ring, grooves: list[Groove], ambient: float) -> tuple[Network, Mask]:
-    """Balances of flow, and which nodes (around × across) are fed by grooves."""
+    """Return the balances of flow, and which nodes (around × across) are fed by grooves."""
     phi, middle = ring.phi, midpoints(ring.phi)
     H, H_mid = gap(phi, ring.eps), gap(middle, ring.eps)
     A, T = _flows(ring, H_mid**3, H**3, H_mid)
@@ -106,7 +106,7 @@ def perturbed_flows(ring: Ring, change: Array, change_mid: Array) -> tuple[csc_a
 
 
 def _flows(ring: Ring, cube_mid: Array, cube: Array, H_mid: Array) -> tuple[csc_array, csc_array]:
-    """What nodes lose by pressure and by shear, for H³ between and at the nodes and H between them.
+    """Return what nodes lose by pressure and by shear, for H³ between and at the nodes and H between them.
 
     Both have one pattern, so that sums of them need no other.
     """
@@ -135,7 +135,7 @@ class _Pattern:
     """(entries,) likewise by shear."""
 
     def filled(self, places: Numbers, values: list[Array]) -> csc_array:
-        """The matrix of entries; those at one place add."""
+        """Return the matrix of entries; those at one place add."""
         data = np.bincount(places, np.concatenate(values), self.row.size)
         count = self.starts.size - 1
         return csc_array((data, self.row, self.starts), shape=(count, count))
@@ -143,7 +143,7 @@ class _Pattern:
 
 @lru_cache(maxsize=16)
 def _pattern(n: int, m: int) -> _Pattern:
-    """That of n nodes around, m across."""
+    """Return that of n nodes around, m across."""
     node = np.arange(n * m).reshape(n, m)
     ahead = np.roll(node, -1, axis=0)
     pressure = [*_exchanged(node, ahead), *_exchanged(node[:, :-1], node[:, 1:])]
@@ -155,10 +155,10 @@ def _pattern(n: int, m: int) -> _Pattern:
 
 
 def _exchanged(one: Numbers, other: Numbers) -> list[tuple[Numbers, Numbers]]:
-    """Rows and columns of what two neighbours lose to each other."""
+    """Return the rows and columns of what two neighbours lose to each other."""
     return [(one, one), (other, other), (one, other), (other, one)]
 
 
 def _places(entries: list[tuple[Numbers, Numbers]], count: int) -> Numbers:
-    """Places of entries in a square matrix that is written column by column."""
+    """Return the places of entries in a square matrix that is written column by column."""
     return np.concatenate([(column * count + row).ravel() for row, column in entries])

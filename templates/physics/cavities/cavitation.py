@@ -58,7 +58,7 @@ class Network:
         return np.asarray(order[~self.fixed[order]], np.intp)
 
     def loss(self, P: Array, void: Array) -> Array:
-        """What each node loses: 0 where the balance holds, −inflow from outside at fixed nodes."""
+        """Return what each node loses: 0 where the balance holds, −inflow from outside at fixed nodes."""
         return np.asarray(self.A @ P + self.T @ (1 - void))
 
 
@@ -110,7 +110,7 @@ def cavitation(network: Network, start: tuple[Array, Array] | None = None) -> Ca
 
 
 def _newton_step(slopes: ColumnScaledSum, scale: Array, loss: Array, pair: Array, fischer: Array) -> Array:
-    """Changes of pressure and void times their scale, (2, N).
+    """Return the changes of pressure and void times their scale, (2, N).
 
     From loss + A dP − T dvoid = 0 and the changed complementarity.
     Where the film is full dvoid is eliminated, in the cavity dP: the larger slope divides.

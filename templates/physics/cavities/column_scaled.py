@@ -67,7 +67,7 @@ class ColumnScaledSum:
         return cls(pattern, np.asarray(column, np.intp), values[0], values[1], np.flatnonzero(row == column))
 
     def among(self, unknowns: NDArray[np.intp]) -> ColumnScaledSum:
-        """The rows and columns of some unknowns alone, in their order."""
+        """Return the rows and columns of some unknowns alone, in their order."""
         number = np.full(self.pattern.shape[0], -1)
         number[unknowns] = np.arange(unknowns.size)
         row, column = number[self.pattern.indices], number[self.column]
@@ -77,7 +77,7 @@ class ColumnScaledSum:
         return self.at(row[kept], column[kept], values, unknowns.size)
 
     def scaled(self, by_first: Array, by_second: Array, diagonal: Array | float = 0.0) -> csc_array:
-        """The sum with columns times factors, and a diagonal added; valid until the next call."""
+        """Return the sum with columns times factors, and a diagonal added; valid until the next call."""
         values = self.pattern.data
         np.multiply(self.first, by_first[self.column], out=values)
         values += self.second * by_second[self.column]
@@ -85,7 +85,7 @@ class ColumnScaledSum:
         return self.pattern
 
     def times(self, by_first: Array, by_second: Array) -> Array:
-        """The first matrix times a vector and the second times another, added."""
+        """Return the first matrix times a vector and the second times another, added."""
         return np.asarray(self.scaled(by_first, by_second) @ np.ones(by_first.size))
 
     def factorised(self, by_first: Array, by_second: Array, diagonal: Array) -> Callable[[Array], Array]:
@@ -113,7 +113,7 @@ class ColumnScaledSum:
         return int(np.abs(self.pattern.indices - self.column).max(initial=0))
 
     def diagonals(self) -> Array:
-        """The diagonal of each, (2, N)."""
+        """Return the diagonal of each, (2, N)."""
         return np.stack([self.first[self.diagonal], self.second[self.diagonal]])
 
 
@@ -126,7 +126,7 @@ def _has_pattern_of(second: csc_array, first: csc_array) -> bool:
 
 
 def _places(matrix: csc_array) -> NDArray[np.intp]:
-    """The index of each stored value in the matrix, written column by column."""
+    """Return the index of each stored value in the matrix, written column by column."""
     matrix.sum_duplicates()
     column = np.repeat(np.arange(matrix.shape[1]), np.diff(matrix.indptr))
     return np.asarray(column * matrix.shape[0] + matrix.indices, np.intp)

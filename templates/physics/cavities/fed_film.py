@@ -43,7 +43,7 @@ class Feed:
     """Angle of the centre from the load in the sense of rotation, and width around, of each [rad]."""
 
     def placed(self, attitude: float) -> list[Groove]:
-        """The grooves as the film sees them, from the narrowest gap."""
+        """Return the grooves as the film sees them, from the narrowest gap."""
         if not self.grooves:
             return [Groove(np.pi, 0.0, P=self.pressure)]
         return [Groove(angle - attitude, width, P=self.pressure) for angle, width in self.grooves]
@@ -85,7 +85,7 @@ class Place:
         return float(np.arctan2(self.y[1], self.y[0]))
 
     def moved(self, step: Array) -> "Place":
-        """The place after a step of y, kept inside the eccentricities that films are solved for."""
+        """Return the place after a step of y, kept inside the eccentricities that films are solved for."""
         y = self.y + step
         size = max(float(np.hypot(*y)), 1e-300)
         return Place(y * min(1.0, float(np.arctanh(ECCENTRICITY_LIMIT)) / size))
@@ -186,14 +186,14 @@ class Search:
         return best
 
     def start(self) -> Place:
-        """Where the film map has the journal."""
+        """Return where the film map has the journal."""
         eps = mapped_eccentricity(np.array(self.load), np.array(self.ratio))
         eps = np.where(np.isnan(eps), ECCENTRICITY_LIMIT, np.maximum(eps, _SMALLEST))
         attitude = mapped_film(eps, np.array(self.ratio))["attitude"]
         return Place(np.arctanh(eps) * np.array([np.cos(attitude), np.sin(attitude)]))
 
     def solved(self, place: Place, mesh: tuple[int, int], near: SolvedRing | None) -> SolvedRing:
-        """The film at a place, from one nearby if there is one that leads to it."""
+        """Return the film at a place, from one nearby if there is one that leads to it."""
         grooves = self.feed.placed(place.attitude)
         if near is not None:
             with suppress(ArithmeticError):
@@ -201,7 +201,7 @@ class Search:
         return solved_ring(place.eps, self.ratio, grooves, 0.0, *mesh)
 
     def lack(self, place: Place, film: LinearFilm) -> Lack:
-        """What the film there lacks; `film` is in axes of the line of centres."""
+        """Return what the film there lacks; `film` is in axes of the line of centres."""
         step = self._step_to_grooves if self.feed.grooves else self._step_with_line
         missing, displacement = step(place, film)
         share = float(np.hypot(*missing)) / self.load if self.load > 0 else np.inf
@@ -211,7 +211,7 @@ class Search:
         return Lack(share, along / (1 - place.eps**2) * radial + ahead * size / place.eps * turned)
 
     def _step_to_grooves(self, place: Place, film: LinearFilm) -> tuple[Array, Array]:
-        """The force that is missing, and the displacement for it, in axes of the line of centres."""
+        """Return the force that is missing, and the displacement for it, in axes of the line of centres."""
         load = self.load * np.array([np.cos(place.attitude), -np.sin(place.attitude)])
         missing: Array = load - film.force
         return missing, np.asarray(np.linalg.solve(film.K, missing))

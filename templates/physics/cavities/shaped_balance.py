@@ -65,7 +65,7 @@ class Loaded:
     """Whether cavities conserve mass."""
 
     def pockets(self, attitude: float) -> list[Pocket]:
-        """Where oil comes in, if the journal's middle is displaced in a direction."""
+        """Return where oil comes in, if the journal's middle is displaced in a direction."""
         if self.feed.grooves:
             return [Pocket(angle, width, self.feed.pressure) for angle, width in self.feed.grooves]
         if self.bore.is_lobed:
@@ -78,7 +78,7 @@ class Loaded:
         return not self.feed.grooves and not self.bore.is_lobed
 
     def lie(self, e: Array) -> Lie:
-        """The journal displaced by e."""
+        """Return the journal displaced by e."""
         return Lie(e, self.tilt)
 
 
@@ -115,7 +115,7 @@ def _ladders(loaded: Loaded) -> list[tuple[tuple[int, int], ...]]:
 
 
 def _starts(loaded: Loaded) -> Iterator[Array]:
-    """Displacements from which to search."""
+    """Yield the displacements from which to search."""
     eps = float(np.nan_to_num(mapped_eccentricity(np.array(loaded.So), np.array(loaded.ratio)), nan=0.999))
     eps = min(max(eps, SMALLEST), ECCENTRICITY_LIMIT)
     attitude = float(mapped_film(np.array(eps), np.array(loaded.ratio))["attitude"])
@@ -129,7 +129,7 @@ def _starts(loaded: Loaded) -> Iterator[Array]:
 
 
 def _inside(loaded: Loaded, e: Array) -> Array:
-    """The displacement, shortened until the journal is free everywhere."""
+    """Return the displacement, shortened until the journal is free everywhere."""
     for _ in range(60):
         if narrowest(loaded.bore, loaded.lie(e))[0] > 10 * LEAST_GAP:
             return e
@@ -138,7 +138,7 @@ def _inside(loaded: Loaded, e: Array) -> Array:
 
 
 def _refined(loaded: Loaded, e: Array, meshes: tuple[tuple[int, int], ...]) -> Balance:
-    """The balance on the meshes, each begun at that of the coarser one."""
+    """Return the balance on the meshes, each begun at that of the coarser one."""
     films: list[tuple[ShapedFilm, Lie]] = []
     for mesh in meshes:
         film, lie = _agreed(loaded, e, mesh, films[-1][0] if films else None)
@@ -153,7 +153,7 @@ def _refined(loaded: Loaded, e: Array, meshes: tuple[tuple[int, int], ...]) -> B
 def _agreed(
     loaded: Loaded, e: Array, mesh: tuple[int, int], near: ShapedFilm | None
 ) -> tuple[ShapedFilm, Lie]:
-    """The balance on a mesh graded to it, whose line of supply lies opposite it."""
+    """Return the balance on a mesh graded to it, whose line of supply lies opposite it."""
     line = loaded.lie(e).attitude
     for turn in range(_TURNS):
         before = narrowest(loaded.bore, loaded.lie(e))[0]
@@ -193,7 +193,7 @@ def _searched(
 def _nearer(
     loaded: Loaded, film: ShapedFilm, e: Array, step: Array, nodes: Nodes, pockets: list[Pocket]
 ) -> tuple[ShapedFilm, Array]:
-    """The film after a step, which is halved until the force is nearer to the load than before."""
+    """Return the film after a step, which is halved until the force is nearer to the load than before."""
     wanted = np.array([loaded.So, 0.0])
     distance = float(np.hypot(*(wanted - film.force)))
     for _ in range(12):
@@ -210,7 +210,7 @@ def _nearer(
 def _solved(
     loaded: Loaded, e: Array, nodes: Nodes, pockets: list[Pocket], near: ShapedFilm | None
 ) -> ShapedFilm:
-    """The film at a displacement, begun from a near one if there is any."""
+    """Return the film at a displacement, begun from a near one if there is any."""
     start = None if near is None else _carried(near, nodes)
     lie = loaded.lie(e)
     try:
@@ -220,7 +220,7 @@ def _solved(
 
 
 def _carried(film: ShapedFilm, nodes: Nodes) -> tuple[Array, Array]:
-    """Pressure and void of a film at other nodes, linearly along each direction."""
+    """Return the pressure and void of a film at other nodes, linearly along each direction."""
     if film.nodes is nodes:
         return film.solution.P.copy(), film.solution.void.copy()
     own = film.nodes

@@ -62,7 +62,7 @@ class ShapedFilm:
         return self.borne(self.P)
 
     def borne(self, P: Array) -> Array:
-        """The force of a pressure."""
+        """Return the force of a pressure."""
         return np.asarray(directions(self.nodes.phi[:-1]) @ (P * self.nodes.weight).sum(axis=1))
 
     @cached_property
@@ -127,7 +127,7 @@ class ShapedFilm:
         return K, B
 
     def _response(self) -> Callable[[Array], tuple[Array, Array]]:
-        """A function from what nodes lose to the changes of pressure and void that make up for it."""
+        """Return a function from what nodes lose to the changes of pressure and void that make up for it."""
         free = ~self.network.fixed
         full = self.solution.void == 0 if self.conserving else self.solution.P > 0
         kept = free if self.conserving else free & full
@@ -185,7 +185,7 @@ def shaped_film(
 
 
 def ruptured(balances: Network, start: tuple[Array, Array] | None = None) -> Cavitation:
-    """Pressure with rupture after Swift and Stieber, by the active set of `complementarity`.
+    """Return the pressure with rupture after Swift and Stieber, by the active set of `complementarity`.
 
     Raises
     ------

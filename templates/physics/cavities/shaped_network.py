@@ -108,7 +108,7 @@ def shaped_nodes(bore: Bore, lie: Lie, ratio: float, pockets: list[Pocket], n: i
 
 
 def _moved_to(nodes: Array, places: Array) -> Array:
-    """The nodes with the inner one that is nearest to each place moved there; none is moved twice."""
+    """Return the nodes with the inner one that is nearest to each place moved there; none is moved twice."""
     nodes, held = nodes.copy(), np.zeros(nodes.size, bool)
     for place in np.unique(places[(places > nodes[0]) & (places < nodes[-1])]):
         k = 1 + int(np.abs(nodes[1:-1] - place).argmin())
@@ -118,7 +118,7 @@ def _moved_to(nodes: Array, places: Array) -> Array:
 
 
 def gaps(nodes: Nodes, bore: Bore, lie: Lie) -> Gaps:
-    """The gap where the balances need it."""
+    """Return the gap where the balances need it."""
     phi, zeta = nodes.phi[:-1], nodes.zeta
     return Gaps(
         gap(bore, lie, phi, zeta),
@@ -140,25 +140,25 @@ def displaced(nodes: Nodes) -> tuple[Gaps, Gaps]:
 
 
 def pressed(nodes: Nodes, H: Gaps) -> csc_array:
-    """What nodes lose by pressure, per pressure."""
+    """Return what nodes lose by pressure, per pressure."""
     return _conducted(nodes, H.around**3, H.across**3)
 
 
 def sheared(nodes: Nodes, H: Gaps) -> csc_array:
-    """What nodes lose by shear, per fill of the node from which it comes."""
+    """Return what nodes lose by shear, per fill of the node from which it comes."""
     n, m = nodes.shape
     flow = diags_array((6 * H.around * nodes.across).ravel())
     return csc_array(-nodes.steps[0].T @ flow @ eye_array(n * m))
 
 
 def perturbed(nodes: Nodes, H: Gaps, change: Gaps) -> tuple[csc_array, csc_array]:
-    """The derivatives of both in the direction of a change of the gap."""
+    """Return the derivatives of both in the direction of a change of the gap."""
     A = _conducted(nodes, 3 * H.around**2 * change.around, 3 * H.across**2 * change.across)
     return A, sheared(nodes, change)
 
 
 def _conducted(nodes: Nodes, around: Array, across: Array) -> csc_array:
-    """The matrix of conductances made from H³, or from its change, between neighbours."""
+    """Return the matrix of conductances made from H³, or from its change, between neighbours."""
     turn, axial = nodes.steps
     by_turn = around * nodes.across / np.diff(nodes.phi)[:, None]
     by_axis = across * nodes.around[:, None] / np.diff(nodes.zeta) / nodes.ratio**2
@@ -182,5 +182,5 @@ def fed(nodes: Nodes, pockets: list[Pocket]) -> tuple[Array, Mask]:
 
 
 def network(nodes: Nodes, H: Gaps, P_fixed: Array) -> Network:
-    """The balances of flow."""
+    """Return the balances of flow."""
     return Network(pressed(nodes, H), sheared(nodes, H), (P_fixed >= 0).ravel(), P_fixed.ravel())

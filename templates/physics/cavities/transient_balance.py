@@ -29,13 +29,13 @@ class Journal:
         return np.asarray(1 - eps[0] * np.cos(phi) - eps[1] * np.sin(phi))
 
     def load(self, P: Array) -> Array:
-        """What a pressure bears, F psi²/(B D eta Omega), along the axes of the frame, (2,)."""
+        """Return what a pressure bears, F psi²/(B D eta Omega), along the axes of the frame, (2,)."""
         line = P @ dual_widths(self.zeta)[:-1] * np.pi / self.phi.size
         return np.array([np.cos(self.phi), np.sin(self.phi)]) @ line
 
 
 def transient_mesh(ratio: float, around: int, across: int) -> Journal:
-    """A uniform ring of nodes, graded towards the end of a wide bearing."""
+    """Return a uniform ring of nodes, graded towards the end of a wide bearing."""
     zeta, _ = graded_across(min(1.0, 0.3 / ratio), across)
     return Journal(ratio, np.arange(around) * 2 * np.pi / around, zeta)
 
@@ -56,7 +56,7 @@ class Balance:
     """(m,) axial widths of the cells."""
 
     def by_pressure(self, P: Array) -> Array:
-        """A P, (n, m)."""
+        """Return a P, (n, m)."""
         flow = self.round[:, None] * self.width * (P - np.roll(P, -1, axis=0))
         axial = self.across * (P - np.pad(P[:, 1:], ((0, 0), (0, 1))))
         return np.asarray(flow - np.roll(flow, 1, axis=0) + axial - np.pad(axial[:, :-1], ((0, 0), (1, 0))))
@@ -68,7 +68,7 @@ class Balance:
         return np.asarray((flow - np.roll(flow, 1, axis=0) + self.stored[:, None] * fill) * self.width)
 
     def diagonals(self) -> tuple[Array, Array]:
-        """The diagonals of A and T, (n, m)."""
+        """Return the diagonals of A and T, (n, m)."""
         after, ahead = np.maximum(self.carried, 0), np.minimum(self.carried, 0)
         A = (self.round + np.roll(self.round, 1))[:, None] * self.width + self.across
         A[:, 1:] += self.across[:, :-1]
@@ -120,6 +120,6 @@ def balance(journal: Journal, eps: Array, w: float, rate: float) -> Balance:
 
 
 def _ring_order(n: int) -> Index:
-    """Ranks of the rows around so that neighbours are at most two apart: 0, 1, 3, …, 4, 2."""
+    """Return the ranks of the rows around so that neighbours are at most two apart: 0, 1, 3, …, 4, 2."""
     there = np.arange(n)
     return np.where(there <= n // 2, np.maximum(2 * there - 1, 0), 2 * (n - there))

@@ -50,7 +50,7 @@ class State:
 def stepped(
     journal: Journal, start: State, load: Array, w: float, rate: float, before: Array
 ) -> State | None:
-    """Film and journal at the next time, or None where Newton's method does not find them.
+    """Return the film and journal at the next time, or None where Newton's method does not find them.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def _newton(
     journal: Journal, flows: Balance, eps: Array, P: Array, void: Array, stored: Array, feed: int,
     load: Array, motion: tuple[float, float],
 ) -> tuple[Array, Array, Array, float]:  # fmt: skip
-    """Changes of pressure, void and eccentricity, and how far the equations are from being met."""
+    """Return the changes of pressure, void and eccentricity, and how far the equations are from being met."""
     loss = _loss(flows, P, void, stored)
     scale = flows.diagonals()
     pair = np.array([scale[0] * P, scale[1] * void])

@@ -42,7 +42,7 @@ class Burning:
     m: Array
 
     def share(self, theta: Array) -> Array:
-        """The burnt share [1] at crank angles [rad], (…, K)."""
+        """Return the burnt share [1] at crank angles [rad], (…, K)."""
         y = np.clip((theta - _column(self.start)) / _column(self.duration), 0, 1)
         return -np.expm1(-_column(self.a) * y ** (_column(self.m) + 1))
 
@@ -64,7 +64,7 @@ class Closed:
     burning: Burning
 
     def volume(self, theta: Array) -> Array:
-        """Volume [m³] at crank angles [rad], (…, K)."""
+        """Return the volume [m³] at crank angles [rad], (…, K)."""
         return _column(self.dead) + _column(self.swept) * Motion(theta, _column(self.n)).travel
 
     @cached_property
@@ -91,7 +91,7 @@ class Closed:
         return compressed * 2 * a * (m + 1) * u ** (2 * m + 1) * np.exp(-a * y ** (m + 1))
 
     def pressure(self, theta: Array) -> Array:
-        """Pressure [Pa] at crank angles [rad] with closed valves, (…, K)."""
+        """Return the pressure [Pa] at crank angles [rad] with closed valves, (…, K)."""
         b = self.burning
         u = np.sqrt(np.clip((theta - _column(b.start)) / _column(b.duration), 0, 1))
         panel = np.minimum(np.nan_to_num(u * _PANELS).astype(np.intp), _PANELS - 1)
@@ -120,7 +120,7 @@ class Closed:
 
 
 def _hermite(t: Array, ends: list[Array], slopes: list[Array]) -> Array:
-    """The cubic between two values with their slopes, at t from 0 to 1."""
+    """Return the cubic between two values with their slopes, at t from 0 to 1."""
     rest = 1 - t
     value = ends[0] * (1 + 2 * t) * rest**2 + ends[1] * (3 - 2 * t) * t**2
     return value + slopes[0] * t * rest**2 - slopes[1] * rest * t**2
@@ -130,14 +130,14 @@ def closed_cylinder(
     n: Array, swept: Array, epsilon: Array, p_1: Array, closes: Array, opens: Array, gamma: Array,
     burning: Burning,
 ) -> Closed:  # fmt: skip
-    """The cylinder with its compression ratio."""
+    """Return the cylinder with its compression ratio."""
     return Closed(n, swept, swept / (epsilon - 1), p_1, closes, opens, gamma, burning)
 
 
 @on_paper("by quadrature of the first law with closed valves; constant in suction and exhaust")
 @units(None, "rad", "Pa", "Pa", returns="Pa")
 def cycle_pressure(cylinder: Closed, theta: Array, p_s: Array, p_e: Array) -> Array:
-    """The pressure over the whole cycle [Pa], (…, K); from the exhaust's opening linear to 540°."""
+    """Return the pressure over the whole cycle [Pa], (…, K); from the exhaust's opening linear to 540°."""
     closes, opens = _column(cylinder.closes), _column(cylinder.opens)
     inside = np.clip(theta, closes, opens)
     closed = cylinder.pressure(inside)
@@ -150,27 +150,27 @@ def cycle_pressure(cylinder: Closed, theta: Array, p_s: Array, p_e: Array) -> Ar
 
 @units(None, "rad", returns="1")
 def burnt_share(cylinder: Closed, theta: Array) -> Array:
-    """The burnt share over the cycle [1], (…, K); 0 in the next suction."""
+    """Return the burnt share over the cycle [1], (…, K); 0 in the next suction."""
     return cylinder.burning.share(theta)
 
 
 @on_paper("by quadrature over the closed part of the cycle")
 @units(None, returns="J")
 def closed_work(cylinder: Closed) -> Array:
-    """Work of the gas with closed valves [J]."""
+    """Return the work of the gas with closed valves [J]."""
     return np.asarray(cylinder.work())[()]
 
 
 @units(None, returns="J")
 def released_heat(cylinder: Closed) -> Array:
-    """Heat that is burnt until the end of the duration [J]."""
+    """Return the heat that is burnt until the end of the duration [J]."""
     b = cylinder.burning
     return b.heat * -np.expm1(-b.a)
 
 
 @units(None, returns="J")
 def energy_change(cylinder: Closed) -> Array:
-    """Inner energy at the opening less that at the closing [J]: (p₂V₂ − p₁V₁)/(γ − 1)."""
+    """Return the inner energy at the opening less that at the closing [J]: (p₂V₂ − p₁V₁)/(γ − 1)."""
     energy = [
         cylinder.pressure(_column(at)) * cylinder.volume(_column(at))
         for at in (cylinder.closes, cylinder.opens)
@@ -180,19 +180,19 @@ def energy_change(cylinder: Closed) -> Array:
 
 @units("Pa", returns="Pa")
 def peak(p: Array) -> Array:
-    """The largest pressure of the curve [Pa]."""
+    """Return the largest pressure of the curve [Pa]."""
     return np.asarray(p.max(axis=-1))[()]
 
 
 @units("Pa", "rad", returns="rad")
 def peak_angle(p: Array, theta: Array) -> Array:
-    """Where the pressure of the curve is largest [rad]."""
+    """Return where the pressure of the curve is largest [rad]."""
     return np.asarray(theta[np.argmax(p, axis=-1)])[()]
 
 
 @units("1", returns="rad")
 def four_stroke_angles(steps: Array) -> Array:
-    """The angles of a cycle of 720° [rad], (K,), without the last."""
+    """Return the angles of a cycle of 720° [rad], (K,), without the last."""
     return np.linspace(0, 4 * np.pi, round(float(steps)), endpoint=False)
 
 

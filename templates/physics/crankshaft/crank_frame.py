@@ -49,7 +49,7 @@ class Frame:
         self.members: list[tuple[int, int, float, float, float, float, float]] = []
 
     def node(self, across: complex, z: float) -> int:
-        """A new node; its number."""
+        """Add a node and return its number."""
         self.nodes.append((across.real, across.imag, z))
         return len(self.nodes) - 1
 
@@ -66,7 +66,7 @@ class Frame:
         self.members.append((i, j, t * b, b * t**3 / 12, t * b**3 / 12, twist, _SHEAR_FLAT * t * b))
 
     def stiffness(self) -> Array:
-        """The stiffness of all nodes, six unknowns each."""
+        """Return the stiffness of all nodes, six unknowns each."""
         places, size = np.array(self.nodes), 6 * len(self.nodes)
         ends = np.array([member[:2] for member in self.members])
         section = np.array([member[2:] for member in self.members]).T
@@ -79,7 +79,7 @@ class Frame:
 
 
 def _beams(way: Array, E: float, G: float, section: Array) -> Array:
-    """Stiffness of beams along `way`, (B, 3), as (B, 12, 12).
+    """Return the stiffness of beams along `way`, (B, 3), as (B, 12, 12).
 
     `section`, (5, B): area, inertia against bending along the shaft and across, torsion constant, shear area.
     """
@@ -191,7 +191,7 @@ class CrankFrame:
         return Flexibility(moved[:, : mains.shape[1]], moved[:, mains.shape[1] :])
 
     def _shares(self, place: float) -> tuple[tuple[int, float], tuple[int, float]]:
-        """A load at a place on the axis as loads on the two nodes next to it, by the lever."""
+        """Return a load at a place on the axis as loads on the two nodes next to it, by the lever."""
         places = np.array([z for z, _ in self.axis])
         left = int(np.clip(np.searchsorted(places, place) - 1, 0, places.size - 2))
         share = (place - places[left]) / (places[left + 1] - places[left])

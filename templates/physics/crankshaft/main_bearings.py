@@ -38,12 +38,12 @@ def lever_shares(mains: Array, places: Array) -> Array:
 
 
 def determinate_loads(mains: Array, loads: ShaftLoads) -> Vectors:
-    """Force of the frame on the shaft at each main [N], (…, n, K)."""
+    """Return the force of the frame on the shaft at each main [N], (…, n, K)."""
     return -(lever_shares(mains, loads.places) @ loads.forces)
 
 
 def elastic_loads(reactions: Array, loads: ShaftLoads, theta: Array) -> Vectors:
-    """The same on elastic supports, by the matrix `reactions`, (…, 2 n, 2 L), in axes that turn."""
+    """Return the same on elastic supports, by the matrix `reactions`, (…, 2 n, 2 L), in axes that turn."""
     turn = np.exp(1j * theta)
     turned = loads.forces * np.conj(turn)
     pairs = np.stack([turned.real, turned.imag], axis=-2)  # (…, L, 2, K)
@@ -54,7 +54,7 @@ def elastic_loads(reactions: Array, loads: ShaftLoads, theta: Array) -> Vectors:
 
 
 def in_engine_axes(forces: Vectors, banks: Array) -> Vectors:
-    """Forces in the axes of their cylinders, (…, N, K), in those of the engine."""
+    """Return the forces in the axes of their cylinders, (…, N, K), in those of the engine."""
     return np.asarray(forces * np.exp(1j * banks)[..., None])
 
 
@@ -76,37 +76,37 @@ def _without_rounding(part: Array, vectors: Vectors) -> Array:
 
 @units(None, returns="N")
 def along_x(forces: Vectors) -> Array:
-    """The part of forces along x [N]."""
+    """Return the part of forces along x [N]."""
     return _without_rounding(forces.real, forces)
 
 
 @units(None, returns="N")
 def along_y(forces: Vectors) -> Array:
-    """The part of forces along y [N]."""
+    """Return the part of forces along y [N]."""
     return _without_rounding(forces.imag, forces)
 
 
 @units(None, returns="N*m")
 def moment_about_x(couple: Vectors) -> Array:
-    """The moment about x [N m] of forces that give ΣzF: that is −Σz F_y."""
+    """Return the moment about x [N m] of forces that give ΣzF: that is −Σz F_y."""
     return _without_rounding(-couple.imag, couple)
 
 
 @units(None, returns="N*m")
 def moment_about_y(couple: Vectors) -> Array:
-    """The moment about y [N m] of forces that give ΣzF: that is Σz F_x."""
+    """Return the moment about y [N m] of forces that give ΣzF: that is Σz F_x."""
     return _without_rounding(couple.real, couple)
 
 
 @units(None, returns="N")
 def greatest(forces: Vectors) -> Array:
-    """The greatest size over the cycle [N], one for each bearing."""
+    """Return the greatest size over the cycle [N], one for each bearing."""
     return np.asarray(np.abs(forces).max(axis=-1)) if np.ndim(forces) else np.array(np.nan)
 
 
 @units(None, "rad", returns="rad")
 def greatest_at(forces: Vectors, theta: Array) -> Array:
-    """The crank angle at which each load is greatest [rad]."""
+    """Return the crank angle at which each load is greatest [rad]."""
     if not np.ndim(forces):
         return np.array(np.nan)
     size = np.abs(forces)
@@ -116,7 +116,7 @@ def greatest_at(forces: Vectors, theta: Array) -> Array:
 
 @units(None, returns="1")
 def governing(forces: Vectors) -> Array:
-    """The bearing with the greatest load of all, counted from 1; of equal ones the first."""
+    """Return the bearing with the greatest load of all, counted from 1; of equal ones the first."""
     if not np.ndim(forces):
         return np.array(np.nan)
     most = np.abs(forces).max(axis=-1)
@@ -133,7 +133,7 @@ def relative_change(elastic: Vectors, determinate: Vectors) -> Array:
 
 @units(None, None, "m", returns="1")
 def left_over(reactions: Vectors, loads: ShaftLoads, mains: Array) -> Array:
-    """The largest force or moment left over at any angle, over the sum of the sizes; 0 below 1e-12."""
+    """Return the largest force or moment left over at any angle, over the sum of the sizes; 0 below 1e-12."""
     size = np.abs(loads.forces).sum(axis=-2)
     size = np.where(size > 0, size, 1.0)
     force = np.abs(reactions.sum(axis=-2) + loads.forces.sum(axis=-2)) / size

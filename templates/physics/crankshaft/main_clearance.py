@@ -48,7 +48,7 @@ class Supports:
 
 
 def supports_of(mains: Array, stiffness: Array, clearance: Array, x: Array, y: Array) -> Supports:
-    """The supports, one value for each main; rigid where no stiffness is given."""
+    """Return the supports, one value for each main; rigid where no stiffness is given."""
     each = np.zeros(np.size(mains))
     middle: Vectors = np.asarray(x + 1j * y + each, dtype=complex)
     return Supports(np.where(np.isnan(stiffness), np.inf, stiffness) + each, clearance + each, middle)
@@ -86,7 +86,7 @@ class Supported:
 def with_play(
     mains: Array, loads: ShaftLoads, shafts: Sequence[Flexibility], supports: Supports, theta: Array
 ) -> Supported:
-    """Loads of mains with play; each point of the loads has the one shaft, or its own."""
+    """Return the loads of mains with play; each point of the loads has the one shaft, or its own."""
     turn = np.exp(1j * theta)
     shape = loads.forces.shape[:-2]
     points = loads.forces.reshape(-1, *loads.forces.shape[-2:])
@@ -185,7 +185,7 @@ class _Play:
         )
 
     def _slope(self, x: Array, first: Array, free: Array, stiff: Array, small: Array) -> tuple[Array, Array]:
-        """First and second derivatives of the energy by x, (m, K) and (K, m, m)."""
+        """Return the first and second derivatives of the energy by x, (m, K) and (K, m, m)."""
         R = first + self.basis @ x
         sizes = _sizes(R, small)
         pairs = R.reshape(-1, 2, R.shape[-1])
@@ -218,7 +218,7 @@ def play_of_each_main(clearance: Array, x: Array, y: Array, mains: Array) -> Tru
 
 @units(None, None, returns="1")
 def law_residual(forces: Vectors, supported: Supported | None) -> Array:
-    """What of the supports' law is left over the displacements; 0 below 1e-8, none without mains."""
+    """Return what of the supports' law is left over the displacements; 0 below 1e-8, none without mains."""
     if not np.ndim(forces):
         return _NONE
     if supported is None:

@@ -23,7 +23,7 @@ Places = NDArray[np.intp]
 
 
 def throw_places(places: Array, throw: Places) -> Array:
-    """The middle of each throw [m]: midway between the outermost of its cylinders."""
+    """Return the middle of each throw [m]: midway between the outermost of its cylinders."""
     return np.array([_middle(places[throw == t]) for t in range(int(throw.max()) + 1)])
 
 
@@ -32,7 +32,7 @@ def _middle(places: Array) -> float:
 
 
 def throw_of_web(places: Array, named: Array, middles: Array) -> Places:
-    """The throw from 0 of each web: as named from 1, else the nearest."""
+    """Return the throw from 0 of each web: as named from 1, else the nearest."""
     if np.ndim(named):
         return np.clip(np.rint(named).astype(int) - 1, 0, middles.size - 1)
     return np.argmin(np.abs(places[:, None] - middles), axis=1)
@@ -42,7 +42,7 @@ def web_unbalance(
     U: Array, angle: Array, counterweight: Array, its_angle: Array, places: Array, named: Array,
     middles: Array, pins: Array,
 ) -> Vectors:  # fmt: skip
-    """Unbalance of webs with their counterweights [kg m], complex at crank angle 0, (…, W).
+    """Return the unbalance of webs with their counterweights [kg m], complex at crank angle 0, (…, W).
 
     Angles [rad] count from the web's throw, whose pin stands at `pins`, (…, T).
     """
@@ -52,12 +52,12 @@ def web_unbalance(
 
 
 def determinate(mains: Array, loads: ShaftLoads) -> Vectors:
-    """Loads of the mains, determinate; none without mains."""
+    """Return the loads of the mains, determinate; none without mains."""
     return determinate_loads(mains, loads) if np.ndim(mains) else _NONE + 0j
 
 
 def elastic(mains: Array, loads: ShaftLoads, reactions: Array, theta: Array) -> Vectors:
-    """Loads of the mains on elastic supports; none where the crank's sections are not given."""
+    """Return the loads of the mains on elastic supports; none where the crank's sections are not given."""
     return elastic_loads(reactions, loads, theta) if np.ndim(reactions) else _NONE + 0j
 
 
@@ -134,19 +134,19 @@ def change_on_supports(elastic_forces: Vectors, determinate_forces: Vectors) -> 
 
 @units(None, None, "m", returns="1")
 def imbalance(forces: Vectors, loads: ShaftLoads, mains: Array) -> Array:
-    """The largest force or moment that reactions leave over, relative to the loads."""
+    """Return the largest force or moment that reactions leave over, relative to the loads."""
     return left_over(forces, loads, mains) if np.ndim(forces) else _NONE
 
 
 def on_the_shaft(places: Array, pins: Vectors, webs: Array, spinning: Vectors) -> ShaftLoads:
-    """Rods and webs together, broadcast over the points."""
+    """Return the rods and webs together, broadcast over the points."""
     shape = np.broadcast_shapes(pins.shape[:-2], spinning.shape[:-2])
     parts = [np.broadcast_to(one, shape + one.shape[-2:]) for one in (pins, spinning)]
     return ShaftLoads(np.concatenate([places, webs]), np.concatenate(parts, axis=-2))
 
 
 def spun(unbalance: Vectors, omega: Array, theta: Array) -> Vectors:
-    """Forces of unbalances [kg m] that turn with the crank [N], (…, L, K)."""
+    """Return the forces of unbalances [kg m] that turn with the crank [N], (…, L, K)."""
     return np.asarray((unbalance * np.asarray(omega)[..., None] ** 2)[..., None] * np.exp(1j * theta))
 
 
@@ -154,6 +154,6 @@ def sections_of(
     journal: Array, pin: Array, pin_length: Array, thickness: Array, width: Array, E: Array, nu: Array,
     torsion: Array,
 ) -> CrankSections:  # fmt: skip
-    """The sections of a shaft as plain numbers; NaN where they are not given."""
+    """Return the sections of a shaft as plain numbers; NaN where they are not given."""
     sizes = (journal, pin, pin_length, thickness, width, E, nu, torsion)
     return CrankSections(*(float(size) for size in sizes))

@@ -56,7 +56,7 @@ class BoreSoftness(Softness):
     """From the block to the journal's displacement in the sense of rotation [rad]."""
 
     def times(self, share: float) -> BoreSoftness:
-        """A share of it."""
+        """Return a share of it."""
         less = super().times(share)
         return BoreSoftness(
             less.liner, less.ring, less.size, less.scale, less.power, share * self.matrix, self.share,
@@ -124,7 +124,7 @@ class BoreFilm(SoftFilm):
 def bore_balances(So: float, ratio: float, eps: float, softness: BoreSoftness, to_load: float) -> list[
     tuple[Balanced, Balanced]
 ]:  # fmt: skip
-    """The films of a load in a rigid and in a soft bore on each of `MESHES`.
+    """Return the films of a load in a rigid and in a soft bore on each of `MESHES`.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def attitude(film: SoftFilm) -> float:
 
 
 def confirmed(found: Balanced, So: float, to_load: float) -> Balanced:
-    """The film whose attitude is the one at which its bore was turned, from one nearby.
+    """Return the film whose attitude is the one at which its bore was turned, from one nearby.
 
     Raises
     ------
@@ -190,7 +190,7 @@ def confirmed(found: Balanced, So: float, to_load: float) -> Balanced:
 
 
 def _nearer(found: Balanced, So: float, turn: float, step: float) -> Balanced:
-    """The balance after a step of the turn, or after as much of it as settles."""
+    """Return the balance after a step of the turn, or after as much of it as settles."""
     for _ in range(_SHORTER):
         try:
             return _turned(found, So, turn + step)
@@ -200,7 +200,7 @@ def _nearer(found: Balanced, So: float, turn: float, step: float) -> Balanced:
 
 
 def _turned(found: Balanced, So: float, turn: float) -> Balanced:
-    """The balance at another turn, on a mesh graded to its gap."""
+    """Return the balance at another turn, on a mesh graded to its gap."""
     film = replace(found.film, softness=replace(_softness(found), turn=turn))
     film = replace(film, eps=film.eps + float(found.film.H.min() - film.H.min()))
     after = settled(film, found.inside, So, found.graded, found.steps)
@@ -216,5 +216,5 @@ def _softness(found: Balanced) -> BoreSoftness:
 
 
 def _wrapped(angle: float) -> float:
-    """The same angle within half a turn."""
+    """Return the same angle within half a turn."""
     return float((angle + np.pi) % (2 * np.pi) - np.pi)

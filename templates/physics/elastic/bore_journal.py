@@ -73,7 +73,7 @@ class Bore:
 def bore_film_at(
     level: str, So: Array, ratio: Array, elasticity: Elasticity, bore: Bore
 ) -> ElasticJournalFilm:
-    """The film that bears So at one of `ALL_LEVELS`.
+    """Return the film that bears So at one of `ALL_LEVELS`.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def bore_film_at(
 
 
 def _softness(one: Elasticity, matrix: Array, share: float) -> BoreSoftness:
-    """What gives way, dimensionless; without a matrix the half plane is stiff too."""
+    """Return what gives way, dimensionless; without a matrix the half plane is stiff too."""
     per_gap = float(one.pressure / one.clearance)
     tail = per_gap * half_plane(one.inner, one.modulus, one.poisson) * bool(matrix.any())
     return BoreSoftness(
@@ -122,7 +122,7 @@ def _softness(one: Elasticity, matrix: Array, share: float) -> BoreSoftness:
 def _changed(
     So: float, ratio: float, softness: BoreSoftness, to_load: float, stiff: dict[str, float]
 ) -> dict[str, float]:
-    """The rigid film's values changed as on the meshes; eps infinite where no film bears the load."""
+    """Return the rigid film's values changed as on the meshes; eps infinite where no film bears the load."""
     unborne = dict.fromkeys(stiff, np.nan) | {"eps": np.inf}
     if not (np.isfinite(softness.liner + softness.share + to_load) and np.isfinite(softness.ring).all()):
         return unborne
@@ -143,7 +143,7 @@ def _changed(
 
 
 def _change(before: dict[str, float], after: dict[str, float]) -> dict[str, float]:
-    """Logarithms of ratios, differences, and what the soft film alone has."""
+    """Return the logarithms of ratios, differences, and what the soft film alone has."""
     change = {name: float(np.log(after[name] / before[name])) for name in _RATIOS}
     change |= {name: after[name] - before[name] for name in _DIFFERENCES}
     return change | {name: after[name] for name in _OWN}
@@ -211,7 +211,7 @@ def neglected_in_bore(
 
 
 def _bump(p_max: Array, load: Array, radius: Array, width: Array) -> Array:
-    """Harmonics (..., 41) of the mean pressure across, 2/3 of the largest, about its peak [Pa]."""
+    """Return the harmonics (..., 41) of the mean pressure across, 2/3 of the largest, about its peak [Pa]."""
     mean = np.asarray(2 / 3 * p_max)
     with np.errstate(invalid="ignore", divide="ignore"):
         half = np.clip(load / (radius * width * np.where(mean > 0, mean, np.nan)), 1e-6, np.pi)

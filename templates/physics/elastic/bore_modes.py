@@ -39,7 +39,7 @@ Rows = tuple[tuple[float, ...], ...]
 
 
 def modes_around(theta: Array) -> Array:
-    """The modes' factors (..., 19) around the bore, at angles (...) from its block or shank [rad]."""
+    """Return the modes' factors (..., 19) around the bore, at angles (...) from its block or shank [rad]."""
     n = np.arange(1, HIGHEST + 1)
     angle = np.asarray(theta)[..., None] * n
     waves = np.sqrt(2) * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
@@ -106,5 +106,5 @@ def count_modes(rows: Rows) -> Array:
 
 
 def matrix_of(rows: Rows) -> Array:
-    """The rows as a matrix [m/Pa]; zeros where there are none."""
+    """Return the rows as a matrix [m/Pa]; zeros where there are none."""
     return np.array(rows) if len(rows) == len(MODES) else np.zeros((len(MODES), len(MODES)))

@@ -33,7 +33,7 @@ _ENDLESS = 1e-6
 
 @units("m", "Pa", "1", returns="m/Pa", latex=r"\frac{{{0}\,(1+{2})(1-2\,{2})}}{{{1}\,(1-{2})}}")
 def liner_compliance(thickness: Array, modulus: Array, poisson: Array) -> Array:
-    """Shortening of a bonded layer under pressure [m/Pa].
+    """Return the shortening of a bonded layer under pressure [m/Pa].
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def liner_compliance(thickness: Array, modulus: Array, poisson: Array) -> Array:
 
 
 def ring_compliance(inner: Array, outer: Array, modulus: Array, poisson: Array) -> Array:
-    """Widening of a ring's bore under a pressure of 1 Pa cos(n theta), n = 0 … `HARMONICS` [m/Pa].
+    """Return the widening of a ring's bore under a pressure of 1 Pa cos(n theta), n = 0 … `HARMONICS` [m/Pa].
 
     Parameters
     ----------

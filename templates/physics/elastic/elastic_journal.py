@@ -59,7 +59,7 @@ class Elasticity:
     """Radial clearance [m]."""
 
     def numbers(self) -> list[Array]:
-        """All of them."""
+        """Return all of them."""
         return [getattr(self, field.name) for field in fields(self)]
 
 
@@ -87,7 +87,7 @@ class ElasticJournalFilm:
     """Change of the smallest gap between the two meshes, relative; NaN at level rigid."""
 
     def admitted(self, eps: Array) -> "ElasticJournalFilm":
-        """The same with NaN where eps was not admitted."""
+        """Return the same with NaN where eps was not admitted."""
         values = (np.where(np.isnan(eps), np.nan, getattr(self, field.name))[()] for field in fields(self))
         return ElasticJournalFilm(*values)
 
@@ -100,7 +100,7 @@ class ElasticJournalFilm:
     }
 )
 def elastic_film_at(level: str, So: Array, ratio: Array, elasticity: Elasticity) -> ElasticJournalFilm:
-    """The film that bears So at one of `LEVELS`.
+    """Return the film that bears So at one of `LEVELS`.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def elastic_film_at(level: str, So: Array, ratio: Array, elasticity: Elasticity)
 
 
 def _softness(level: str, one: Elasticity) -> Softness:
-    """What gives way at a level, dimensionless."""
+    """Return what gives way at a level, dimensionless."""
     per_gap = float(one.pressure / one.clearance)
     ring = np.zeros(HARMONICS + 1)
     if level == HOUSING:
@@ -153,7 +153,7 @@ def _softness(level: str, one: Elasticity) -> Softness:
 
 
 def _changed(So: float, ratio: float, softness: Softness, stiff: dict[str, float]) -> dict[str, float]:
-    """The rigid film's values changed as on the meshes; eps infinite where no film bears the load."""
+    """Return the rigid film's values changed as on the meshes; eps infinite where no film bears the load."""
     unborne = dict.fromkeys(stiff, np.nan) | {"eps": np.inf}
     if not (np.isfinite(softness.liner) and np.isfinite(softness.ring).all()):
         return unborne
@@ -187,7 +187,7 @@ def _changes(So: float, ratio: float, softness: Softness, eps: float) -> list[di
 
 
 def measured(film: SoftFilm) -> dict[str, float]:
-    """The values of `ElasticJournalFilm` on one mesh, without errors."""
+    """Return the values of `ElasticJournalFilm` on one mesh, without errors."""
     along, ahead = film.force
     attitude = float(np.arctan2(-ahead, along))
     peak, P_max = _peak(film)

@@ -50,7 +50,7 @@ class Balanced:
 
 
 def rigid_balance(So: float, ratio: float, eps: float, around: int, across: int) -> Balanced:
-    """The rigid film of a load on a mesh graded to an eccentricity near its own."""
+    """Return the rigid film of a load on a mesh graded to an eccentricity near its own."""
     mesh = ring_mesh(eps, ratio, around, across)
     stiff = Softness(0.0, np.zeros(1))
     solved = rupture(journal_equations(eps, ratio, mesh))
@@ -59,7 +59,7 @@ def rigid_balance(So: float, ratio: float, eps: float, around: int, across: int)
 
 
 def soft_balance(So: float, softness: Softness, rigid: Balanced) -> Balanced:
-    """The film of a bearing that gives way, from the rigid one of the same load.
+    """Return the film of a bearing that gives way, from the rigid one of the same load.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def soft_balance(So: float, softness: Softness, rigid: Balanced) -> Balanced:
 
 
 def _shared(So: float, softness: Softness, at: Balanced) -> Balanced:
-    """One share, on the mesh there is, and on one graded to the gap that it makes."""
+    """Return one share, on the mesh there is, and on one graded to the gap that it makes."""
     film = replace(at.film, softness=softness, modes=modes(at.film.mesh, softness.ring))
     film = replace(film, eps=_opened(film, at.film))
     found = settled(film, at.inside, So, at.graded, at.steps)
@@ -98,12 +98,12 @@ def _shared(So: float, softness: Softness, at: Balanced) -> Balanced:
 
 
 def _opened(film: SoftFilm, before: SoftFilm) -> float:
-    """The eccentricity at which the least gap of a softer bearing is that of before."""
+    """Return the eccentricity at which the least gap of a softer bearing is that of before."""
     return film.eps + float(film.H.min() - before.H.min())
 
 
 def carried(found: Balanced, So: float, around: int, across: int) -> Balanced:
-    """The balance on a mesh of so many intervals that is graded to its gap."""
+    """Return the balance on a mesh of so many intervals that is graded to its gap."""
     film, own = found.film, found.film.mesh
     least = min(max(float(film.H.min()), 1e-7), 1.0)
     mesh = ring_mesh(1 - least, film.ratio, around, across)
@@ -164,7 +164,7 @@ def _step(film: SoftFilm, inside: Mask, So: float) -> tuple[Array, float]:
 
 
 def _kept(film: SoftFilm, dP: Array, deps: float) -> float:
-    """The share of a step that leaves 30 % of the gap everywhere."""
+    """Return the share of a step that leaves 30 % of the gap everywhere."""
     after = replace(film, P=film.P + dP, eps=film.eps + deps)
     worst = float(((film.H - after.H) / film.H).max())
     return min(1.0, 0.7 / worst) if worst > 0 else 1.0

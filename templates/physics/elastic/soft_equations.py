@@ -46,11 +46,11 @@ class Softness:
     """His exponent Z; 0 leaves the viscosity alone [-]."""
 
     def times(self, share: float) -> "Softness":
-        """A share of it."""
+        """Return a share of it."""
         return Softness(share * self.liner, share * self.ring, self.size, self.scale, share * self.power)
 
     def thickening(self, P: Array) -> tuple[Array, Array]:
-        """Viscosity over that without pressure, and its slope over P."""
+        """Return the viscosity over that without pressure, and its slope over P."""
         if self.power == 0 or self.scale == 0:
             return np.ones_like(P), np.zeros_like(P)
         base = 1 + self.scale * np.maximum(P, 0)
@@ -72,7 +72,7 @@ class Modes:
 
 
 def modes(mesh: Mesh, ring: Array) -> Modes:
-    """The harmonics 0, 2, 3, … of a ring on a mesh; none of a stiff one."""
+    """Return the harmonics 0, 2, 3, … of a ring on a mesh; none of a stiff one."""
     order = np.concatenate([[0], np.arange(2, HARMONICS + 1)]) if np.any(ring > 0) else np.zeros(0, int)
     cos, sin = np.cos(np.outer(mesh.phi, order)), np.sin(np.outer(mesh.phi, order[1:]))
     shapes = np.concatenate([cos, sin], axis=1)
@@ -193,7 +193,7 @@ class SoftFilm:
 
 
 def _gathered(onward: Array, outward: Array) -> Array:
-    """Loss of each node by flows to the next around (n, m + 1, ...) and across (n + 1, m, ...)."""
+    """Return the loss of each node by flows to the next around (n, m + 1, ...) and across (n + 1, m, ...)."""
     loss = np.zeros((outward.shape[0], onward.shape[1], *onward.shape[2:]))
     loss[:-1] += onward
     loss[1:] -= onward

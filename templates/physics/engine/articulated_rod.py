@@ -73,11 +73,11 @@ class ArticulatedCrank(OffsetCrank):
         return self.at(self._dead_centre(highest=False)[..., None]).x[..., 0]
 
     def at(self, alpha: Array) -> ArticulatedMotion:
-        """The motion at crank angles [rad], (…, N, K)."""
+        """Return the motion at crank angles [rad], (…, N, K)."""
         return ArticulatedMotion(self, alpha)
 
     def _dead_centre(self, *, highest: bool) -> Array:
-        """Where the piston is highest or lowest, by Newton's method from the best of samples."""
+        """Return where the piston is highest or lowest, by Newton's method from the best of samples."""
         alpha = np.linspace(-np.pi, np.pi, _SAMPLES, endpoint=False) + np.zeros((self.carrier.size, 1))
         x = self.at(alpha).x
         best = np.argmax(x if highest else -x, axis=-1)
@@ -183,7 +183,7 @@ def carriers(masters: Array, count: int) -> Numbers:
 def with_articulated(
     crank: OffsetCrank, carrier: Numbers, radius: Array, angle: Array, bank: Array
 ) -> OffsetCrank:
-    """The mechanisms with articulated rods; the same where there are none."""
+    """Return the mechanisms with articulated rods; the same where there are none."""
     count = carrier.size
     articulated = carrier != np.arange(count)
     shapes = {np.shape(one) for one in (radius, angle, bank)}
@@ -223,7 +223,7 @@ def walls_with_articulated(walls: Array, motion: RodMotion, rods: Vectors) -> Ar
 
 
 def link_force(at_crank: Array, omega: Array, motion: RodMotion, axial: Array, wall: Array) -> Vectors:
-    """Force of each rod on its own pin in the cylinder's axes [N], complex, (…, N, K)."""
+    """Return the force of each rod on its own pin in the cylinder's axes [N], complex, (…, N, K)."""
     if not isinstance(motion, ArticulatedMotion):
         return pin_force(at_crank, omega, motion, axial, wall)
     return np.asarray(-(at_crank * omega**2)[..., None] * motion.pin2 - axial - 1j * wall)

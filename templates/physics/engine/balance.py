@@ -53,11 +53,11 @@ class Arrangement:
     arm: Array
 
     def rotating(self, arm: Array | float = 1.0) -> Phasor:
-        """Sum of the cranks' directions, each times its arm."""
+        """Return the sum of the cranks' directions, each times its arm."""
         return _sum(arm, self.bank + self.turn)
 
     def reciprocating(self, order: int, arm: Array | float = 1.0) -> Pair:
-        """The harmonic of an order of the pistons, each times its arm."""
+        """Return the harmonic of an order of the pistons, each times its arm."""
         return Pair(
             _sum(np.asarray(arm) / 2, self.bank + order * self.turn),
             _sum(np.asarray(arm) / 2, self.bank - order * self.turn),
@@ -65,7 +65,7 @@ class Arrangement:
 
 
 def _sum(weight: Array | float, angle: Array) -> Phasor:
-    """Sum of weighted directions; exactly none where only rounding is left."""
+    """Return the sum of weighted directions; exactly none where only rounding is left."""
     weight = np.broadcast_to(weight, np.shape(weight * angle))
     total = np.sum(weight * np.exp(1j * angle), axis=-1)
     vanishes = np.abs(total) <= _VANISHES * np.sum(np.abs(weight), axis=-1)
@@ -79,7 +79,7 @@ def crank_turns(order: Array, interval: Array | float) -> Array:
 
 
 def arrangement(strokes: Array, order: Array, bank: Array, places: Array, reference: Array) -> Arrangement:
-    """The cylinders that fire in `order`, at equal intervals, along the axis at `places` [m]."""
+    """Return the cylinders that fire in `order`, at equal intervals, along the axis at `places` [m]."""
     order, places = np.atleast_1d(order), np.atleast_1d(places)
     turn = crank_turns(order, np.pi * strokes / order.shape[-1])
     return Arrangement(turn, np.atleast_1d(bank) + 0 * turn, places - np.asarray(reference)[..., None])
@@ -87,7 +87,7 @@ def arrangement(strokes: Array, order: Array, bank: Array, places: Array, refere
 
 @units("m", returns="m", latex=r"\frac{{\min {0}+\max {0}}}{{2}}")
 def mid_plane(places: Array) -> Array:
-    """The plane midway between the outermost cylinders [m]."""
+    """Return the plane midway between the outermost cylinders [m]."""
     places = np.atleast_1d(places)
     ends = np.min(places, axis=-1), np.max(places, axis=-1)
     return np.asarray((ends[0] + ends[1]) / 2)[()]
@@ -110,13 +110,13 @@ def is_one_each(value: Array, count: Array) -> Truth:
 
 @units("kg", "rad/s", "m", None, returns="N")
 def rotating_force(m_rot: Array, omega: Array, r: Array, row: Arrangement) -> Array:
-    """Size of the force of the rotating masses [N]."""
+    """Return the size of the force of the rotating masses [N]."""
     return np.abs(m_rot * omega**2 * r) * np.abs(row.rotating())
 
 
 @units("kg", "rad/s", "m", None, returns="N*m")
 def rotating_couple(m_rot: Array, omega: Array, r: Array, row: Arrangement) -> Array:
-    """Size of the couple of the rotating masses about the reference plane [N m]."""
+    """Return the size of the couple of the rotating masses about the reference plane [N m]."""
     return np.abs(m_rot * omega**2 * r) * np.abs(row.rotating(row.arm))
 
 
@@ -128,7 +128,7 @@ def reciprocating_force(m: Array, omega: Array, r: Array, n: Array, order: int, 
 
 @units("kg", "rad/s", "m", "1", None, None, returns="N*m")
 def reciprocating_couple(m: Array, omega: Array, r: Array, n: Array, order: int, row: Arrangement) -> Array:
-    """Amplitude of the primary (1) or secondary (2) couple about the reference plane [N m]."""
+    """Return the amplitude of the primary (1) or secondary (2) couple about the reference plane [N m]."""
     return m * omega**2 * r / n ** (order - 1) * row.reciprocating(order, row.arm).amplitude
 
 
@@ -136,7 +136,7 @@ def reciprocating_couple(m: Array, omega: Array, r: Array, n: Array, order: int,
 def residual_force_x(
     m_rot: Array, m_rec: Array, omega: Array, r: Array, n: Array, row: Arrangement, theta: Array
 ) -> Array:
-    """Force of all cylinders on the frame along x [N], (…, K), up to the second harmonic."""
+    """Return the force of all cylinders on the frame along x [N], (…, K), up to the second harmonic."""
     return _residual(m_rot, m_rec, omega, r, n, row, theta).real
 
 
@@ -144,7 +144,7 @@ def residual_force_x(
 def residual_force_y(
     m_rot: Array, m_rec: Array, omega: Array, r: Array, n: Array, row: Arrangement, theta: Array
 ) -> Array:
-    """Force of all cylinders on the frame along y [N], (…, K), up to the second harmonic."""
+    """Return the force of all cylinders on the frame along y [N], (…, K), up to the second harmonic."""
     return _residual(m_rot, m_rec, omega, r, n, row, theta).imag
 
 
@@ -168,7 +168,7 @@ class TwoPlanes:
 
 
 def two_planes(row: Arrangement, reference: Array, x_f: Array, x_d: Array) -> TwoPlanes:
-    """What balances the rotating masses, forces and couples, in the planes at x_f and x_d [m]."""
+    """Return what balances the rotating masses, forces and couples, in the planes at x_f and x_d [m]."""
     place = row.arm + np.asarray(reference)[..., None]
     x_f, x_d = np.asarray(x_f), np.asarray(x_d)
     flywheel = row.rotating(place - x_d[..., None]) / (x_d - x_f)
@@ -178,6 +178,6 @@ def two_planes(row: Arrangement, reference: Array, x_f: Array, x_d: Array) -> Tw
 
 @units("kg", None, returns="rad", latex=r"\operatorname{{arg}}\left({1}\right)")
 def balance_angle(m_rot: Array, phasor: Phasor) -> Array:
-    """Where a balancing mass stands [rad], from 0 to a turn; nowhere (NaN) if it has no size."""
+    """Return where a balancing mass stands [rad], from 0 to a turn; nowhere (NaN) if it has no size."""
     angle = np.angle(m_rot * phasor) % (2 * np.pi)
     return np.where(np.abs(m_rot * phasor) > 0, angle, np.nan)[()]

@@ -29,7 +29,7 @@ def _column(value: Array) -> Array:
 
 @units("kg", "m", "s", returns="kg*m**2", latex=r"{0}\,{1}\left(\frac{{{2}^2 g}}{{4\pi^2}}-{1}\right)")
 def pendulum_inertia(m_3: Array, a_g: Array, tau: Array) -> Array:
-    """Inertia of the rod about its centre of mass [kg m²] from its period about the wristpin [s].
+    """Return the inertia of the rod about its centre of mass [kg m²] from its period about the wristpin [s].
 
     I_3 = m_3 a_g (L − a_g), L = τ² g/(4 π²), a_g from the wristpin. Erratum: the paper's m_3 b (l − L) in the
     correction torque mixes the two pivots.
@@ -39,7 +39,7 @@ def pendulum_inertia(m_3: Array, a_g: Array, tau: Array) -> Array:
 
 @units(None, "kg*m**2", returns="kg*m**2", latex=r"{1}\ \text{{(rigid) or}}\ 0\ \text{{(lumped)}}")
 def excess_at(level: str, excess: Array) -> Array:
-    """The excess [kg m²] that counts at a level: all of it for a rigid rod, none for two masses."""
+    """Return the excess [kg m²] that counts at a level: all of it for a rigid rod, none for two masses."""
     return excess if level == "rigid" else np.zeros(np.shape(excess))[()]
 
 

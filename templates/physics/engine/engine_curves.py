@@ -24,7 +24,7 @@ class Rotors:
     ratio: Array | float = 1.0
 
     def forces(self, omega: Array, theta: Array) -> Vectors:
-        """Their forces [N], (…, L, K)."""
+        """Return their forces [N], (…, L, K)."""
         size = self.unbalance * (np.asarray(omega)[..., None] * self.ratio) ** 2
         ratio = np.asarray(self.ratio + 0 * self.place)[:, None]
         return np.asarray(size[..., None] * np.exp(1j * ratio * theta))
@@ -61,7 +61,7 @@ class Parts:
         return self._sum(reference)
 
     def _sum(self, reference: Array | None) -> Vectors:
-        """The sum over all parts, each times its arm; zero where only rounding is left."""
+        """Return the sum over all parts, each times its arm; zero where only rounding is left."""
         total, size = np.zeros((), complex), np.zeros(())
         for forces, places in ((self.pistons, self.cylinder_places), *self.rotors):
             arm = 1.0 if reference is None else (places - np.asarray(reference)[..., None])[..., None]
@@ -113,7 +113,7 @@ class Area:
 
 
 def areas_of(theta: Array, T: Array) -> list[Area]:
-    """The areas of one torque curve, (K,), linear between its points and periodic; they sum to 0."""
+    """Return the areas of one torque curve, (K,), linear between its points and periodic; they sum to 0."""
     swing, step = T - T.mean(), float(theta[1] - theta[0])
     after = np.roll(swing, -1)
     crossing = np.flatnonzero((swing < 0) != (after < 0))
@@ -148,7 +148,7 @@ def area_curve(theta: Array, T: Array) -> Array:
 
 @units("rad", "N*m", returns="1")
 def areas_in_words(theta: Array, T: Array) -> str | Array:
-    """Every area: `+312.4 J from 12.3 to 104.1 deg; …`."""
+    """Return every area: `+312.4 J from 12.3 to 104.1 deg; …`."""
     flat = T.reshape(-1, T.shape[-1])
     words = [
         "; ".join(
@@ -162,11 +162,11 @@ def areas_in_words(theta: Array, T: Array) -> str | Array:
 
 @units("J", returns="J")
 def swing_of(energy: Array) -> Array:
-    """Largest less smallest running energy [J]."""
+    """Return the largest less smallest running energy [J]."""
     return np.asarray(np.ptp(energy, axis=-1))[()]
 
 
 @units("N*m", returns="N*m")
 def mean_of(T: Array) -> Array:
-    """The mean of a torque over the cycle [N m]."""
+    """Return the mean of a torque over the cycle [N m]."""
     return np.asarray(T.mean(axis=-1))[()]

@@ -27,7 +27,7 @@ class OffsetPolytropic(Polytropic):
     crank: OffsetCrank
 
     def volume(self, angle: Array | float) -> Array:
-        """Volume at an angle for each cylinder, over the swept volume."""
+        """Return the volume at an angle for each cylinder, over the swept volume."""
         turned = np.asarray(angle + self.crank.top)[..., None]
         return self.v_dead + self.crank.travel(turned)[..., 0]
 
@@ -43,7 +43,7 @@ class OffsetPolytropic(Polytropic):
         return self.firing + high
 
     def mean_effective(self) -> Array:
-        """The work of a cycle over the swept volume [Pa], by the trapezoidal rule."""
+        """Return the work of a cycle over the swept volume [Pa], by the trapezoidal rule."""
         angle = np.linspace(0, self.cycle, _FINE + 1)
         travel = self.crank.travel(angle + self.crank.top[..., None])
         p = self.pressure(angle + 0 * travel, travel)
@@ -51,7 +51,7 @@ class OffsetPolytropic(Polytropic):
 
 
 def _for_each(record: Charge | Valves) -> list[Array]:
-    """The numbers of a record with an axis for the cylinders."""
+    """Return the numbers of a record with an axis for the cylinders."""
     return [np.asarray(getattr(record, field.name))[..., None] for field in fields(record)]
 
 
@@ -59,7 +59,7 @@ def engine_gas(
     name: str, strokes: Array, crank: OffsetCrank, charge: Charge, valves: Valves, angle: Array, p: Array,
     p_c: Array,
 ) -> GasCycle:  # fmt: skip
-    """The gas cycle of a name for each cylinder, (…, N); `angle` [rad] and `p` [Pa] are the table.
+    """Return the gas cycle of a name for each cylinder, (…, N); `angle` [rad] and `p` [Pa] are the table.
 
     `p_c` [Pa] is the crankcase's pressure.
     """
@@ -83,7 +83,7 @@ def engine_gas(
 
 @units(None, None, None, "rad", returns="Pa")
 def pressures(gas: GasCycle, layout: Layout, motion: RodMotion, theta: Array) -> Array:
-    """The pressure in each cylinder [Pa], (…, N, K), at crank angles theta [rad], (K,)."""
+    """Return the pressure in each cylinder [Pa], (…, N, K), at crank angles theta [rad], (K,)."""
     zero = 2 * np.pi if layout.strokes == 4 else 0.0
     return gas.pressure(theta - layout.firing[..., None] + zero, motion.crank.travel(motion.alpha))
 

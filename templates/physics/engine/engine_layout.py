@@ -61,7 +61,7 @@ class Layout:
         return self.firing.reshape(-1, self.firing.shape[-1])[0]
 
     def alpha(self, theta: Array) -> Array:
-        """The crank angle of each cylinder's own mechanism [rad], (…, N, K)."""
+        """Return the crank angle of each cylinder's own mechanism [rad], (…, N, K)."""
         return theta + (self.pin - self.bank)[..., None]
 
 
@@ -71,14 +71,14 @@ def listed(value: Array) -> bool:
 
 
 def count_of(*lists: Array) -> int:
-    """The number of cylinders by the lists that are given."""
+    """Return the number of cylinders by the lists that are given."""
     return max((np.shape(one)[-1] for one in lists if listed(one)), default=1)
 
 
 def arranged(
     strokes: Array, order: Array, pins: Array, firing: Array, banks: Array, throws: Array, top: Array
 ) -> Layout:
-    """The layout by the lists that are given; NaN where there is none, which the rules here refuse."""
+    """Return the layout by the lists that are given; NaN where there is none, which the rules here refuse."""
     count = count_of(order, pins, firing)
     cycle, bank, top = float(np.pi * strokes), np.atleast_1d(banks), np.atleast_1d(top)
     none = np.full(count, np.nan)
@@ -211,14 +211,14 @@ def pins_are_shared(layout: Layout, pins_of_a_throw: str) -> Truth:
 
 @units(None, returns="rad")
 def pin_angles(layout: Layout) -> Array:
-    """Where the pin of each cylinder stands from the reference line, from 0° to 360° [rad]."""
+    """Return where the pin of each cylinder stands from the reference line, from 0° to 360° [rad]."""
     around = layout.pin % TURN
     return np.where(TURN - around < _ROUNDING, 0.0, around)
 
 
 @units(None, returns="rad")
 def firing_angles(layout: Layout) -> Array:
-    """Where each cylinder fires, within one cycle [rad]."""
+    """Return where each cylinder fires, within one cycle [rad]."""
     around = layout.firing % layout.cycle
     return np.where(layout.cycle - around < _ROUNDING, 0.0, around)
 
@@ -232,7 +232,7 @@ def firing_intervals(layout: Layout) -> Array:
 
 @units(None, returns="rad")
 def pin_splits(layout: Layout) -> Array:
-    """The largest angle between pins of a throw, (…, T) [rad]."""
+    """Return the largest angle between pins of a throw, (…, T) [rad]."""
     apart = (layout.pin - layout.throw_pin[..., layout.throw] + np.pi) % TURN - np.pi
     apart = np.where(np.abs(apart) < _ROUNDING, 0.0, apart)
     throws = [apart[..., layout.throw == t] for t in range(layout.throws)]
@@ -241,7 +241,7 @@ def pin_splits(layout: Layout) -> Array:
 
 @units(None, returns="1")
 def layout_in_words(layout: Layout) -> str:
-    """The layout in words: `V-8 of 90 deg, four strokes, fires 1-8-4-3-6-5-7-2 every 90 deg`."""
+    """Return the layout in words: `V-8 of 90 deg, four strokes, fires 1-8-4-3-6-5-7-2 every 90 deg`."""
     intervals = np.degrees(firing_intervals(layout).reshape(-1, layout.throw.size)[0])
     even = bool(np.ptp(intervals) < 1e-6)
     steps = f"every {intervals[0]:.6g}" if even else "after " + " ".join(f"{gap:.6g}" for gap in intervals)

@@ -11,12 +11,12 @@ from templates.physics.engine.offset_crank import OffsetCrank, RodMasses, radius
 
 
 def each(value: Array) -> Array:
-    """An input with a last axis for the cylinders, (..., cylinders), in its unit."""
+    """Return an input with a last axis for the cylinders, (..., cylinders), in its unit."""
     return np.atleast_1d(value)
 
 
 def crank_of(stroke: Array, radius: Array, rod: Array, offset: Array) -> OffsetCrank:
-    """The mechanisms, by stroke or crank radius [m], whichever is given."""
+    """Return the mechanisms, by stroke or crank radius [m], whichever is given."""
     s, r, l, e = (each(value) for value in (stroke, radius, rod, offset))  # noqa: E741
     with np.errstate(invalid="ignore"):
         known = np.where(np.isnan(r), radius_of_stroke(s, l, e), r)
@@ -24,7 +24,7 @@ def crank_of(stroke: Array, radius: Array, rod: Array, offset: Array) -> OffsetC
 
 
 def masses_of(mass: Array, centre: Array, inertia: Array, rod: Array) -> RodMasses:
-    """The rods as two masses each."""
+    """Return the rods as two masses each."""
     return rod_masses(each(mass), each(centre), each(inertia), each(rod))
 
 
@@ -72,7 +72,7 @@ def is_manageable(points: tuple[int, ...], steps: Array) -> Truth:
 
 
 def or_none(value: Array) -> Array:
-    """A list that may be missing, as an empty one, in its unit."""
+    """Return a list that may be missing, as an empty one, in its unit."""
     return np.atleast_1d(value) if np.ndim(value) else np.zeros(0)
 
 

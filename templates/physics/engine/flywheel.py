@@ -17,7 +17,7 @@ def cylinder_motion(theta: Array, strokes: Array, count: Array, n: Array) -> Mot
 
 
 def _together(value: Array, theta: Array) -> Array:
-    """The sum over the cylinders, (…, K)."""
+    """Return the sum over the cylinders, (…, K)."""
     return np.asarray(value.reshape(*value.shape[:-1], -1, theta.size).sum(axis=-2))
 
 
@@ -41,7 +41,7 @@ def total_torque(
 
 @units("rad", "N*m", returns="N*m")
 def energy_fluctuation(theta: Array, torque: Array) -> Array:
-    """Largest minus smallest running integral of torque less its mean over the cycle [J]."""
+    """Return the largest minus smallest running integral of torque less its mean over the cycle [J]."""
     swing = torque - torque.mean(axis=-1, keepdims=True)
     step = theta[1] - theta[0]
     energy = np.cumsum(swing + np.roll(swing, -1, axis=-1), axis=-1) * step / 2
@@ -50,12 +50,12 @@ def energy_fluctuation(theta: Array, torque: Array) -> Array:
 
 @units("N*m", "1", "rad/s", returns="kg*m**2", latex=r"\frac{{{0}}}{{{1}\,{2}^2}}")
 def inertia_of_fluctuation(E: Array, delta: Array, omega: Array) -> Array:
-    """Inertia [kg m²] that keeps the speed within delta of itself; NaN at rest."""
+    """Return the inertia [kg m²] that keeps the speed within delta of itself; NaN at rest."""
     moving = np.where(omega == 0, np.nan, omega)
     return (E / (delta * moving**2))[()]
 
 
 @units("kg*m**2", "kg*m**2", returns="kg*m**2", latex=r"\max\left({0},{1}\right)")
 def larger(one: Array, other: Array) -> Array:
-    """The larger of two inertias [kg m²], of which one may be unknown."""
+    """Return the larger of two inertias [kg m²], of which one may be unknown."""
     return np.fmax(one, other)

@@ -136,11 +136,11 @@ class Polytropic(GasCycle):
         return self.firing + angle_of_travel((self.charge.cutoff - 1) * self.v_dead, self.n)
 
     def volume(self, angle: Array | float) -> Array:
-        """Volume at an angle for each point."""
+        """Return the volume at an angle for each point."""
         return self.v_dead + _travel(angle, self.n)
 
     def mean_effective(self) -> Array:
-        """The work of each event in closed form, over the swept volume."""
+        """Return the work of each event in closed form, over the swept volume."""
         c, dead = self.charge, self.v_dead
         end = np.maximum(self.exhaust_opens, self.emptied)
         return (
@@ -170,7 +170,7 @@ def _polytropic_work(p_1: Array, v_1: Array, v_2: Array, exponent: Array) -> Arr
 
 
 def _linear_work(n: Array, begin: Array, end: Array, p_1: Array, p_2: Array) -> Array:
-    """Work while the pressure goes linearly in crank angle from p_1 to p_2; none if at once."""
+    """Return the work while the pressure goes linearly in crank angle from p_1 to p_2; none if at once."""
     angle = end - begin
     slope = (p_2 - p_1) / np.where(angle > 0, angle, 1)
     volumes = travel_integral(end, n) - travel_integral(begin, n)
@@ -206,5 +206,5 @@ def ideal(name: str, charge: Charge) -> Charge:
 
 
 def wrapped(angle: Array) -> Array:
-    """A crank angle [rad] of a four-stroke cycle, as one from −360° to 360°."""
+    """Return a crank angle [rad] of a four-stroke cycle, as one from −360° to 360°."""
     return (angle + 2 * np.pi) % (4 * np.pi) - 2 * np.pi

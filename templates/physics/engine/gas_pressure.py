@@ -73,19 +73,19 @@ class Tabulated(GasCycle):
 @on_paper("read from the gas cycle at each crank angle")
 @units(None, None, returns="Pa")
 def pressure_at(gas: GasCycle, motion: Motion) -> Array:
-    """The pressure in the cylinder [Pa] at the angles of a motion, (…, K)."""
+    """Return the pressure in the cylinder [Pa] at the angles of a motion, (…, K)."""
     return gas.pressure(motion.theta, motion.travel)
 
 
 @units(None, returns="Pa")
 def mean_effective(gas: GasCycle) -> Array:
-    """The indicated mean effective pressure [Pa]: the work of a cycle over the swept volume."""
+    """Return the indicated mean effective pressure [Pa]: the work of a cycle over the swept volume."""
     return np.asarray(gas.mean_effective())[()]
 
 
 @units(None, "Pa", returns="Pa")
 def peak_pressure(name: str, p: Array) -> Array:
-    """The largest pressure over the cycle [Pa]; none (NaN) where there is no gas."""
+    """Return the largest pressure over the cycle [Pa]; none (NaN) where there is no gas."""
     return np.asarray(np.max(p, axis=-1))[()] if name != "none" else np.full(np.shape(p)[:-1], np.nan)[()]
 
 

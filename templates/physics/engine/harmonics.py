@@ -53,7 +53,7 @@ class Harmonics:
 
 
 def _sum(weight: Phasor, angle: Array) -> Phasor:
-    """Sum over the cylinders, (…, H); exactly none where only rounding is left."""
+    """Return the sum over the cylinders, (…, H); exactly none where only rounding is left."""
     total = np.sum(weight * np.exp(1j * angle), axis=-2)
     vanishes = np.abs(total) <= _VANISHES * np.sum(np.abs(weight), axis=-2)
     return np.where(vanishes, 0, total)
@@ -64,7 +64,7 @@ def _with_axis(value: Array) -> Array:
 
 
 def piston_harmonics(crank: OffsetCrank, orders: Array, exact: bool) -> Phasor:
-    """Amplitudes of −x″ [m] at integer orders, (…, N, H), complex: Re Σ c e^{ihα}.
+    """Return the amplitudes of −x″ [m] at integer orders, (…, N, H), complex: Re Σ c e^{ihα}.
 
     The leading terms r (r/l)^(h−1) for orders 1 and 2 of a centred crank, as textbooks take them; else the
     Fourier coefficients of the exact motion.
@@ -82,7 +82,7 @@ def piston_harmonics(crank: OffsetCrank, orders: Array, exact: bool) -> Phasor:
 
 
 def harmonics(layout: Layout, orders: Array, weight: Phasor, arm: Array | float = 1.0) -> Harmonics:
-    """The unbalance at the orders by the pistons' forces `weight`, (…, N, H), each times its arm."""
+    """Return the unbalance at the orders by the pistons' forces `weight`, (…, N, H), each times its arm."""
     h = np.atleast_1d(orders)
     bank, turn = _with_axis(layout.bank), _with_axis(layout.pin - layout.bank)
     half = weight / 2 * _with_axis(np.asarray(arm, dtype=float))
@@ -93,56 +93,56 @@ def harmonics(layout: Layout, orders: Array, weight: Phasor, arm: Array | float 
 
 @units(None, returns="N")
 def forward_force(parts: Harmonics) -> Array:
-    """Size of what turns with the crank [N]."""
+    """Return the size of what turns with the crank [N]."""
     return np.abs(parts.forward)
 
 
 @units(None, returns="N")
 def backward_force(parts: Harmonics) -> Array:
-    """Size of what turns against the crank [N]."""
+    """Return the size of what turns against the crank [N]."""
     return np.abs(parts.backward)
 
 
 @units(None, returns="N*m")
 def forward_couple(parts: Harmonics) -> Array:
-    """Size of the couple that turns with the crank [N m]."""
+    """Return the size of the couple that turns with the crank [N m]."""
     return np.abs(parts.forward)
 
 
 @units(None, returns="N*m")
 def backward_couple(parts: Harmonics) -> Array:
-    """Size of the couple that turns against the crank [N m]."""
+    """Return the size of the couple that turns against the crank [N m]."""
     return np.abs(parts.backward)
 
 
 @units(None, returns="rad")
 def largest_at(parts: Harmonics) -> Array:
-    """The crank angle at which force or couple is largest [rad], from 0 to a half of its period."""
+    """Return the crank angle at which force or couple is largest [rad], from 0 to a half of its period."""
     return parts.largest_at / parts.orders
 
 
 @units(None, returns="rad")
 def largest_towards(parts: Harmonics) -> Array:
-    """Where it points to there [rad], from x in the sense of rotation, from 0 to 2π."""
+    """Return where it points to there [rad], from x in the sense of rotation, from 0 to 2π."""
     angle = np.angle(parts.there) % (2 * np.pi)
     return np.where(2 * np.pi - angle < 1e-9, 0.0, angle)
 
 
 @units(None, returns="N")
 def force_size(phasor: Phasor) -> Array:
-    """Size of a force [N]."""
+    """Return the size of a force [N]."""
     return np.abs(phasor)[()]
 
 
 @units(None, returns="N*m")
 def couple_size(phasor: Phasor) -> Array:
-    """Size of a couple [N m]."""
+    """Return the size of a couple [N m]."""
     return np.abs(phasor)[()]
 
 
 @units(None, returns="rad")
 def direction(phasor: Phasor) -> Array:
-    """Where a vector points to [rad], from 0 to 2π; 0 if it vanishes."""
+    """Return where a vector points to [rad], from 0 to 2π; 0 if it vanishes."""
     angle = np.angle(phasor) % (2 * np.pi)
     return np.where(2 * np.pi - angle < 1e-9, 0.0, angle)[()]
 

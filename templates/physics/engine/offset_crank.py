@@ -54,11 +54,11 @@ class OffsetCrank:
         return self.highest - self.lowest
 
     def at(self, alpha: Array) -> RodMotion:
-        """The motion at crank angles [rad], (…, N, K)."""
+        """Return the motion at crank angles [rad], (…, N, K)."""
         return RodMotion(self, alpha)
 
     def travel(self, alpha: Array) -> Array:
-        """Way of the piston from its highest place, over the stroke, at crank angles (…, N, K)."""
+        """Return the way of the piston from its highest place, over the stroke, at crank angles (…, N, K)."""
         return (self.highest[..., None] - self.at(alpha).x) / self.stroke[..., None]
 
 
@@ -141,7 +141,7 @@ class RodMasses:
 
 @units("m", "m", "m", returns="m", latex=r"\frac{{{0}}}{{2}}\sqrt{{1-\frac{{4 {2}^2}}{{4 {1}^2-{0}^2}}}}")
 def radius_of_stroke(stroke: Array, rod: Array, offset: Array) -> Array:
-    """The crank radius [m] that gives a stroke, whose axis passes at `offset` from the crankshaft."""
+    """Return the crank radius [m] that gives a stroke, whose axis passes at `offset` from the crankshaft."""
     return stroke / 2 * np.sqrt(1 - 4 * offset**2 / (4 * rod**2 - stroke**2))
 
 
@@ -159,7 +159,7 @@ def _at_all_cylinders(holds: NDArray[np.bool_]) -> Truth:
 
 
 def rod_masses(mass: Array, centre: Array, inertia: Array, rod: Array) -> RodMasses:
-    """The rod as two masses; `centre` from the big end [m]; without its inertia there is no excess."""
+    """Return the rod as two masses; `centre` from the big end [m]; without its inertia there is no excess."""
     excess = mass * centre * (rod - centre) - inertia
     return RodMasses(
         mass * (rod - centre) / rod, mass * centre / rod, np.where(np.isnan(excess), 0.0, excess)
@@ -172,7 +172,7 @@ def axial_force(reciprocating: Array, omega: Array, motion: RodMotion, gas: Arra
 
 
 def wall_force(axial: Array, excess: Array, omega: Array, motion: RodMotion) -> Array:
-    """Force of the piston on the wall along y [N]; the rigid rod's share is −ΔI φ̈/(l cos φ)."""
+    """Return the force of the piston on the wall along y [N]; the rigid rod's share is −ΔI φ̈/(l cos φ)."""
     arm = motion.crank.l[..., None] * motion.cos_phi
     return -axial * motion.tan_phi - (excess * omega**2)[..., None] * motion.phi2 / arm
 
@@ -180,12 +180,12 @@ def wall_force(axial: Array, excess: Array, omega: Array, motion: RodMotion) -> 
 def pin_force(
     at_crank: Array, omega: Array, motion: RodMotion, axial: Array, wall: Array
 ) -> NDArray[np.complex128]:
-    """Force of the rod on the crankpin in the cylinder's axes [N], complex, (…, N, K)."""
+    """Return the force of the rod on the crankpin in the cylinder's axes [N], complex, (…, N, K)."""
     turning = (at_crank * omega**2 * motion.crank.r)[..., None]
     return (turning * motion.cos - axial) + 1j * (turning * motion.sin - wall)
 
 
 @units("rad/s", None, returns="rad/s")
 def rod_speed(omega: Array, motion: RodMotion) -> Array:
-    """Speed at which each rod turns [rad/s], (…, N, K)."""
+    """Return the speed at which each rod turns [rad/s], (…, N, K)."""
     return -np.asarray(omega)[..., None, None] * motion.phi1

@@ -85,7 +85,7 @@ def _exact(value: Array) -> Array:
 
 
 def piston_acceleration_Rao_Singh_1993(sin: Array, cos: Array, q: Array, n: Array) -> Array:
-    """Acceleration of the piston over omega² r [1], positive to the head; exact.
+    """Return the acceleration of the piston over omega² r [1], positive to the head; exact.
 
     a = −[cos θ + ((n² − 1) cos 2θ + cos⁴ θ) / (n³ (1 − sin² θ/n²)^1.5)], where n³ (…)^1.5 = q³.
     """
@@ -94,7 +94,7 @@ def piston_acceleration_Rao_Singh_1993(sin: Array, cos: Array, q: Array, n: Arra
 
 
 def crank_motion(theta: Array, n: Array) -> Motion:
-    """The motion at crank angles theta [rad], (…, K), for each ratio n [1], (…)."""
+    """Return the motion at crank angles theta [rad], (…, K), for each ratio n [1], (…)."""
     return Motion(np.asarray(theta, float), np.asarray(n, float)[..., None])
 
 
@@ -104,18 +104,18 @@ def travel_integral(theta: Array, n: Array) -> Array:
 
 
 def angle_of_travel(travel: Array, n: Array) -> Array:
-    """The crank angle in [0, π] [rad] at which the piston has travelled so much of its stroke."""
+    """Return the crank angle in [0, π] [rad] at which the piston has travelled so much of its stroke."""
     share = travel * (n - travel) / (1 + n - 2 * travel)
     return 2 * np.arcsin(np.sqrt(np.clip(share, 0, 1)))
 
 
 @units("1", "rad", returns="rad")
 def crank_angles(strokes: Array, step: Array) -> Array:
-    """The angles of one cycle [rad] of 2 or 4 strokes, (K,); the last point is not repeated."""
+    """Return the angles of one cycle [rad] of 2 or 4 strokes, (K,); the last point is not repeated."""
     return np.arange(round(float(np.pi * strokes / step))) * step
 
 
 @units("1", "rad", returns="1")
 def steps_in(strokes: Array, step: Array) -> Array:
-    """Number of steps of a cycle of 2 or 4 strokes."""
+    """Return the number of steps of a cycle of 2 or 4 strokes."""
     return np.pi * strokes / step

@@ -30,7 +30,7 @@ class Cycles:
 
 
 def from_the_highest(history: Array) -> Array:
-    """One turn of a periodic history, from its highest point to that point again, in its unit."""
+    """Return one turn of a periodic history, from its highest point to that point again, in its unit."""
     turned = np.roll(history, -int(np.argmax(history)))
     return np.append(turned, turned[0])
 
@@ -47,7 +47,7 @@ def counted(history: Array) -> list[tuple[float, float, float]]:
 
 
 def by_rainflow(histories: Array) -> Cycles:
-    """The cycles of histories [..., angle] [Pa]."""
+    """Return the cycles of histories [..., angle] [Pa]."""
     flat = histories.reshape(-1, histories.shape[-1])
     rows = [counted(row) for row in flat]
     table = np.zeros((len(rows), max(1, *(len(row) for row in rows)), 3))
@@ -59,7 +59,7 @@ def by_rainflow(histories: Array) -> Cycles:
 
 
 def by_extremes(histories: Array) -> Cycles:
-    """One cycle for each history [..., angle] [Pa], between its extremes: constant amplitude."""
+    """Return one cycle for each history [..., angle] [Pa], between its extremes: constant amplitude."""
     high, low = histories.max(axis=-1), histories.min(axis=-1)
     amplitude = ((high - low) / 2)[..., None]
     return Cycles(amplitude, ((high + low) / 2)[..., None], np.where(amplitude > 0, 1.0, 0.0))

@@ -41,7 +41,7 @@ def factor_at_bore(K: Array) -> Array:
     r"+\frac{{196}}{{{1}}}\sqrt{{\frac{{1}}{{{3}}}}}\right)",
 )  # fmt: skip
 def fatigue_strength_IACS_M53(K: Array, ultimate: Array, diameter: Array, radius: Array) -> Array:
-    """The alternating von Mises stress [Pa] that a crankshaft bears permanently.
+    """Return the alternating von Mises stress [Pa] that a crankshaft bears permanently.
 
     The ultimate strength [Pa] counts in MPa, the diameter of pin or journal [m] and the radius of the fillet,
     or half the diameter of the oil bore, [m] in mm.

@@ -56,12 +56,12 @@ def _normal_that_counts(plane: CriticalPlane, credit: str) -> Array:
 
 
 def _to_points(value: Array) -> Array:
-    """A number for each point of the inputs, to go with [..., point]."""
+    """Return a number for each point of the inputs, to go with [..., point]."""
     return np.asarray(value)[..., None]
 
 
 def _to_cycles(value: Array) -> Array:
-    """A number for each point of the inputs, to go with [..., point, cycle]."""
+    """Return a number for each point of the inputs, to go with [..., point, cycle]."""
     return np.asarray(value)[..., None, None]
 
 
@@ -73,13 +73,13 @@ def one_tensor_leads(criterion: str, history: Array) -> Truth:
 
 @units(None, returns="1")
 def shares_of_leading_tensors(history: Array) -> Array:
-    """What one tensor carries of the squares of the stress of each point [1]."""
+    """Return what one tensor carries of the squares of the stress of each point [1]."""
     return leading_tensor(history)[1]
 
 
 @units(None, returns="Pa")
 def greatest_von_mises(history: Array) -> Array:
-    """The greatest von Mises stress of each point [Pa]."""
+    """Return the greatest von Mises stress of each point [Pa]."""
     return np.max(von_mises_1913(history), axis=-1)
 
 
@@ -96,7 +96,7 @@ def reversed_amplitudes(
     counted: Counted, support: Array, correction: str, credit: str, ultimate: Array, coefficient: Array,
     k: Array, compression: Array,
 ) -> Array:  # fmt: skip
-    """The reversed uniaxial amplitudes [..., point, cycle] [Pa] that do the same damage as each cycle.
+    """Return the reversed uniaxial amplitudes [..., point, cycle] [Pa] that do the same damage as each cycle.
 
     0 where there is none; infinite where a mean reaches the strength that bounds it.
     """
@@ -114,7 +114,7 @@ def reversed_amplitudes(
 
 
 def mean_shares(correction: str, credit: str, mean: Array, ultimate: Array, coefficient: Array) -> Array:
-    """What means [..., point, cycle] [Pa] take from the amplitude that is borne [1].
+    """Return what means [..., point, cycle] [Pa] take from the amplitude that is borne [1].
 
     A compressive mean takes nothing, and gives nothing unless there is `credit` for it.
     """
@@ -126,7 +126,7 @@ def mean_shares(correction: str, credit: str, mean: Array, ultimate: Array, coef
 
 @units(None, returns="Pa")
 def largest_amplitudes(equivalent: Array) -> Array:
-    """The largest reversed amplitude of each point [Pa]."""
+    """Return the largest reversed amplitude of each point [Pa]."""
     return np.max(equivalent, axis=-1)
 
 
@@ -186,7 +186,7 @@ def governing_point(damage: Array, uses: Array) -> Array:
 
 @units(None, returns="1")
 def largest(values: Array) -> Array:
-    """The largest of the values of all points [1]."""
+    """Return the largest of the values of all points [1]."""
     return np.max(values, axis=-1)[()]
 
 

@@ -39,7 +39,7 @@ FIRST, KNEE = 1e3, 1e6
 
 @units("Pa", returns="Pa", latex=r"\min\left(\tfrac12\,{0},700\,\mathrm{{MPa}}\right)")
 def specimen_limit(ultimate: Array) -> Array:
-    """The endurance limit [Pa] of a rotating, polished specimen of this ultimate strength [Pa]."""
+    """Return the endurance limit [Pa] of a rotating, polished specimen of this ultimate strength [Pa]."""
     return 0.5 * np.minimum(ultimate, _HIGHEST)
 
 
@@ -72,7 +72,7 @@ def reliability_factor(reliability: Array) -> Array:
 
 @units("Pa", returns="Pa", latex=r"{0}+345\,\mathrm{{MPa}}")
 def strength_coefficient(ultimate: Array) -> Array:
-    """The fatigue strength coefficient [Pa] of steel up to 500 HB, of its ultimate strength [Pa]."""
+    """Return the fatigue strength coefficient [Pa] of steel up to 500 HB, of its ultimate strength [Pa]."""
     return ultimate + _ADDED
 
 
@@ -113,7 +113,7 @@ def notch_support(K_t: Array, q: Array) -> Array:
 
 @units("Pa", "Pa", "1", returns="1", latex=r"\frac{{\lg\left({1}/{0}\right)}}{{\lg {2}-3}}")
 def slope_of_line(at_1000: Array, endurance: Array, knee: Array) -> Array:
-    """The exponent b [1] of the line from 1000 cycles to the endurance limit at the knee."""
+    """Return the exponent b [1] of the line from 1000 cycles to the endurance limit at the knee."""
     return np.log(endurance / at_1000) / np.log(knee / FIRST)
 
 

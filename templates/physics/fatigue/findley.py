@@ -50,13 +50,13 @@ class CriticalPlane:
 
 @units("1", returns="1", latex=r"\frac{{x}}{{\sqrt{{1-x^{{2}}}}}},\ x=\frac{{2}}{{{0}}}-1")
 def findley_coefficient(ratio: Array) -> Array:
-    """Factor k [1] of f/t, endurance limits in bending and in torsion: f/t = 2/(1+k/√(1+k²))."""
+    """Return the factor k [1] of f/t, endurance limits in bending and in torsion: f/t = 2/(1+k/√(1+k²))."""
     x = 2 / ratio - 1
     return x / np.sqrt(1 - x**2)
 
 
 def uniaxial_equivalent(parameter: Array, k: Array) -> Array:
-    """The reversed uniaxial amplitude [Pa] of the same tau_a + k sigma_n,max [Pa]."""
+    """Return the reversed uniaxial amplitude [Pa] of the same tau_a + k sigma_n,max [Pa]."""
     return 2 * parameter / (k + np.sqrt(1 + k**2))
 
 
@@ -87,7 +87,7 @@ def critical_planes(tensors: Array, k: float, *, credit: bool) -> CriticalPlane:
 
 @lru_cache(1)
 def _hemisphere() -> Array:
-    """Directions spread evenly over half a sphere, on a spiral (Fibonacci's lattice)."""
+    """Return the directions spread evenly over half a sphere, on a spiral (Fibonacci's lattice)."""
     number = np.arange(_PLANES) + 0.5
     z = number / _PLANES
     angle = np.pi * (1 + np.sqrt(5)) * number
@@ -96,7 +96,7 @@ def _hemisphere() -> Array:
 
 
 def _planes_of(tensors: Array, k: float, credit: bool) -> Array:
-    """The normals [history, 3] of the planes with the largest parameter."""
+    """Return the normals [history, 3] of the planes with the largest parameter."""
     everywhere = _hemisphere()
     values = _parameters(tensors, np.broadcast_to(everywhere, (len(tensors), *everywhere.shape)), k, credit)
     rows = np.arange(len(tensors))
@@ -121,7 +121,7 @@ def _planes_of(tensors: Array, k: float, credit: bool) -> Array:
 
 
 def _around(places: Array, step: float, turn: float) -> Array:
-    """Directions at a small angle about others [..., 3]: [..., neighbour, 3]."""
+    """Return the directions at a small angle about others [..., 3]: [..., neighbour, 3]."""
     u, v = _in_plane(places)
     angles = turn + 2 * np.pi * np.arange(_NEIGHBOURS) / _NEIGHBOURS
     aside = u[..., None, :] * np.cos(angles)[:, None] + v[..., None, :] * np.sin(angles)[:, None]
@@ -129,7 +129,7 @@ def _around(places: Array, step: float, turn: float) -> Array:
 
 
 def _in_plane(normals: Array) -> tuple[Array, Array]:
-    """Two directions at right angles within planes."""
+    """Return two directions at right angles within planes."""
     steep = np.abs(normals[..., 2:]) < 0.9
     helper = np.where(steep, np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0]))
     u = np.cross(helper, normals)
@@ -146,7 +146,7 @@ def _acting(tensors: Array, normals: Array) -> tuple[Array, Array]:
 
 
 def _weights(n: Array, m: Array) -> Array:
-    """What the six components of a tensor contribute to the stress n·sigma·m."""
+    """Return what the six components of a tensor contribute to the stress n·sigma·m."""
     x, y, z = 0, 1, 2
     pairs = ((x, y), (y, z), (x, z))
     straight = [n[..., i] * m[..., i] for i in (x, y, z)]
@@ -162,7 +162,7 @@ def _parameters(tensors: Array, normals: Array, k: float, credit: bool) -> Array
 
 
 def _longest_way(shear: Array, amplitude: Array) -> Array:
-    """The shear [history, angle] along the line of its largest range, with the given amplitude."""
+    """Return the shear [history, angle] along the line of its largest range, with the given amplitude."""
     lines = np.exp(-1j * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS)
     along = (shear[:, None, :] * lines[:, None]).real
     ranges = along.max(axis=-1) - along.min(axis=-1)

@@ -29,7 +29,7 @@ _TRIPLES = tuple(combinations(range(4), 3))
 
 
 def radii_of_smallest_circles(x: Array, y: Array) -> Array:
-    """The radii [...] of the smallest circles about the points x, y [..., point] of plane paths."""
+    """Return the radii [...] of the smallest circles about the points x, y [..., point] of plane paths."""
     flat = (x + 1j * y).reshape(-1, x.shape[-1])
     return np.asarray(_radii(flat).reshape(x.shape[:-1]))
 
@@ -55,7 +55,7 @@ def _radii(paths: Complex) -> Array:
 
 
 def _far(paths: Complex, centres: Complex) -> Array:
-    """The squares of distances."""
+    """Return the squares of distances."""
     away = paths - centres[:, None]
     return np.asarray(away.real**2 + away.imag**2)
 
@@ -83,7 +83,7 @@ def _about_four(points: Complex) -> tuple[Complex, Array, Complex]:
 
 
 def _circumscribed(a: Complex, b: Complex, c: Complex) -> tuple[Complex, Array]:
-    """The circles through three points [n]; infinite where they lie on a line."""
+    """Return the circles through three points [n]; infinite where they lie on a line."""
     p, q = b - a, c - a
     twice = 2 * (p.conj() * q).imag
     flat = twice == 0

@@ -90,13 +90,13 @@ def superposed(loads: Sequence[Array], stresses: Sequence[Rows]) -> Array:
 
 
 def as_matrices(tensors: Array) -> Array:
-    """Tensors [..., 6] as symmetric matrices [..., 3, 3]."""
+    """Return the tensors [..., 6] as symmetric matrices [..., 3, 3]."""
     xx, yy, zz, xy, yz, xz = np.moveaxis(tensors, -1, 0)
     return np.stack([np.stack(row, -1) for row in ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))], -2)
 
 
 def von_mises_1913(tensors: Array) -> Array:
-    """The equivalent stress [Pa] of tensors [..., 6]."""
+    """Return the equivalent stress [Pa] of tensors [..., 6]."""
     xx, yy, zz, xy, yz, xz = np.moveaxis(tensors, -1, 0)
     apart = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
     return np.sqrt(apart / 2 + 3 * (xy**2 + yz**2 + xz**2))

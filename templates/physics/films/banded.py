@@ -124,7 +124,7 @@ class Resumed:
 
 @cache
 def _lower(size: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Rows and columns of the lower triangle of a matrix."""
+    """Return the rows and columns of the lower triangle of a matrix."""
     row, column = np.tril_indices(size)
     return row, column
 
@@ -160,7 +160,7 @@ def _couple_ring(diagonals: Array, order: NDArray[np.intp], around: Array) -> No
 
 
 def _ring_order(n: int) -> NDArray[np.intp]:
-    """Rows 0, 1, n − 1, 2, n − 2 …: neighbours on the ring are at most two apart."""
+    """Return the rows 0, 1, n − 1, 2, n − 2 …: neighbours on the ring are at most two apart."""
     order = np.zeros(n, np.intp)
     order[1::2] = np.arange(1, n // 2 + 1)
     order[2::2] = np.arange(n - 1, n // 2, -1)

@@ -55,7 +55,7 @@ class Equations:
         return np.asarray(self.source[:, None] * dual_widths(self.zeta))
 
     def residual(self, P: Array) -> Array:
-        """A P − b: what a node loses by pressure less what it gains by motion, (n + 1, m + 1)."""
+        """Return a P − b: what a node loses by pressure less what it gains by motion, (n + 1, m + 1)."""
         flow = P[1:] - P[:-1]
         flow *= self.conductance_around
         axial = P[:, 1:] - P[:, :-1]
@@ -68,7 +68,7 @@ class Equations:
         return self._closed(excess)
 
     def diagonal(self) -> Array:
-        """The diagonal of A, (n + 1, m + 1)."""
+        """Return the diagonal of A, (n + 1, m + 1)."""
         total = np.zeros((self.across.size, self.zeta.size))
         total[:-1] += self.conductance_around
         total[1:] += self.conductance_around
@@ -85,7 +85,7 @@ class Equations:
 
 
 def film_equations(mesh: Mesh, ratio: float, H: Array, H_mid: Array, source: Array) -> Equations:
-    """Balances of flow for a gap that is given at the nodes and between them.
+    """Return the balances of flow for a gap that is given at the nodes and between them.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def film_equations(mesh: Mesh, ratio: float, H: Array, H_mid: Array, source: Arr
 def perturbed_equations(
     mesh: Mesh, ratio: float, H: Array, H_mid: Array, change: Array, change_mid: Array
 ) -> Equations:
-    """The derivative of `film_equations` for a change of the gap, in the direction of that change."""
+    """Return the derivative of `film_equations` for a change of the gap, in the direction of that change."""
     return Equations(
         around=3 * H_mid**2 * change_mid / np.diff(mesh.phi),
         across=3 * H**2 * change * dual_widths(mesh.phi) / ratio**2,
@@ -121,7 +121,7 @@ def perturbed_equations(
 
 
 def rotation(H_mid: Array) -> Array:
-    """Oil that shear flow brings to each node, −6 dH over its cell [-]; a constant in H_mid cancels.
+    """Return oil that shear flow brings to each node, −6 dH over its cell [-]; a constant in H_mid cancels.
 
     At the ends of the mesh it is the flow onward, or that from before.
     """
@@ -130,10 +130,10 @@ def rotation(H_mid: Array) -> Array:
 
 
 def squeeze(mesh: Mesh, H_rate: Array) -> Array:
-    """Oil that a falling gap brings to each node, −12 dH/d(omega_h t) over its cell [-]."""
+    """Return oil that a falling gap brings to each node, −12 dH/d(omega_h t) over its cell [-]."""
     return -12 * H_rate * dual_widths(mesh.phi)
 
 
 def midpoints(nodes: Array) -> Array:
-    """Places midway between the nodes, in their unit."""
+    """Return the places midway between the nodes, in their unit."""
     return (nodes[:-1] + nodes[1:]) / 2

@@ -33,7 +33,7 @@ def _require_width(eps: Array, ratio: Array) -> None:
 
 
 def load_ISO_7902(eps: Array, ratio: Array) -> Array:
-    r"""Sommerfeld number So = F psi²/(B D eta omega) by the standard's fit [-].
+    r"""Return the Sommerfeld number So = F psi²/(B D eta omega) by the standard's fit [-].
 
     .. math:: So = So_{Ocvirk}(\epsilon, b) \cdot a_1(b) \frac{\epsilon - 1}{a_2(b) + \epsilon}
 
@@ -63,7 +63,7 @@ def load_ISO_7902(eps: Array, ratio: Array) -> Array:
 
 
 def attitude_ISO_7902(eps: Array, ratio: Array) -> Array:
-    r"""Angle between load and narrowest gap by the standard's fit [rad].
+    r"""Return the angle between load and narrowest gap by the standard's fit [rad].
 
     .. math:: \beta = \arctan\frac{\pi\sqrt{1-\epsilon^2}}{2\epsilon}
         \sum_{k=0}^4 (c_{k0} + c_{k1} b)\,\epsilon^k

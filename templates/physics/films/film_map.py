@@ -59,7 +59,7 @@ def film_map() -> FilmMap:
 
 
 def mapped_load(eps: Array, ratio: Array) -> Array:
-    """Sommerfeld number So = F psi²/(B D eta omega_h) [-].
+    """Return the Sommerfeld number So = F psi²/(B D eta omega_h) [-].
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def mapped_coefficients(eps: Array, ratio: Array) -> tuple[Array, Array]:
 
 
 def map_error(eps: Array, ratio: Array) -> Array:
-    """Largest relative error [-] measured about a point between the map and new, finer solutions.
+    """Return the largest relative error [-] measured about a point between the map and new, finer solutions.
 
     Returns
     -------
@@ -141,7 +141,7 @@ def map_error(eps: Array, ratio: Array) -> Array:
 
 
 def encode(eps: float, ratio: float, film: Film) -> Array:
-    """The smooth values that are interpolated, (8,), of a film at eps > 0."""
+    """Return the smooth values that are interpolated, (8,), of a film at eps > 0."""
     s = np.sqrt((1 - eps) * (1 + eps))
     peak, rupture = np.tan(sommerfeld_angle(np.array([film.peak, film.rupture]), eps) / 2)
     shear = film.friction_streamers - (film.friction - film.friction_bearing) / 2
@@ -158,7 +158,7 @@ def encode(eps: float, ratio: float, film: Film) -> Array:
 
 
 def decode(eps: Array, ratio: Array, values: Array) -> dict[str, Array]:
-    """The film's measures by name, from what `encode` gives, (8, ...); half is tan(attitude/2)."""
+    """Return the film's measures by name, from what `encode` gives, (8, ...); half is tan(attitude/2)."""
     s2 = (1 - eps) * (1 + eps)
     s, thin = np.sqrt(s2), np.sqrt((1 - eps) / (1 + eps))
     load, half, P_max, peak, side, supply, streamers = np.exp(values[:7])
@@ -201,7 +201,7 @@ def require_mapped(eps: Array, ratio: Array) -> None:
 
 
 def _place(eps: Array, ratio: Array) -> tuple[Array, Array]:
-    """Coordinates of the map."""
+    """Return the coordinates of the map."""
     return np.arctanh(eps), np.log(ratio)
 
 

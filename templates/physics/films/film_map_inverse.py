@@ -18,7 +18,7 @@ _LOWEST = 1e-20
 
 
 def mapped_eccentricity(So: Array, ratio: Array) -> Array:
-    """Relative eccentricity eps that bears So: the inverse of `film_map.mapped_load` [-].
+    """Return the relative eccentricity eps that bears So: the inverse of `film_map.mapped_load` [-].
 
     Parameters
     ----------

@@ -82,7 +82,7 @@ def measure(field: Field) -> Film:
 
 
 def rupture_angle(field: Field) -> Array:
-    """Where the film ends, (m + 1,), from the last two pressures, which fall with the square [rad]."""
+    """Return where the film ends, (m + 1,), from the last two pressures, which fall with the square [rad]."""
     phi, P = field.mesh.phi, np.sqrt(np.maximum(field.rupture.P[:, :-1], 0))
     last = np.maximum(P.shape[0] - 1 - (P[::-1] > 0).argmax(axis=0), 1)
     column = np.arange(P.shape[1])
@@ -94,7 +94,7 @@ def rupture_angle(field: Field) -> Array:
 
 
 def _peak(phi: Array, P: Array) -> tuple[float, float]:
-    """Place and height of the largest pressure, by a parabola through the three nodes about it."""
+    """Return the place and height of the largest pressure, by a parabola through the three nodes about it."""
     k = min(max(int(P.argmax()), 1), P.size - 2)
     before, after = phi[k - 1] - phi[k], phi[k + 1] - phi[k]
     slope_before, slope_after = (P[k - 1] - P[k]) / before, (P[k + 1] - P[k]) / after

@@ -31,12 +31,12 @@ class Mesh:
     """(m + 1,) the same over zeta, for both halves together."""
 
     def coarser(self) -> "Mesh":
-        """The mesh of every second node; its quadrature weights are not meant for use."""
+        """Return the mesh of every second node; its quadrature weights are not meant for use."""
         return Mesh(self.phi[::2], self.zeta[::2], self.weight_phi[::2], self.weight_zeta[::2])
 
 
 def gap(phi: Array, eps: float) -> Array:
-    """Film thickness H = h/c_radial, without cancellation where the film is thin [-]."""
+    """Return the film thickness H = h/c_radial, without cancellation where the film is thin [-]."""
     return (1 - eps) + swell(phi, eps)
 
 
@@ -87,7 +87,7 @@ def journal_mesh(eps: float, ratio: float, n: int, m: int) -> Mesh:
 
 
 def halved(mesh: Mesh) -> Mesh:
-    """The mesh of every second node, with its own quadrature weights.
+    """Return the mesh of every second node, with its own quadrature weights.
 
     Raises
     ------
@@ -111,7 +111,7 @@ def _mesh(eps: float, ratio: float, n: int, m: int, end: float) -> Mesh:
 
 
 def _graded_around(eps: float, ratio: float, n: int, end: float) -> tuple[Array, Array]:
-    """Nodes equally spaced in Sommerfeld's angle plus asinh(phi/w), and dphi per interval.
+    """Return the nodes equally spaced in Sommerfeld's angle plus asinh(phi/w), and dphi per interval.
 
     The first resolves the thin film, the second every decade from it to the wide gap, where the
     side flow arises. w is the thin film's width or, if less, that of a short bearing's rupture.
@@ -132,7 +132,7 @@ def _graded_around(eps: float, ratio: float, n: int, end: float) -> tuple[Array,
 
 
 def _guesses(width: float, end: float) -> Array:
-    """Angles from −pi to the end, closer towards 0 in geometric steps."""
+    """Return the angles from −pi to the end, closer towards 0 in geometric steps."""
     steps = np.geomspace(1e-3 * width, np.pi, 200)
     return np.concatenate([-steps[::-1], [0.0], steps[steps < end], [end]])
 
@@ -146,7 +146,7 @@ def _inverse(f: Callable[[Array], Array], slope: Callable[[Array], Array], y: Ar
 
 
 def graded_across(layer: float, m: int) -> tuple[Array, Array]:
-    """Axial nodes zeta [-] graded to an edge layer of a given width, and dzeta of each interval.
+    """Return the axial nodes zeta [-] graded to an edge layer of a given width, and dzeta of each interval.
 
     The layer is as wide as the film is long where it is thin, over half the bearing's width.
     """

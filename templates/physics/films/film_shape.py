@@ -59,7 +59,7 @@ class Bore:
         return self.preload / (1 - self.preload)
 
     def joints(self) -> Array:
-        """Where lobes meet, (lobes,) or none, from the load [rad]."""
+        """Return where lobes meet, (lobes,) or none, from the load [rad]."""
         arc = 2 * np.pi / self.lobes
         joints = self.angle + arc * (np.arange(self.lobes) - 0.5)
         return np.asarray(joints, float) if self.is_lobed else np.zeros(0)
@@ -71,7 +71,7 @@ class Bore:
         return begin, begin + arc, begin + arc * self.offset
 
     def around(self, phi: Array) -> Array:
-        """What lobes add to the gap of a centred journal, at angles from the load [-]."""
+        """Return what lobes add to the gap of a centred journal, at angles from the load [-]."""
         if not self.is_lobed:
             return np.zeros_like(phi)
         arc = 2 * np.pi / self.lobes
@@ -79,7 +79,7 @@ class Bore:
         return np.asarray(2 * self.excess * np.sin((within - arc * self.offset) / 2) ** 2)
 
     def along(self, zeta: Array) -> Array:
-        """What the bell mouth adds: a parabola that begins at its length from the end [-]."""
+        """Return what the bell mouth adds: a parabola that begins at its length from the end [-]."""
         if self.mouth_length <= 0:
             return np.zeros_like(zeta)
         depth = np.maximum(np.abs(zeta) - (1 - self.mouth_length), 0.0) / self.mouth_length
@@ -112,7 +112,7 @@ class Lie:
 
 
 def directions(phi: Array) -> Array:
-    """Outward unit normals [-] at angles from the load, (2, ...)."""
+    """Return the outward unit normals [-] at angles from the load, (2, ...)."""
     return np.stack([np.cos(phi), np.sin(phi)])
 
 
@@ -125,7 +125,7 @@ def gap(bore: Bore, lie: Lie, phi: Array, zeta: Array) -> Array:
 
 
 def narrowest(bore: Bore, lie: Lie) -> tuple[float, float]:
-    """The least gap [-] and its angle from the load [rad].
+    """Return the least gap [-] and its angle from the load [rad].
 
     On each lobe, at each axial place, the gap is least in the direction of the journal's displacement from
     the lobe's centre, or at the lobe's end that is nearer to it.

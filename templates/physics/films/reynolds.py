@@ -99,7 +99,7 @@ def _nested(eps: float, ratio: float, mesh: Mesh, coarser: Field | None = None) 
 
 
 def _start(coarser: Field, mesh: Mesh) -> Mask:
-    """The nodes of a finer mesh that lie before the end of a film, (n + 1, m + 1)."""
+    """Return the nodes of a finer mesh that lie before the end of a film, (n + 1, m + 1)."""
     if coarser.eps > _CLOSE:
         return finer(coarser.rupture.film)
     end = rupture_angle(coarser)
@@ -108,7 +108,7 @@ def _start(coarser: Field, mesh: Mesh) -> Mask:
 
 
 def journal_equations(eps: float, ratio: float, mesh: Mesh) -> Equations:
-    """Balances of flow of a journal that rotates and does not squeeze."""
+    """Return the balances of flow of a journal that rotates and does not squeeze."""
     middle = midpoints(mesh.phi)
     source = rotation(swell(middle, eps))
     return film_equations(mesh, ratio, gap(mesh.phi, eps), gap(middle, eps), source)

@@ -16,7 +16,7 @@ from templates.physics.numerics.arrays import require_film
 
 
 def load_Ocvirk_1952(eps: Array, ratio: Array) -> Array:
-    r"""Sommerfeld number So = F psi²/(B D eta omega) of a short bearing [-].
+    r"""Return the Sommerfeld number So = F psi²/(B D eta omega) of a short bearing [-].
 
     .. math:: So = b^2 \frac{\epsilon}{2(1-\epsilon^2)^2}\sqrt{\pi^2(1-\epsilon^2) + 16\epsilon^2}
 
@@ -47,7 +47,7 @@ def load_Ocvirk_1952(eps: Array, ratio: Array) -> Array:
 
 
 def attitude_Ocvirk_1952(eps: Array) -> Array:
-    r"""Angle between load and narrowest gap [rad].
+    r"""Return the angle between load and narrowest gap [rad].
 
     .. math:: \tan\beta = \frac{\pi\sqrt{1-\epsilon^2}}{4\epsilon}
 
@@ -70,7 +70,7 @@ def attitude_Ocvirk_1952(eps: Array) -> Array:
 
 
 def side_flow_Ocvirk_1952(eps: Array, ratio: Array) -> Array:
-    """Oil that leaves at both ends, Q/(R³ psi omega) = 2 b eps [-].
+    """Return oil that leaves at both ends, Q/(R³ psi omega) = 2 b eps [-].
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def friction_Ocvirk_1952(eps: Array) -> Array:
 
 
 def peak_angle_Ocvirk_1952(eps: Array) -> Array:
-    r"""Place of the largest pressure, from the widest gap [rad].
+    r"""Return the place of the largest pressure, from the widest gap [rad].
 
     .. math:: \cos\theta_m = \frac{1-\sqrt{1+24\epsilon^2}}{4\epsilon}
 
@@ -126,7 +126,7 @@ def peak_angle_Ocvirk_1952(eps: Array) -> Array:
 
 
 def peak_pressure_Ocvirk_1952(eps: Array, ratio: Array) -> Array:
-    r"""Largest pressure P = p psi²/(eta omega) [-].
+    r"""Return the largest pressure P = p psi²/(eta omega) [-].
 
     .. math:: P_m = \frac{3 b^2 \epsilon \sin\theta_m}{(1+\epsilon\cos\theta_m)^3}
 

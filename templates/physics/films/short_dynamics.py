@@ -13,7 +13,7 @@ from templates.physics.numerics.arrays import require, require_film
 
 
 def coefficients_Holmes_1960(eps: Array) -> tuple[Array, Array]:
-    r"""Stiffness K = k c/W and damping B = b c omega_h/W, (..., 2, 2) each [-].
+    r"""Return the stiffness K = k c/W and damping B = b c omega_h/W, (..., 2, 2) each [-].
 
     With :math:`A = 4/[\pi^2 + (16-\pi^2)\epsilon^2]^{3/2}` every entry is A times a polynomial in eps²
     over eps and :math:`\sqrt{1-\epsilon^2}`.

@@ -82,13 +82,13 @@ class CycleOil:
     """Share of the loss that the oil carries off [-]."""
 
     def still(self, T: Array) -> Array:
-        """Viscosity at low shear at a temperature [K]; [Pa s]."""
+        """Return the viscosity at low shear at a temperature [K]; [Pa s]."""
         return viscosity_at(
             T, self.A, self.B, self.a, self.b, self.offset, self.eta, self.rho_ref, self.T_ref
         )
 
     def sheared(self, T: Array, rate: Array) -> Array:
-        """Viscosity at a temperature [K] and a shear rate [1/s]; [Pa s]."""
+        """Return the viscosity at a temperature [K] and a shear rate [1/s]; [Pa s]."""
         still, hot = self.still(T), self.still(np.asarray(HTHS_TEMPERATURE))
         at_150 = critical_rate_of_HTHS(self.left, np.asarray(1.0), np.asarray(0.0), self.exponent)
         critical = critical_rate_at(at_150, hot, still)
@@ -113,7 +113,7 @@ class CycleBearing:
     """Whether the film is that of `oil_film_cycle` 3: with the supply's pressure (`relieved_duty`)."""
 
     def fed(self, eta: Array) -> FedDuty:
-        """The duty at a viscosity [Pa s]."""
+        """Return the duty at a viscosity [Pa s]."""
         if not self.relieved:
             return warmed_duty(self.duty, self.feeding, eta)
         P = self.pressure * (2 * self.clearance / self.feeding.D) ** 2 / (eta * self.duty.Omega)
@@ -170,7 +170,7 @@ def heated_film(bearing: CycleBearing, eta: Array) -> tuple[FedOrbit, Warmed]:
 
 
 def feed_flow(bearing: CycleBearing, orbit: FedOrbit, eta: Array) -> Array:
-    """What the supply pressure drives from the groove over both lands, mean over the cycle [m³/s]."""
+    """Return what the supply pressure drives from the groove over both lands, mean over the cycle [m³/s]."""
     duty, groove = bearing.duty, bearing.feeding
     turned = sleeve_turn(duty)
     whole = np.asarray(groove.groove_extent >= AROUND)[..., None]
@@ -187,7 +187,7 @@ def feed_flow(bearing: CycleBearing, orbit: FedOrbit, eta: Array) -> Array:
 
 
 def gap_cubed(eps_x: Array, eps_y: Array, start: Array, extent: Array) -> Array:
-    """Integral of H³ over an arc of a bearing, H = 1 − eps · n, by its antiderivative [rad].
+    """Return the integral of H³ over an arc of a bearing, H = 1 − eps · n, by its antiderivative [rad].
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def gap_cubed(eps_x: Array, eps_y: Array, start: Array, extent: Array) -> Array:
 
 
 def sleeve_turn(duty: Duty) -> Array:
-    """Angle of the sleeve in the frame (..., N) [rad]."""
+    """Return the angle of the sleeve in the frame (..., N) [rad]."""
     period = cycle_of(duty.angle)
     speed = (duty.omega_B - duty.omega_F) / np.asarray(duty.Omega)[..., None]
     rows = np.broadcast_arrays(speed, duty.angle)[0]
@@ -217,7 +217,7 @@ def sleeve_turn(duty: Duty) -> Array:
 
 @on_paper("solved numerically by bracketing the viscosity in the heat balance over the cycle")
 def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
-    """The viscosity of every point at which heat and viscosity agree."""
+    """Return the viscosity of every point at which heat and viscosity agree."""
     shape = np.broadcast_shapes(
         *(np.shape(getattr(oil, field.name)) for field in fields(oil)), np.shape(bearing.duty.scale),
         np.shape(bearing.pressure), np.shape(bearing.duty.F_x)[:-1], np.shape(bearing.clearance),
@@ -226,7 +226,7 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
     top = np.log(np.broadcast_to(oil.still(oil.supply), shape))
 
     def lack(x: Array) -> Array:
-        """Logarithm of the viscosity that belongs to the heat, less that taken."""
+        """Return the logarithm of the viscosity that belongs to the heat, less that taken."""
         eta = np.exp(x)
         film = heated_film(bearing, eta)[1]
         T = temperature(oil, film)
@@ -234,7 +234,7 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
             return np.asarray(np.log(oil.sheared(T, film.rate)) - x)
 
     def at_some(x: Array, number: Array) -> Array:
-        """The same of the points of these numbers alone."""
+        """Return the same of the points of these numbers alone."""
         everywhere = np.full(top.size, np.nan)
         everywhere[number.astype(np.int64)] = x
         return lack(everywhere.reshape(shape)).ravel()[number.astype(np.int64)]
@@ -260,7 +260,7 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
 
 
 def _bracket(lack: Callable[[Array], Array], top: Array, load: Array) -> tuple[Array, Array]:
-    """The step downwards from the supply's viscosity, in ln, that holds the root; NaN where none does.
+    """Return the step downwards from the supply's viscosity, in ln, that holds the root; NaN where none does.
 
     A load so light at the supply's viscosity that no orbit is found may have one further down.
     """
@@ -281,60 +281,60 @@ def _bracket(lack: Callable[[Array], Array], top: Array, load: Array) -> tuple[A
 
 
 def heaviest(duty: Duty) -> Array:
-    """Largest load number with oil of 1 Pa s, (...) [Pa s]."""
+    """Return the largest load number with oil of 1 Pa s, (...) [Pa s]."""
     return np.asarray(np.hypot(duty.F_x, duty.F_y).max(axis=-1) * duty.scale)
 
 
 def temperature(oil: CycleOil, film: Warmed) -> Array:
-    """Mean of supply and outlet, by the heat that the oil carries off [K]."""
+    """Return the mean of supply and outlet, by the heat that the oil carries off [K]."""
     with np.errstate(invalid="ignore", divide="ignore"):
         rise = oil.share * film.loss / (oil.heat_capacity * (film.side_flow + film.feed_flow))
     return np.asarray(oil.supply + rise / 2)
 
 
 def _where_known(eta: Array, value: Array) -> Array:
-    """The value where a viscosity was found, else NaN."""
+    """Return the value where a viscosity was found, else NaN."""
     return np.asarray(np.where(np.isnan(eta), np.nan, value))[()]
 
 
 @units(None, returns="Pa*s", latex=r"\text{{by the heat balance}}")
 def viscosity_of(heat: CycleHeat) -> Array:
-    """Effective viscosity [Pa s]."""
+    """Return the effective viscosity [Pa s]."""
     return heat.eta
 
 
 @units(None, "Pa*s", returns="K", latex=r"\text{{by the heat balance}}")
 def temperature_of(heat: CycleHeat, eta: Array) -> Array:
-    """Effective temperature [K]; NaN where the viscosity is."""
+    """Return the effective temperature [K]; NaN where the viscosity is."""
     return _where_known(eta, heat.T)
 
 
 @units(None, "Pa*s", returns="1/s", latex=r"\text{{by the heat balance}}")
 def rate_of(heat: CycleHeat, eta: Array) -> Array:
-    """Mean shear rate [1/s]; NaN where the viscosity is."""
+    """Return the mean shear rate [1/s]; NaN where the viscosity is."""
     return _where_known(eta, heat.rate)
 
 
 @units(None, "Pa*s", returns="W", latex=r"\text{{by the heat balance}}")
 def loss_of(heat: CycleHeat, eta: Array) -> Array:
-    """Power loss [W]; NaN where the viscosity is."""
+    """Return the power loss [W]; NaN where the viscosity is."""
     return _where_known(eta, heat.loss)
 
 
 @units(None, "Pa*s", returns="m**3/s", latex=r"\text{{by the heat balance}}")
 def side_flow_of(heat: CycleHeat, eta: Array) -> Array:
-    """Flow that the journal's motion displaces [m³/s]; NaN where the viscosity is."""
+    """Return the flow that the journal's motion displaces [m³/s]; NaN where the viscosity is."""
     return _where_known(eta, heat.side_flow)
 
 
 @units(None, "Pa*s", returns="m**3/s", latex=r"\text{{by the heat balance}}")
 def feed_flow_of(heat: CycleHeat, eta: Array) -> Array:
-    """Flow that the supply pressure drives [m³/s]; NaN where the viscosity is."""
+    """Return the flow that the supply pressure drives [m³/s]; NaN where the viscosity is."""
     return _where_known(eta, heat.feed_flow)
 
 
 def warmed_duty(duty: Duty, feeding: Feeding, eta: Array) -> FedDuty:
-    """The duty, whose scale is that of 1 Pa s, at a viscosity [Pa s]."""
+    """Return the duty, whose scale is that of 1 Pa s, at a viscosity [Pa s]."""
     return fed_duty(replace(duty, scale=duty.scale / eta), feeding, np.full(2, np.nan))
 
 
@@ -342,7 +342,7 @@ def warmed_duty(duty: Duty, feeding: Feeding, eta: Array) -> FedDuty:
 def viscosity_at_150(
     law: str, A: Array, B: Array, a: Array, b: Array, offset: Array, eta: Array, rho_ref: Array, T_ref: Array
 ) -> Array:
-    """Viscosity at low shear and 150 °C, by the law `walther` or `vogel`, or as given [Pa s].
+    """Return the viscosity at low shear and 150 °C, by the law `walther` or `vogel`, or as given [Pa s].
 
     Parameters
     ----------
@@ -381,6 +381,6 @@ def left_by_HTHS(hths: Array, hot: Array, endless: Array, eta: Array) -> Array:
 
 
 def groove_alone(D: Array, W: Array, width: Array, start: Array, extent: Array) -> Feeding:
-    """A groove in the sleeve, and no hole; see `Feeding`."""
+    """Return a groove in the sleeve, and no hole; see `Feeding`."""
     none = np.full_like(np.asarray(D, float), np.nan)
     return Feeding(D, W, width, start, extent, none, none, none, none, none, none)

@@ -55,7 +55,7 @@ def heat_of_cycle(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
 
 
 def following(rounds: list[tuple[float, float]]) -> float:
-    """The next ln(viscosity), by a secant, from those with what each lacks.
+    """Return the next ln(viscosity), by a secant, from those with what each lacks.
 
     Examples
     --------
@@ -72,7 +72,7 @@ def following(rounds: list[tuple[float, float]]) -> float:
 
 
 def _lack(bearing: CycleBearing, oil: CycleOil, eta: Array) -> tuple[Warmed, float]:
-    """The film at a viscosity, and what ln of it lacks of what its heat leaves; NaN without a film."""
+    """Return the film at a viscosity, and what ln of it lacks of what its heat leaves; NaN without a film."""
     film = heated_film(bearing, eta)[1]
     with np.errstate(invalid="ignore", divide="ignore"):
         lack = np.log(oil.sheared(temperature(oil, film), film.rate) / eta)

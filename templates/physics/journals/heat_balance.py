@@ -77,14 +77,14 @@ class Running:
     """Heat transfer coefficient times area, else NaN [W/K]."""
 
     def viscosity(self, T: Array) -> Array:
-        """Dynamic viscosity [Pa s] at T [K]."""
+        """Return the dynamic viscosity [Pa s] at T [K]."""
         of_walther = walther(self.A, self.B, T) * density(self.rho_ref, T, self.T_ref)
         of_vogel = vogel(self.a, self.b, self.offset, T)
         thin = np.where(np.isnan(self.a), of_walther, of_vogel)
         return np.where(np.isnan(self.eta), thin, self.eta)
 
     def power_and_flow(self, T: Array) -> tuple[Array, Array]:
-        """Power loss [W] and side flow [m³/s] at T [K]; at the limit of the map beyond it."""
+        """Return the power loss [W] and side flow [m³/s] at T [K]; at the limit of the map beyond it."""
         eta, ratio = self.viscosity(T), self.W / self.D
         scale = self.W * self.D * eta * self.omega_m / self.psi**2
         inside = (ratio >= NARROWEST) & (ratio <= WIDEST)
@@ -96,7 +96,7 @@ class Running:
         return power, film.side_flow * (self.D / 2) ** 3 * self.psi * self.omega_m
 
     def coldest(self) -> Array:
-        """The colder of supply and ambient air, where given [K]."""
+        """Return the colder of supply and ambient air, where given [K]."""
         return np.fmin(self.T_supply, np.where(np.isfinite(self.kA), self.T_ambient, np.nan))
 
     def heat(self, rise: Array) -> tuple[Array, Array, Array]:
@@ -111,7 +111,7 @@ class Running:
         return power, np.nan_to_num(by_oil, nan=0.0), np.nan_to_num(by_air, nan=0.0)
 
     def excess(self, rise: Array) -> Array:
-        """Power less what is carried off, over the power [-]."""
+        """Return the power less what is carried off, over the power [-]."""
         power, by_oil, by_air = self.heat(rise)
         return 1 - (by_oil + by_air) / power
 

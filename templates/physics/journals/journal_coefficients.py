@@ -46,7 +46,7 @@ def linear_at(
     pressure: Array | float = 0.0,
     grooves: tuple[tuple[float, float], ...] = (),
 ) -> Linear:
-    """Stiffness, damping and threshold mass; NaN at points that are NaN and at level fit [-].
+    """Return the stiffness, damping and threshold mass; NaN at points that are NaN and at level fit [-].
 
     Arguments as of `coefficients_at`.
     """
@@ -70,7 +70,7 @@ def coefficients_at(
     pressure: Array | float = 0.0,
     grooves: tuple[tuple[float, float], ...] = (),
 ) -> tuple[Array, Array]:
-    """Stiffness and damping, (..., 2, 2) each; NaN at points that are NaN and at level fit [-].
+    """Return the stiffness and damping, (..., 2, 2) each; NaN at points that are NaN and at level fit [-].
 
     Parameters
     ----------

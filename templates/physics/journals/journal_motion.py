@@ -26,19 +26,19 @@ def hydrodynamic_speed(journal: Array, sleeve: Array, load: Array) -> Array:
     latex=r"\left({0}-{1}\right)\operatorname{{sgn}}\left({0}+{1}-2\,{2}\right)",
 )  # fmt: skip
 def sliding_speed(journal: Array, sleeve: Array, load: Array) -> Array:
-    """Speed of the journal over the sleeve, in the sense in which the film is carried [rad/s]."""
+    """Return the speed of the journal over the sleeve, in the sense in which the film is carried [rad/s]."""
     return (journal - sleeve) * np.sign(journal + sleeve - 2 * load)
 
 
 @units("N", returns="kg", latex=r"\frac{{{0}}}{{g}}")
 def mass_of_weight(F: Array) -> Array:
-    """Mass [kg] whose weight is F [N], at standard gravity."""
+    """Return the mass [kg] whose weight is F [N], at standard gravity."""
     return F / STANDARD_GRAVITY
 
 
 @units("1", "N/m", "kg", returns="rad/s", latex=r"\sqrt{{\frac{{{0}\,{1}}}{{{2}}}}}")
 def whirl_speed(threshold: Array, stiffness: Array, mass: Array) -> Array:
-    """Speed [rad/s] at which a rotor of a mass [kg] begins to whirl; NaN where it does not at any.
+    """Return the speed [rad/s] at which a rotor of a mass [kg] begins to whirl; NaN where it does not at any.
 
     threshold is the largest stable mass M omega²/stiffness [1], infinite where every mass is stable.
     """

@@ -24,7 +24,7 @@ def outlet_temperature(balance: HeatBalance) -> Array:
 
 @units("K", "K", returns="K", latex=r"{0}")
 def or_reference(T: Array, T_ref: Array) -> Array:
-    """The temperature T, or where there is none the reference, which leaves a density as it is [K]."""
+    """Return the temperature T, or where there is none the reference, which leaves a density as it is [K]."""
     return np.where(np.isnan(T), T_ref, T)[()]
 
 

@@ -17,7 +17,7 @@ from templates.physics.journals.petrov import friction_number_Petrov_1883
     "N", "1", "Pa*s", "rad/s", "m", "m", returns="1", latex=r"\frac{{{0}\,{1}^{{2}}}}{{{4}\,{5}\,{2}\,{3}}}"
 )
 def load_number(load: Array, psi: Array, eta: Array, omega: Array, width: Array, diameter: Array) -> Array:
-    """Sommerfeld number So = F psi²/(B D eta omega); NaN at rest, where no film forms [-].
+    """Return the Sommerfeld number So = F psi²/(B D eta omega); NaN at rest, where no film forms [-].
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def eccentricity_of_load(So: Array, ratio: Array) -> Array:
 @on_paper("solved numerically by splines in a map of solutions of the Reynolds equation")
 @units("1", "1", returns="1")
 def friction_over_Petrov(eps: Array, ratio: Array) -> Array:
-    """Friction on the journal in the loaded film over Petrov's, 1 or more; NaN where eps is [-].
+    """Return the friction on the journal in the loaded film over Petrov's, 1 or more; NaN where eps is [-].
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ def film_parameter(h: Array, R_1: Array, R_2: Array) -> Array:
 
 @units("1", returns="1")
 def lubrication_regime(parameter: Array) -> Any:
-    """The regime at a film parameter [1]: boundary, mixed or full_film; empty where that is NaN."""
+    """Return the regime at a film parameter [1]: boundary, mixed or full_film; empty where that is NaN."""
     parameter = np.asarray(parameter)
     words = np.select([parameter < 1, parameter <= 3, parameter > 3], ["boundary", "mixed", "full_film"], "")
     return words if words.ndim else str(words)

@@ -89,7 +89,7 @@ class MixedFilm:
     """Friction coefficient, of film and contact."""
 
     def admitted(self, eps: Array) -> "MixedFilm":
-        """The same with NaN where eps was not admitted."""
+        """Return the same with NaN where eps was not admitted."""
         values = (getattr(self, field.name) for field in fields(MixedFilm))
         return MixedFilm(*(np.where(np.isnan(eps), np.nan, value)[()] for value in values))
 
@@ -153,14 +153,14 @@ class MixedJournal:
         return film * np.cos(attitude) + contact, across, film, contact, scale * around, So, attitude
 
     def excess(self, deep: Array, speed: Array, number: Array) -> Array:
-        """What bears at an eccentricity of 1 − exp(−deep) more than the load, −1 … 1 [-]."""
+        """Return what bears at an eccentricity of 1 − exp(−deep) more than the load, −1 … 1 [-]."""
         i = number.astype(np.int64)
         along, across, *_ = self.shares(-np.expm1(-deep), speed, i)
         force = np.hypot(along, across)
         return np.asarray((force - self.bearing.F[i]) / (force + self.bearing.F[i]))
 
     def film(self, omega: Array, i: Indices) -> MixedFilm:
-        """The films of bearings i at speeds, both in a row."""
+        """Return the films of bearings i at speeds, both in a row."""
         deepest = np.full(omega.shape, _DEEPEST)
         deep = root_between(self.excess, np.zeros(omega.shape), deepest, omega, i.astype(float))
         eps = -np.expm1(-np.asarray(deep).reshape(omega.shape))
@@ -175,7 +175,7 @@ class MixedJournal:
 
 
 def mixed_journal(level: str, bearing: RoughJournal) -> MixedJournal:
-    """Bearings with their films, at one of `LEVELS`."""
+    """Return the bearings with their films, at one of `LEVELS`."""
     names = [field.name for field in fields(RoughJournal)]
     values = np.broadcast_arrays(*(np.asarray(getattr(bearing, name), float) for name in names))
     rows = dict(zip(names, values, strict=True))
@@ -196,7 +196,7 @@ def mixed_journal(level: str, bearing: RoughJournal) -> MixedJournal:
     }
 )
 def mixed_films(journal: MixedJournal, omega: Array) -> MixedFilm:
-    """What bears the load at each speed, arrays like these.
+    """Return what bears the load at each speed, arrays like these.
 
     Parameters
     ----------
@@ -217,7 +217,7 @@ def mixed_films(journal: MixedJournal, omega: Array) -> MixedFilm:
 
 
 def mixed_film(journal: MixedJournal, omega: Array) -> MixedFilm:
-    """What bears the load at one speed of every point, arrays (...); see `mixed_films`."""
+    """Return what bears the load at one speed of every point, arrays (...); see `mixed_films`."""
     films = mixed_films(journal, np.asarray(omega)[..., None])
     return MixedFilm(*(getattr(films, field.name)[..., 0] for field in fields(MixedFilm)))
 
@@ -260,7 +260,7 @@ class LeastFriction:
 
 @on_paper("by a parabola through the lowest of 21 points about the lowest one of the curve")
 def least_friction(journal: MixedJournal, omega: Array, films: MixedFilm) -> LeastFriction:
-    """The lowest point of the curve over `MULTIPLES`, from a closer look at its neighbourhood.
+    """Return the lowest point of the curve over `MULTIPLES`, from a closer look at its neighbourhood.
 
     Parameters
     ----------
@@ -288,14 +288,14 @@ def least_friction(journal: MixedJournal, omega: Array, films: MixedFilm) -> Lea
 
 @units("Pa", "m", "m", returns="Pa", latex=r"{0}\,F_{{5/2}}\left({1}/{2}\right)")
 def contact_pressure(scale: Array, gap: Array, roughness: Array) -> Array:
-    """Contact pressure at a gap of rough faces, 0 of smooth ones [Pa]."""
+    """Return the contact pressure at a gap of rough faces, 0 of smooth ones [Pa]."""
     thick = np.where(roughness > 0, gap / np.where(roughness > 0, roughness, 1.0), gap * np.inf)
     return (scale * splined_summit_integral(np.maximum(thick, 0)) + 0 * gap)[()]
 
 
 @units("m", "m", returns="m", latex=r"\sqrt{{{0}^2+{1}^2}}")
 def composite_roughness(R_1: Array, R_2: Array) -> Array:
-    """Root mean square of the heights of two faces together [m]."""
+    """Return the root mean square of the heights of two faces together [m]."""
     return np.hypot(R_1, R_2)
 
 

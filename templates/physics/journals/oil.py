@@ -54,7 +54,7 @@ def temperature_logarithm(T: Array) -> Array:
     latex=r"\left(10^{{10^{{{0}-{1}\,\lg {2}}}}}-0.7\right)\mathrm{{\frac{{mm^2}}{{s}}}}",
 )
 def walther(A: Array, B: Array, T: Array) -> Array:
-    """Kinematic viscosity [m²/s] at the temperature T [K] from Walther's constants A, B [1].
+    """Return the kinematic viscosity [m²/s] at the temperature T [K] from Walther's constants A, B [1].
 
     References
     ----------
@@ -90,14 +90,14 @@ def vogel_factor(eta_1: Array, T_1: Array, b: Array, c: Array) -> Array:
 
 
 def _above_pole(T: Array, c: Array) -> Array:
-    """Distance from Vogel's pole −c °C [K]; NaN below."""
+    """Return the distance from Vogel's pole −c °C [K]; NaN below."""
     above = T - _CELSIUS + c
     return np.where(above > 0, above, np.nan)
 
 
 @units(None, "Pa*s", "Pa*s", returns="Pa*s", latex=r"{1}\ \text{{(Walther) or}}\ {2}\ \text{{(Vogel)}}")
 def by_law(law: str, of_walther: Array | float, of_vogel: Array) -> Array:
-    """The value [Pa s] that belongs to the law `walther` or `vogel`."""
+    """Return the value [Pa s] that belongs to the law `walther` or `vogel`."""
     return of_vogel if law == "vogel" else np.asarray(of_walther)[()]
 
 

@@ -25,33 +25,33 @@ _DATA = Path(__file__).with_name("oil_grades.csv")
 
 @cache
 def _table() -> dict[str, tuple[float, float]]:
-    """Kinematic viscosities at 40 and 100 °C by grade [mm²/s]."""
+    """Return the kinematic viscosities at 40 and 100 °C by grade [mm²/s]."""
     return {row[0]: (float(row[1]), float(row[2])) for row in _rows()}
 
 
 def _rows() -> list[list[str]]:
-    """The cells of the table, without its head."""
+    """Return the cells of the table, without its head."""
     lines = _DATA.read_text(encoding="utf-8").splitlines()
     return [line.split(",") for line in lines if not line.startswith("#")][1:]
 
 
 def grades() -> tuple[str, ...]:
-    """Every grade of the table."""
+    """Return every grade of the table."""
     return tuple(_table())
 
 
 def basis(grade: str) -> str:
-    """Where the viscosities of a grade come from."""
+    """Return where the viscosities of a grade come from."""
     return next(row[4] for row in _rows() if row[0] == grade)
 
 
 @units(None, returns="m**2/s")
 def viscosity_at_40(grade: str) -> Array:
-    """Kinematic viscosity of a grade at 40 °C [m²/s]."""
+    """Return the kinematic viscosity of a grade at 40 °C [m²/s]."""
     return np.asarray(_table()[grade][0] * MM2_PER_S)
 
 
 @units(None, returns="m**2/s")
 def viscosity_at_100(grade: str) -> Array:
-    """Kinematic viscosity of a grade at 100 °C [m²/s]."""
+    """Return the kinematic viscosity of a grade at 100 °C [m²/s]."""
     return np.asarray(_table()[grade][1] * MM2_PER_S)

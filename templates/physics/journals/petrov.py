@@ -11,7 +11,7 @@ from templates.core.arrays import Array
 
 
 def friction_Petrov_1883(radius: Array, width: Array, clearance: Array, eta: Array, omega: Array) -> Array:
-    r"""Friction force on a concentric journal [N].
+    r"""Return the friction force on a concentric journal [N].
 
     .. math:: F_f = \frac{2\pi r^2 b\,\eta\,\omega}{c}
 
@@ -40,5 +40,5 @@ def friction_Petrov_1883(radius: Array, width: Array, clearance: Array, eta: Arr
 
 
 def friction_number_Petrov_1883() -> float:
-    """Friction force in the form of the film solutions, F_f psi/(B D eta omega) = pi [-]."""
+    """Return the friction force in the form of the film solutions, F_f psi/(B D eta omega) = pi [-]."""
     return float(np.pi)

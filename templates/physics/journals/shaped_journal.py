@@ -56,11 +56,11 @@ class Shape:
     """The same ahead of the load [-]."""
 
     def numbers(self) -> list[Array]:
-        """All but the first two."""
+        """Return all but the first two."""
         return [np.asarray(getattr(self, field.name), float) for field in fields(self)[2:]]
 
     def at(self, preload: float, angle: float, offset: float, mouth: float, mouth_length: float) -> Bore:
-        """The bore of one point."""
+        """Return the bore of one point."""
         lobes = self.lobes if self.bore == "multi_lobe" else 2
         return Bore(1 if self.bore == "plain" else lobes, preload, angle, offset, mouth, mouth_length)
 
@@ -97,7 +97,7 @@ class StaticFilm:
     """Damping likewise."""
 
     def admitted(self, eps: Array) -> StaticFilm:
-        """The same film with NaN where eps was not admitted."""
+        """Return the same film with NaN where eps was not admitted."""
         none = np.isnan(eps)
         values = {field.name: np.asarray(getattr(self, field.name)) for field in fields(self)}
         wide = {name: none[..., None, None] if name in ("K", "B") else none for name in values}
@@ -133,7 +133,7 @@ def departure(preload: Array, mouth: Array, tilt_x: Array, tilt_y: Array) -> Arr
 def journal_film_at(
     level: str, So: Array, ratio: Array, pressure: Array, grooves: Grooves, shape: Shape, away: Array
 ) -> StaticFilm:
-    """The film that bears So, at a level of fidelity.
+    """Return the film that bears So, at a level of fidelity.
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ def _measured(balanced: Balance, bore: Bore, tilt: Array, share: float) -> dict[
 def linear_of(
     level: str, film: StaticFilm, So: Array, ratio: Array, start_line: str, pressure: Array, grooves: Grooves
 ) -> Linear:
-    """Stiffness, damping and threshold mass; NaN at points without and at level fit [-].
+    """Return the stiffness, damping and threshold mass; NaN at points without and at level fit [-].
 
     With start line fixed the line of supply stays where it is while the journal is displaced; with moving it
     turns with the journal's displacement: the film then turns as a whole, which changes the stiffness against

@@ -26,7 +26,7 @@ HTHS_TEMPERATURE = 423.15
 
 @units("1/s", "Pa*s", "Pa*s", "1/s", "1", returns="Pa*s")
 def viscosity_Cross_1965(rate: Array, eta_0: Array, eta_inf: Array, critical: Array, n: Array) -> Array:
-    """Dynamic viscosity at a shear rate [Pa s].
+    """Return the dynamic viscosity at a shear rate [Pa s].
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def critical_rate_of_HTHS(hths: Array, eta_0: Array, eta_inf: Array, n: Array) -
 
 @units("1/s", "Pa*s", "Pa*s", returns="1/s")
 def critical_rate_at(critical: Array, eta_there: Array, eta_0: Array) -> Array:
-    """The critical shear rate where the viscosity at low shear is another: their product stays [1/s].
+    """Return the critical shear rate where the viscosity at low shear is another: their product stays [1/s].
 
     Parameters
     ----------

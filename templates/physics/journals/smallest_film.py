@@ -35,7 +35,7 @@ def _table() -> tuple[Array, Array, Array]:
 
 @units("m", "m/s", returns="m")
 def smallest_film_ISO_7902(d: Array, U: Array) -> Array:
-    """Smallest permissible film [m] for a journal of diameter d [m] that slides at U [m/s].
+    """Return the smallest permissible film [m] for a journal of diameter d [m] that slides at U [m/s].
 
     NaN for journals up to 24 mm and above 2500 mm, of which the table says nothing.
     """

@@ -72,7 +72,7 @@ def is_fed(pressure: Array, grooves: tuple[tuple[float, float], ...]) -> bool:
 def ladder(
     levels: tuple[str, ...], pressure: Array, grooves: tuple[tuple[float, float], ...]
 ) -> tuple[str, ...]:
-    """The levels that know how the bearing is fed: all but FED, or only that."""
+    """Return the levels that know how the bearing is fed: all but FED, or only that."""
     return (FED,) if is_fed(pressure, grooves) else tuple(level for level in levels if level != FED)
 
 
@@ -96,7 +96,7 @@ class JournalFilm:
     """Oil that leaves at both ends, Q/(R³ psi omega_h)."""
 
     def admitted(self, eps: Array) -> "JournalFilm":
-        """The same film with NaN where eps was not admitted."""
+        """Return the same film with NaN where eps was not admitted."""
         return self._each(lambda values: np.where(np.isnan(eps), np.nan, values)[()])
 
     def _each(self, change: Callable[[Array], Array]) -> "JournalFilm":
@@ -119,7 +119,7 @@ def static_film_at(
     pressure: Array | float = 0.0,
     grooves: tuple[tuple[float, float], ...] = (),
 ) -> JournalFilm:
-    """The film that bears So, at a level of fidelity.
+    """Return the film that bears So, at a level of fidelity.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def static_film_at(
 
 
 def _scattered(values: Array, valid: Mask) -> Array:
-    """Values of the valid points among NaN; a single one as a number."""
+    """Return the values of the valid points among NaN; a single one as a number."""
     whole = np.full(valid.shape, np.nan)
     whole[valid] = values
     return whole[()]
@@ -167,7 +167,7 @@ def short_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
 
 
 def fitted_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
-    """The standard's film; shear over the full circle as there."""
+    """Return the standard's film; shear over the full circle as there."""
     eps = eccentricity(load_ISO_7902, So, ratio)
     e, none = np.where(np.isnan(eps), 0.0, eps), np.full_like(eps, np.nan)
     shear = np.pi / np.sqrt((1 - e) * (1 + e))
@@ -175,26 +175,26 @@ def fitted_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
 
 
 def interpolated_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
-    """The map's film."""
+    """Return the map's film."""
     eps = mapped_eccentricity(So, ratio)
     return replace(_mapped(np.where(np.isnan(eps), 0.0, eps), ratio), eps=eps, So=So)
 
 
 def _mapped(eps: Array, ratio: Array) -> JournalFilm:
-    """The map's film at an eccentricity."""
+    """Return the map's film at an eccentricity."""
     film = mapped_film(eps, ratio)
     names = ("So", "attitude", "P_max", "peak", "side_flow")
     return JournalFilm(eps=eps, shear=np.pi / np.sqrt((1 - eps) * (1 + eps)), **{n: film[n] for n in names})
 
 
 def solved_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
-    """Film by film solved at the map's eccentricity, and moved from there to the load."""
+    """Return the film by film solved at the map's eccentricity, and moved from there to the load."""
     start = mapped_eccentricity(np.maximum(So, mapped_load(np.full_like(So, _CENTRED), ratio)), ratio)
     return _moved(So, ratio, np.array([_solved(e, b) for e, b in zip(start, ratio, strict=True)]))
 
 
 def _solved(eps: float, ratio: float) -> list[float]:
-    """The fields of `JournalFilm` by full solutions; an eps of NaN gives NaN."""
+    """Return the fields of `JournalFilm` by full solutions; an eps of NaN gives NaN."""
     if np.isnan(eps):
         return [np.nan] * 7
     film = extrapolated_film(eps, ratio)[0]
@@ -216,7 +216,7 @@ def conserving_film(So: Array, ratio: Array, feeds: list[Feed]) -> JournalFilm:
 
 
 def _moved(So: Array, ratio: Array, near: Array) -> JournalFilm:
-    """Films near the load wanted, (N, 7), moved there as the map's film would."""
+    """Return the films near the load wanted, (N, 7), moved there as the map's film would."""
     film = JournalFilm(*near.reshape(-1, 7).T)
     valid = np.isfinite(film.eps)
     at = np.where(valid, film.eps, 0.5)

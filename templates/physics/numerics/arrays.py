@@ -35,11 +35,11 @@ def require_film(eps: Array, ratio: Array) -> None:
 
 
 def spread(scale: Array, profile: Array) -> Array:
-    """A profile for every point, (..., places): the scale of each times its profile."""
+    """Return a profile for every point, (..., places): the scale of each times its profile."""
     return scale[..., None] * profile
 
 
 @units("N", "N", returns="N", latex=r"\max\sqrt{{{0}^2+{1}^2}}")
 def largest_load(x: Array, y: Array) -> Array:
-    """The largest size of a load over the cycle [N]."""
+    """Return the largest size of a load over the cycle [N]."""
     return np.asarray(np.sqrt((x * x + y * y).max(axis=-1)))[()]

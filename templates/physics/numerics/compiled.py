@@ -31,7 +31,7 @@ class _Spare(FunctionCache):
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """The function as machine code; arguments are arrays, numbers and named tuples of these."""
+    """Return the function as machine code; arguments are arrays, numbers and named tuples of these."""
     result: Callable[P, R] = njit(fastmath=_REORDERED, error_model="numpy")(function)
     with suppress(RuntimeError):  # numba has no folder that it can write
         result._cache = _Spare(function)  # type: ignore[attr-defined, no-untyped-call]

@@ -59,71 +59,71 @@ def covers(angles: Array, cycle: Array) -> Truth:
 
 @units("rad", "rad", "m", "rad", "rad", returns="m")
 def film_at(theta: Array, places: Array, values: Array, cycle: Array, shift: Array) -> Array:
-    """The measured film [m] at the calculated angles."""
+    """Return the measured film [m] at the calculated angles."""
     return periodic(theta, places, values, cycle, shift)
 
 
 @units("m", returns="m", latex=r"\sqrt{{\overline{{{0}^2}}}}")
 def rms_film(difference: Array) -> Array:
-    """Root of the mean square of a difference [m]."""
+    """Return the root of the mean square of a difference [m]."""
     return _root_mean_square(difference)
 
 
 @units("m", returns="m", latex=r"\overline{{{0}}}")
 def mean_film(difference: Array) -> Array:
-    """Mean of a difference [m]."""
+    """Return the mean of a difference [m]."""
     return _mean(difference)
 
 
 @units("m", returns="m", latex=r"\max\left|{0}\right|")
 def largest_film(difference: Array) -> Array:
-    """Largest size of a difference [m]."""
+    """Return the largest size of a difference [m]."""
     return _largest(difference)
 
 
 @units("rad", "rad", "rad/s", "rad", "rad", returns="rad/s")
 def speed_at(theta: Array, places: Array, values: Array, cycle: Array, shift: Array) -> Array:
-    """The measured speed [rad/s] at the calculated angles."""
+    """Return the measured speed [rad/s] at the calculated angles."""
     return periodic(theta, places, values, cycle, shift)
 
 
 @units("rad/s", returns="rad/s", latex=r"\sqrt{{\overline{{{0}^2}}}}")
 def rms_speed(difference: Array) -> Array:
-    """Root of the mean square of a difference [rad/s]."""
+    """Return the root of the mean square of a difference [rad/s]."""
     return _root_mean_square(difference)
 
 
 @units("rad/s", returns="rad/s", latex=r"\overline{{{0}}}")
 def mean_speed(difference: Array) -> Array:
-    """Mean of a difference [rad/s]."""
+    """Return the mean of a difference [rad/s]."""
     return _mean(difference)
 
 
 @units("rad/s", returns="rad/s", latex=r"\max\left|{0}\right|")
 def largest_speed(difference: Array) -> Array:
-    """Largest size of a difference [rad/s]."""
+    """Return the largest size of a difference [rad/s]."""
     return _largest(difference)
 
 
 @units("rad", "rad", "1", "rad", "rad", returns="1")
 def strain_at(theta: Array, places: Array, values: Array, cycle: Array, shift: Array) -> Array:
-    """The measured strain [1] at the calculated angles."""
+    """Return the measured strain [1] at the calculated angles."""
     return periodic(theta, places, values, cycle, shift)
 
 
 @units("1", returns="1", latex=r"\sqrt{{\overline{{{0}^2}}}}")
 def rms_strain(difference: Array) -> Array:
-    """Root of the mean square of a difference [1]."""
+    """Return the root of the mean square of a difference [1]."""
     return _root_mean_square(difference)
 
 
 @units("1", returns="1", latex=r"\overline{{{0}}}")
 def mean_strain(difference: Array) -> Array:
-    """Mean of a difference [1]."""
+    """Return the mean of a difference [1]."""
     return _mean(difference)
 
 
 @units("1", returns="1", latex=r"\max\left|{0}\right|")
 def largest_strain(difference: Array) -> Array:
-    """Largest size of a difference [1]."""
+    """Return the largest size of a difference [1]."""
     return _largest(difference)

@@ -19,13 +19,13 @@ _NEARLY = 1 + 1e-15
 
 
 def differences(steps: Array) -> Array:
-    """Coefficients a_0, a_1, a_2 of the backward differences on a ring of steps, (3, K)."""
+    """Return the coefficients a_0, a_1, a_2 of the backward differences on a ring of steps, (3, K)."""
     r = steps / np.roll(steps, 1)
     return np.stack([(1 + 2 * r) / (1 + r), -(1 + r), r * r / (1 + r)]) / steps
 
 
 def imbalance(a: Array, e: Array, f: Array) -> Array:
-    """Residual of the equations, (2, C, K)."""
+    """Return the residual of the equations, (2, C, K)."""
     return np.asarray(a[0] * e + a[1] * np.roll(e, 1, axis=-1) + a[2] * np.roll(e, 2, axis=-1) - f)
 
 
@@ -54,7 +54,7 @@ def newton_step(a: Array, left: Array, slopes: Array) -> Array:
 
 
 def _inverse(a_0: Array, slopes: Array) -> Array:
-    """The inverses of a_0 − f', (2, 2, C, K)."""
+    """Return the inverses of a_0 − f', (2, 2, C, K)."""
     (A, B), (C, D) = -slopes
     A, D = a_0 + A, a_0 + D
     return np.array([[D, -B], [-C, A]]) / (A * D - B * C)
@@ -78,17 +78,17 @@ def _solved(a: Array, inverse: Array, left: Array) -> Array:
 
 
 def _closed(end: Array) -> Array:
-    """The values before the cycle that come back at its end, (C, 4, 1)."""
+    """Return the values before the cycle that come back at its end, (C, 4, 1)."""
     return np.asarray(np.linalg.solve(_NEARLY * np.eye(4) - end[:, :, 1:], end[:, :, :1]))
 
 
 def _of_node(G: Array, node: int) -> Array:
-    """The matrices of one node, (C, 2, 2)."""
+    """Return the matrices of one node, (C, 2, 2)."""
     return np.moveaxis(G[..., node], -1, 0)
 
 
 def _bands(G_1: Array, G_2: Array) -> Array:
-    """The lower triangular matrix of all cases, as LAPACK stores bands: (6, 2 C K)."""
+    """Return the lower triangular matrix of all cases, as LAPACK stores bands: (6, 2 C K)."""
     cases, nodes = G_1.shape[2:]
     bands = np.zeros((6, cases, nodes, 2))
     bands[0] = 1

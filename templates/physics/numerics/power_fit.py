@@ -28,7 +28,7 @@ def exponent_k2(So: Array) -> Array:
 
 
 def _row(So: Array, light: float, medium: float, heavy: float) -> Array:
-    """The constant of the row in which So lies: below 10, up to 100, above; a scalar for a scalar."""
+    """Return the constant of the row in which So lies: below 10, up to 100, above; a scalar for a scalar."""
     if isinstance(So, float):  # NumPy would take ten times as long
         return np.float64(light if So < 10 else medium if So <= 100 else heavy)
     return np.where(So < 10, light, np.where(So <= 100, medium, heavy))[()]

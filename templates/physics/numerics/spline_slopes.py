@@ -74,7 +74,7 @@ def _block(
 
 
 def _slopes(axis: Axis, x: Array, cell: NDArray[np.int32]) -> Array:
-    """Slopes of the four B-splines at x, (N, 4)."""
+    """Return the slopes of the four B-splines at x, (N, 4)."""
     t = (x - axis.first) / axis.step - cell
     u = 1 - t
     inner = t * (1.5 * t - 2), u * (2 - 1.5 * u)

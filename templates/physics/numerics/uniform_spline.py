@@ -26,7 +26,7 @@ class Axis:
     nodes: int
 
     def places(self) -> Array:
-        """All nodes."""
+        """Return all nodes."""
         return np.linspace(self.first, self.first + self.step * (self.nodes - 1), self.nodes)
 
     def weights(self, x: Array, cell: NDArray[np.int32] | None = None) -> tuple[NDArray[np.int32], Array]:
@@ -56,7 +56,7 @@ def spline_coefficients(values: Array) -> Array:
 
 
 def surface_coefficients(values: Array) -> Array:
-    """The same along the first two axes of (n, m, functions)."""
+    """Return the same along the first two axes of (n, m, functions)."""
     return spline_coefficients(spline_coefficients(values).swapaxes(0, 1)).swapaxes(0, 1)
 
 

@@ -39,7 +39,7 @@ def volume(coefficients: Array, axes: Axes, places: Array) -> Array:
 
 
 def at_third(coefficients: Array, third: Axis, place: float) -> Array:
-    """Coefficients of the surface that is left of a volume at one place of its third axis."""
+    """Return the coefficients of the surface that is left of a volume at one place of its third axis."""
     cell, weight = third.weights(np.array([place]))
     return np.asarray(np.einsum("ijkf,k->ijf", coefficients[:, :, cell[0] : cell[0] + 4], weight[0]))
 

@@ -97,7 +97,7 @@ class CycleOrbit:
     """Results of marching in time."""
 
     def admitted(self, eps_max: Array) -> "CycleOrbit":
-        """The same with NaN where the largest eccentricity was not admitted."""
+        """Return the same with NaN where the largest eccentricity was not admitted."""
         lost = np.isnan(eps_max)
 
         def kept(values: Array) -> Array:
@@ -132,7 +132,7 @@ class CycleFilm:
     }
 )
 def cycle_orbit(level: str, duty: Duty, marching: Marching = MARCHING) -> CycleOrbit:
-    """The periodic orbit of each point, at a level of fidelity; marching counts at level transient."""
+    """Return the periodic orbit of each point, at a level of fidelity; marching counts at level transient."""
     cases = _cases(level, duty)
     start = periodic_orbit(cases.load, _law(level, cases.ratio))
     if level != "transient":
@@ -151,7 +151,7 @@ def cycle_orbit(level: str, duty: Duty, marching: Marching = MARCHING) -> CycleO
     }
 )
 def cycle_film(level: str, duty: Duty, orbit: CycleOrbit) -> CycleFilm:
-    """Pressure, loss and flow along an orbit."""
+    """Return the pressure, loss and flow along an orbit."""
     cases = _cases(level, duty)
     load, points = cases.load, cases.points
     eps = np.stack([orbit.eps_x, orbit.eps_y]).reshape(2, *load.w.shape)
@@ -185,13 +185,13 @@ def level_spread(level: str, duty: Duty, eps_max: Array) -> Array:
 
 
 def weights(angle: Array, period: float) -> Array:
-    """Weights of the trapezoidal rule over a cycle, (N,), in the unit of the angles."""
+    """Return the weights of the trapezoidal rule over a cycle, (N,), in the unit of the angles."""
     widths = np.diff(angle, append=angle[0] + period)
     return np.asarray((widths + np.roll(widths, 1)) / 2)
 
 
 def cycle_of(angle: Array) -> float:
-    """The cycle [rad] that crank angles [rad] cover once, 2 pi or 4 pi; NaN if neither, or not rising.
+    """Return the cycle [rad] that crank angles [rad] cover once, 2 pi or 4 pi; NaN if neither, or not rising.
 
     The last angle is not the first one again, and from it to the end of the cycle is no farther than twice
     the largest other step.
@@ -208,13 +208,13 @@ def cycle_of(angle: Array) -> float:
 
 @units("rad", returns="rad", latex=r"\text{{the whole cycle that the angles cover}}")
 def cycle_length(angle: Array) -> Array:
-    """The same as a number for a formula."""
+    """Return the same as a number for a formula."""
     return np.asarray(cycle_of(angle))[()]
 
 
 @units("rad/s", returns="rad/s", latex=r"\left|\overline{{{0}}}\right|")
 def mean_speed(speed: Array) -> Array:
-    """The size of the mean of a speed over the cycle [rad/s]."""
+    """Return the size of the mean of a speed over the cycle [rad/s]."""
     return np.abs(speed if np.ndim(speed) == 0 else np.mean(speed, axis=-1))
 
 
@@ -252,7 +252,7 @@ def _under_load(level: str, ratio: Array, S: Array, eps: Array) -> tuple[Array, 
 
 
 def _shaped(orbit: Orbit, points: tuple[int, ...], marched: TransientOrbit | None = None) -> CycleOrbit:
-    """The cases in the shape of the points."""
+    """Return the cases in the shape of the points."""
     x, y = (e.reshape(*points, -1) for e in orbit.eps)
     gap = orbit.least_gap.reshape(points)
     return CycleOrbit(
@@ -267,7 +267,7 @@ def _shaped(orbit: Orbit, points: tuple[int, ...], marched: TransientOrbit | Non
 
 
 def _sampled(marched: TransientOrbit | None, load: CyclicLoad) -> Orbit:
-    """A marched orbit at the load's angles; NaN if there is none."""
+    """Return a marched orbit at the load's angles; NaN if there is none."""
     if marched is None:
         return Orbit(np.full(load.S.shape, np.nan), *np.full((5, load.w.shape[0]), np.nan))
     gap = 1 - np.hypot(*marched.eps)
@@ -283,7 +283,7 @@ def _at(marched: TransientOrbit, values: Array, load: CyclicLoad) -> Array:
 
 
 def _marched(marched: TransientOrbit, load: CyclicLoad, eps: Array) -> tuple[Array, Array, Array, Array]:
-    """Pressure, side flow, shear and the load's work on the film, (1, N) each."""
+    """Return the pressure, side flow, shear and the load's work on the film, (1, N) each."""
     P, flow, shear = (_at(marched, v, load)[None] for v in (marched.P_max, marched.side_flow, marched.shear))
     step = load.period / marched.place.size
     rate = [_at(marched, (np.roll(e, -1) - np.roll(e, 1)) / (2 * step), load) for e in marched.eps]

@@ -126,13 +126,13 @@ def _settled(system: _Squeezed, load_direction: float, film: Mask) -> Motion:
 
 
 def _forces(mesh: Mesh, pressures: Array) -> Array:
-    """Force of each pressure along the line of centres and ahead of it, (2, velocities)."""
+    """Return the force of each pressure along the line of centres and ahead of it, (2, velocities)."""
     line = np.einsum("nmk,m,n->nk", pressures, mesh.weight_zeta, mesh.weight_phi) / 4
     return np.asarray(np.stack([np.cos(mesh.phi), np.sin(mesh.phi)]) @ line)
 
 
 def _crest(P: Array) -> float:
-    """Largest pressure on the ring, by a parabola through the three nodes about it."""
+    """Return the largest pressure on the ring, by a parabola through the three nodes about it."""
     k = int(P.argmax())
     before, top, after = P[k - 1], P[k], P[(k + 1) % P.size]
     bend = 2 * top - before - after

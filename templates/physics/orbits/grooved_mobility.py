@@ -48,11 +48,11 @@ class Groove:
     """(C,) how far it goes in that sense; 2 pi goes all around [rad]."""
 
     def of(self, cases: Mask) -> "Groove":
-        """The same of fewer cases."""
+        """Return the same of fewer cases."""
         return Groove(self.share[cases], self.start[cases], self.extent[cases])
 
     def covers(self, direction: Array, half: float = SECTOR) -> Array:
-        """The share of a sector about directions in the sleeve, (C, K) [rad], that it covers [-]."""
+        """Return the share of a sector about directions in the sleeve, (C, K) [rad], that it covers [-]."""
         extent = self.extent[:, None]
 
         def up_to(angle: Array) -> Array:
@@ -64,7 +64,7 @@ class Groove:
         return np.where(self.share[:, None] > 0, covered, 0.0)
 
     def land(self, ratio: Array) -> Array:
-        """Width over diameter of each of the two lands beside it, (C,) [-]."""
+        """Return the width over diameter of each of the two lands beside it, (C,) [-]."""
         return np.asarray(ratio * (1 - self.share) / 2)
 
 
@@ -77,7 +77,7 @@ class Passing:
     groove: Groove
 
     def of(self, cases: Mask) -> "Passing":
-        """The same of fewer cases."""
+        """Return the same of fewer cases."""
         return Passing(self.load.of(cases), self.sleeve.of(cases), self.groove.of(cases))
 
     def with_distinct_rings(self) -> tuple["Passing", NDArray[np.intp]]:
@@ -98,7 +98,7 @@ class Passing:
         return ring_of(replace(self.load, S=rows), finer)
 
     def covered(self, nodes: int) -> Array:
-        """The share s on the ring of `periodic_orbit` that has so many nodes, (C, nodes) [-].
+        """Return the share s on the ring of `periodic_orbit` that has so many nodes, (C, nodes) [-].
 
         Raises
         ------
@@ -128,13 +128,13 @@ class GroovedLaw:
         self._covered: dict[int, Array] = {}
 
     def of(self, cases: Mask) -> "GroovedLaw":
-        """The same law of fewer cases."""
+        """Return the same law of fewer cases."""
         fewer = GroovedLaw(self.ratio[cases], self.passing.of(cases))
         fewer._covered = {nodes: covered[cases] for nodes, covered in self._covered.items()}
         return fewer
 
     def covered(self, nodes: int) -> Array:
-        """The share s on a ring, kept."""
+        """Return the share s on a ring, kept."""
         if nodes not in self._covered:
             self._covered[nodes] = self.passing.covered(nodes)
         return self._covered[nodes]
@@ -171,7 +171,7 @@ def lift_of(share: Array, extent: Array, pressure: Array) -> Array:
 
 
 def lifting(lift: Array, sleeve: Turning, groove: Groove, angle: Array) -> Array:
-    """The force of the supply pressure on the journal, against which the load presses, (2, C, N) [-].
+    """Return the force of the supply pressure on the journal, against which the load presses, (2, C, N) [-].
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def lifting(lift: Array, sleeve: Turning, groove: Groove, angle: Array) -> Array
 
 
 def grooved_orbit(passing: Passing, ratio: Array) -> Orbit:
-    """The periodic orbit of each case by the mobility beside its groove; NaN where none was found.
+    """Return the periodic orbit of each case by the mobility beside its groove; NaN where none was found.
 
     Parameters
     ----------
@@ -206,7 +206,7 @@ def grooved_orbit(passing: Passing, ratio: Array) -> Orbit:
 
 
 def grooved_film_under_load(xi: Array, eta: Array, ratio: Array, passing: Passing) -> tuple[Array, Array]:
-    """What the film beside a groove does, at the load's angles (C, N), in Booker's frame [-].
+    """Return what the film beside a groove does, at the load's angles (C, N), in Booker's frame [-].
 
     Parameters
     ----------

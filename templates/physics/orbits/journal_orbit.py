@@ -65,7 +65,7 @@ class CyclicLoad:
     """(C, N) mean speed of journal and sleeve relative to the frame, over Omega [-]."""
 
     def of(self, cases: Mask) -> "CyclicLoad":
-        """The same of fewer cases."""
+        """Return the same of fewer cases."""
         return CyclicLoad(self.angle, self.period, self.S[:, cases], self.w[cases])
 
 
@@ -101,21 +101,21 @@ class Ring:
     """(C, K)."""
 
     def steps(self) -> Array:
-        """The step that leads to each node, (K,) [rad]."""
+        """Return the step that leads to each node, (K,) [rad]."""
         return np.diff(self.place, prepend=self.place[-1] - self.period)
 
     def every(self, stride: int) -> "Ring":
-        """The ring of every stride-th node."""
+        """Return the ring of every stride-th node."""
         part = slice(None, None, stride)
         return Ring(self.place[part], self.period, self.S[..., part], self.w[..., part])
 
     def of(self, cases: Mask) -> "Ring":
-        """The same nodes of fewer cases."""
+        """Return the same nodes of fewer cases."""
         return Ring(self.place, self.period, self.S[:, cases], self.w[cases])
 
 
 def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
-    """The orbit of every case, by the mobility of a law; NaN where none was found.
+    """Return the orbit of every case, by the mobility of a law; NaN where none was found.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def node_counts(load: CyclicLoad, finer: int = 1) -> NDArray[np.intp]:
 
 
 def ring_of(load: CyclicLoad, finer: int = 1) -> tuple[Ring, NDArray[np.intp]]:
-    """The finest nodes, and which of them are the load's own."""
+    """Return the finest nodes, and which of them are the load's own."""
     counts = node_counts(load, finer)
     own = np.cumsum(counts) - counts
     interval = np.repeat(np.arange(counts.size), counts)
@@ -209,13 +209,13 @@ def _nested(ring: Ring, law: MobilityLaw) -> tuple[Array, Mask, Array, list[Arra
 
 
 def _between(ring: Ring, e: Array, settled: Mask) -> Array:
-    """The smallest gap of each case between the nodes of a ring, (C,)."""
+    """Return the smallest gap of each case between the nodes of a ring, (C,)."""
     gap = np.where(settled[:, None], 1 - np.hypot(*e), 1.0)
     return np.where(settled, least_between(ring.place, ring.period, gap), np.nan)
 
 
 def _halved(e: Array, nodes: int) -> Array:
-    """Values on a ring with a node midway in every step."""
+    """Return the values on a ring with a node midway in every step."""
     finer = np.empty((*e.shape[:-1], nodes))
     finer[..., ::2] = e
     finer[..., 1::2] = ((e + np.roll(e, -1, axis=-1)) / 2)[..., : nodes // 2]

@@ -24,7 +24,7 @@ class MobilityLaw(Protocol):
         """M, (2, C, K), and its slopes by xi and eta, (2, 2, C, K) [-]."""
 
     def of(self, cases: Mask) -> "MobilityLaw":
-        """The same law of fewer cases."""
+        """Return the same law of fewer cases."""
 
 
 class ShortLaw:
@@ -35,7 +35,7 @@ class ShortLaw:
         self.ratio = ratio
 
     def of(self, cases: Mask) -> "ShortLaw":
-        """The same law of fewer cases."""
+        """Return the same law of fewer cases."""
         return ShortLaw(self.ratio[cases])
 
     def __call__(self, xi: Array, eta: Array) -> tuple[Array, Array]:
@@ -58,7 +58,7 @@ class MapLaw:
         self.surfaces = at_thirds(mobility_map().motion, mobility_map().axes[2], np.log(widths))
 
     def of(self, cases: Mask) -> "MapLaw":
-        """The same law of fewer cases."""
+        """Return the same law of fewer cases."""
         return MapLaw(self.ratio[cases])
 
     def __call__(self, xi: Array, eta: Array) -> tuple[Array, Array]:

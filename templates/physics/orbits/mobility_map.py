@@ -60,7 +60,7 @@ def mobility_map() -> MobilityMap:
 
 
 def mapped_mobility(eps: Array, ratio: Array, load_direction: Array) -> Array:
-    """Mobility M: the velocity that a load gives the journal in a film that does not turn [-].
+    """Return the mobility M: the velocity that a load gives the journal in a film that does not turn [-].
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def mapped_mobility(eps: Array, ratio: Array, load_direction: Array) -> Array:
 
 
 def mapped_mobility_along_load(xi: Array, eta: Array, ratio: Array) -> Array:
-    """The same in Booker's frame, without angles: the form for integrating an orbit [-].
+    """Return the same in Booker's frame, without angles: the form for integrating an orbit [-].
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def mapped_mobility_along_load(xi: Array, eta: Array, ratio: Array) -> Array:
 
 
 def mapped_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
-    """What the film does under the load, in Booker's frame [-].
+    """Return what the film does under the load, in Booker's frame [-].
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def mapped_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
 
 
 def mobility_error(xi: Array, eta: Array, ratio: Array) -> Array:
-    """Largest error [-] measured about a point between the map and new, finer solutions.
+    """Return the largest error [-] measured about a point between the map and new, finer solutions.
 
     Returns
     -------
@@ -157,14 +157,14 @@ def mobility_error(xi: Array, eta: Array, ratio: Array) -> Array:
 
 
 def cell_of(axes: Axes, places: Array, cells: Array) -> Array:
-    """Indices (..., 3) of the error's cells at places (..., 3) in the map's coordinates."""
+    """Return the indices (..., 3) of the error's cells at places (..., 3) in the map's coordinates."""
     first = np.array([axis.first for axis in axes])
     length = np.array([axis.step * (axis.nodes - 1) for axis in axes])
     return np.asarray(np.floor((places - first) / length * cells).astype(int))
 
 
 def coordinates(xi: Array, eta: Array) -> tuple[Array, Array]:
-    """Coordinates of the gap and of the place on its chord [-]."""
+    """Return the coordinates of the gap and of the place on its chord [-]."""
     h = ECCENTRICITY_LIMIT - xi
     chord = np.sqrt(np.maximum(h * (ECCENTRICITY_LIMIT + xi), 1e-30))
     return np.log(h) + h, np.minimum(np.abs(eta) / chord, 1.0)

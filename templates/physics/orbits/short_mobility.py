@@ -20,7 +20,7 @@ _BLOCK = 4096
 
 
 def short_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
-    r"""What the half film does under a load that moves the journal by the mobility of Booker 1971 [-].
+    r"""Return what the half film does under a load that moves the journal by the mobility of Booker 1971 [-].
 
     .. math:: p_{max} = \tfrac32\frac{\eta B^2 v}{h^3}\cos(\varphi-\alpha) \text{ at its largest},\quad
         \sin(\varphi-\alpha)+\epsilon\sin(2\varphi-\alpha)+2\epsilon\sin\alpha = 0

@@ -59,7 +59,7 @@ def least_between(place: Array, period: float, gap: Array) -> Array:
 
 
 def step_bound(films: Sequence[Array]) -> Array:
-    """The bound of the relative error of the last of three gaps, by rings with steps 4h, 2h and h.
+    """Return the bound of the relative error of the last of three gaps, by rings with steps 4h, 2h and h.
 
     Parameters
     ----------
@@ -83,12 +83,12 @@ def step_bound(films: Sequence[Array]) -> Array:
 
 
 def _straight(d1: Array, d2: Array, ratio: Array) -> Array:
-    """The error where both changes go the same way."""
+    """Return the error where both changes go the same way."""
     falling = np.where(ratio > FALLING, d2, 3 * np.maximum(d1, d2))
     seen = np.where(ratio >= SEEN[0], 1.25 * d2 / 3, falling)
     return np.where(ratio > SEEN[1], np.maximum(d2, d1 / 4), seen)
 
 
 def _alternating(d1: Array, d2: Array, ratio: Array) -> Array:
-    """The error where the last change goes back."""
+    """Return the error where the last change goes back."""
     return np.asarray(np.maximum(d1, d2) * np.where(ratio > FALLING, 1.0, 3.0))

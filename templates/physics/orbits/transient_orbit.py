@@ -102,7 +102,7 @@ def _report(cycle: int, part: float, difference: float) -> None:
 
 
 def _full(journal: Journal, eps: Array) -> State:
-    """A film that is full, and bears nothing yet."""
+    """Return a film that is full, and bears nothing yet."""
     nothing = np.zeros((journal.phi.size, journal.zeta.size - 1))
     return State(
         eps, nothing, nothing, np.broadcast_to(journal.gap(eps, journal.phi)[:, None], nothing.shape)
@@ -110,7 +110,7 @@ def _full(journal: Journal, eps: Array) -> State:
 
 
 def _next(journal: Journal, states: list[State], S: Array, w: float, step: float) -> State | None:
-    """One step; where it fails, or at first, of first order, and then in several."""
+    """Return one step; where it fails, or at first, of first order, and then in several."""
     here = states[-1]
     if len(states) > 1:
         before = (states[-2].content / 2 - 2 * here.content) / step
@@ -127,7 +127,7 @@ def _next(journal: Journal, states: list[State], S: Array, w: float, step: float
 
 
 def _measured(journal: Journal, place: Array, states: list[State], cycles: int) -> TransientOrbit:
-    """What the states of a cycle do."""
+    """Return what the states of a cycle do."""
     step = 2 * np.pi / journal.phi.size
     width, last = dual_widths(journal.zeta)[:-1], np.diff(journal.zeta)[-1]
     gaps = [journal.gap(state.eps, journal.phi) for state in states]

@@ -26,16 +26,16 @@ class Turning:
     """(C, N) angle at the load's angles, less that of the even turning, 0 at crank angle 0 [rad]."""
 
     def of(self, cases: Mask) -> "Turning":
-        """The same of fewer cases."""
+        """Return the same of fewer cases."""
         return Turning(self.turns[cases], self.period, self.swing[cases])
 
     def at(self, place: Array, swing: Array) -> Array:
-        """The angle at crank angles, with the swing there, (C, K) [rad]."""
+        """Return the angle at crank angles, with the swing there, (C, K) [rad]."""
         return np.asarray(swing + 2 * np.pi * self.turns[:, None] * place / self.period)
 
 
 def turning(angle: Array, period: float, speed: Array) -> Turning:
-    """The turning of a part by its speed in the frame over that of the crank.
+    """Return the turning of a part by its speed in the frame over that of the crank.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ def logarithm_of_land(inner: Array, outer: Array) -> Array:
     latex=r"\frac{{\pi}}{{8}}\left(\frac{{{0}^2-{1}^2}}{{\ln({0}/{1})}}-\frac{{{2}^2-{3}^2}}{{\ln({2}/{3})}}\right)",
 )
 def effective_area(D: Array, D_0: Array, d_0: Array, d: Array) -> Array:
-    r"""Load over recess pressure [m²].
+    r"""Return the load over recess pressure [m²].
 
     .. math:: A_e = \frac{\pi}{2}\left[\frac{R^2-R_0^2}{\ln(R/R_0)} - \frac{r_0^2-r^2}{\ln(r_0/r)}\right]
 
@@ -65,7 +65,7 @@ def effective_area(D: Array, D_0: Array, d_0: Array, d: Array) -> Array:
     latex=r"\frac{{\pi}}{{6}}\left(\frac{{1}}{{\ln({0}/{1})}}+\frac{{1}}{{\ln({2}/{3})}}\right)",
 )
 def land_conductance(D: Array, D_0: Array, d_0: Array, d: Array) -> Array:
-    r"""Flow Q eta/(p h³) over all lands [-].
+    r"""Return the flow Q eta/(p h³) over all lands [-].
 
     .. math:: q = \frac{\pi}{6}\left[\frac{1}{\ln(R/R_0)} + \frac{1}{\ln(r_0/r)}\right]
 
@@ -89,7 +89,7 @@ def land_conductance(D: Array, D_0: Array, d_0: Array, d: Array) -> Array:
     latex=r"\frac{{\pi}}{{32}}\left({0}^4-{1}^4+{2}^4-{3}^4\right)",
 )
 def polar_moment_of_lands(D: Array, D_0: Array, d_0: Array, d: Array) -> Array:
-    """The integral of r² over the lands, by which a turning collar shears their film [m⁴].
+    """Return the integral of r² over the lands, by which a turning collar shears their film [m⁴].
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def restrictor_flow(
     rho: Array,
     pump_flow: Array,
 ) -> Array:
-    r"""Flow of oil into the recess [m³/s].
+    r"""Return the flow of oil into the recess [m³/s].
 
     .. math::
         Q_{capillary} = \frac{\pi d^4 \Delta p}{128\,\eta\,l}, \quad
@@ -145,7 +145,7 @@ def restrictor_flow(
 
 @units(None, "1", returns="1")
 def stiffness_factor(kind: str, beta: Array) -> Array:
-    """Stiffness −dW/dh over W/h, from the balance of the restrictor's and the lands' flows [-].
+    """Return the stiffness −dW/dh over W/h, from the balance of the restrictor's and the lands' flows [-].
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def stiffness_factor(kind: str, beta: Array) -> Array:
 
 @units(None, returns="1")
 def stiffest_ratio(kind: str) -> Array:
-    """Recess over supply pressure at which a pad of given film and supply is stiffest [-].
+    """Return the recess over supply pressure at which a pad of given film and supply is stiffest [-].
 
     1/2 with a capillary, 2 − √2 with an orifice; with a constant flow the stiffness has no maximum: NaN.
 
@@ -178,7 +178,7 @@ def stiffest_ratio(kind: str) -> Array:
 
 @units(None, "Pa", "Pa", returns="Pa")
 def pump_pressure(kind: str, supply: Array, recess: Array) -> Array:
-    """Pressure against which the pump works: the recess's where it feeds a constant flow [Pa].
+    """Return the pressure against which the pump works: the recess's where it feeds a constant flow [Pa].
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def pump_pressure(kind: str, supply: Array, recess: Array) -> Array:
 
 @units("m", "m", returns="m**2", latex=r"\frac{{\pi}}{{4}}\left({0}^2-{1}^2\right)")
 def pad_area(D: Array, d: Array) -> Array:
-    """Area of the pad, its recess included [m²].
+    """Return the area of the pad, its recess included [m²].
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def pad_area(D: Array, d: Array) -> Array:
 
 @units("W", "W", returns="1", latex=r"\frac{{{0}}}{{{1}}}")
 def power_ratio(friction: Array, pumping: Array) -> Array:
-    """Friction over pumping power; NaN without friction [-].
+    """Return the friction over pumping power; NaN without friction [-].
 
     At a given film and load the least power is spent with the viscosity at which it is 1; at a given
     viscosity and load with the film at which it is 3, because pumping goes with h³ and friction with 1/h.

@@ -51,7 +51,7 @@ def solved_pads(a: Array, width: Array, along: int, across_half: int) -> tuple[A
 
 
 def cell_lengths(nodes: Array) -> Array:
-    """Lengths of the cells around the nodes (..., n + 1), half cells at the ends."""
+    """Return the lengths of the cells around the nodes (..., n + 1), half cells at the ends."""
     half = np.diff(nodes) / 2
     return np.pad(half, ((0, 0), (0, 1))) + np.pad(half, ((0, 0), (1, 0)))
 

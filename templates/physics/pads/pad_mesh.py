@@ -54,7 +54,7 @@ class Grading:
 
 
 def grading(a: Array, width: Array) -> Grading:
-    """The map for pads of film ratio a ≥ 1 and width b/l.
+    """Return the map for pads of film ratio a ≥ 1 and width b/l.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def _stretch(logarithm: Array) -> Array:
 
 
 def across(a: Array, width: Array, m: int) -> Array:
-    """Nodes from the middle to the side, graded to its layer, as thick as the pad is long [-].
+    """Return the nodes from the middle to the side, graded to its layer, as thick as the pad is long [-].
 
     Parameters
     ----------

@@ -23,17 +23,17 @@ def _require_ratio(a: Array) -> None:
 
 
 def _near_one(a: Array) -> Mask:
-    """Film ratios at which the closed forms lose digits by cancellation."""
+    """Return the film ratios at which the closed forms lose digits by cancellation."""
     return np.abs(np.asarray(a) - 1) < _NEAR
 
 
 def _ratio_away_from_one(a: Array) -> Array:
-    """The film ratio, moved off 1 so that a closed form which is not used there stays finite."""
+    """Return the film ratio, moved off 1 so that a closed form which is not used there stays finite."""
     return np.where(_near_one(a), 2.0, a)
 
 
 def _shape(x: Array, a: Array) -> Array:
-    """The pressure over a − 1, which does not vanish at a = 1."""
+    """Return the pressure over a − 1, which does not vanish at a = 1."""
     return x * (1 - x) / ((a + 1) * (a - (a - 1) * x) ** 2)
 
 
@@ -46,7 +46,7 @@ def _moment_near_one(a: Array, power: int) -> Array:
 
 
 def pressure_incline_Rayleigh_1918(x: Array, a: Array) -> Array:
-    r"""Pressure along the pad, p h_o²/(6 eta U l) at x/l [-].
+    r"""Return the pressure along the pad, p h_o²/(6 eta U l) at x/l [-].
 
     .. math:: p^* = \frac{(a-1)\,x(1-x)}{(a+1)\,(a-(a-1)x)^2}
 
@@ -68,7 +68,7 @@ def pressure_incline_Rayleigh_1918(x: Array, a: Array) -> Array:
 
 
 def load_incline_Rayleigh_1918(a: Array) -> Array:
-    r"""Load per unit width W h_o²/(6 eta U l²) [-].
+    r"""Return the load per unit width W h_o²/(6 eta U l²) [-].
 
     .. math:: W^* = \frac{1}{(a-1)^2}\left[\ln a - \frac{2(a-1)}{a+1}\right]
 
@@ -89,7 +89,7 @@ def load_incline_Rayleigh_1918(a: Array) -> Array:
 
 
 def centre_of_pressure_Rayleigh_1918(a: Array) -> Array:
-    r"""Distance of the pressure's centre from the inlet, over the length [-].
+    r"""Return the distance of the pressure's centre from the inlet, over the length [-].
 
     .. math:: x_c = \frac{a(a+2)\ln a - \frac{1}{2}(a-1)(5a+1)}{(a-1)\left[(a+1)\ln a - 2(a-1)\right]}
 
@@ -106,7 +106,7 @@ def centre_of_pressure_Rayleigh_1918(a: Array) -> Array:
 
 
 def friction_incline_Rayleigh_1918(a: Array) -> tuple[Array, Array]:
-    r"""Friction on the moving face and on the pad, F h_o/(eta U l) per unit width [-].
+    r"""Return the friction on the moving face and on the pad, F h_o/(eta U l) per unit width [-].
 
     .. math:: F^* = \frac{\ln a}{a-1} \pm 3 (a-1) W^*
 
@@ -148,7 +148,7 @@ def film_velocity(z: Array, h: Array, pressure_gradient: Array, eta: Array, u_a:
 
 
 def reduced_Reynolds_number(density: Array, speed: Array, h: Array, eta: Array, length: Array) -> Array:
-    """Inertia over viscous force of a thin film, rho u h²/(eta l); it must be well below 1 [-].
+    """Return the inertia over viscous force of a thin film, rho u h²/(eta l); it must be well below 1 [-].
 
     Parameters
     ----------

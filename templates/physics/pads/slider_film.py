@@ -88,15 +88,15 @@ class PadFilm(ABC):
 
     @abstractmethod
     def pressure(self, x: Array) -> Array:
-        """Pressure p h_o²/(6 eta U l) at mid-width and x/l, (..., places)."""
+        """Return the pressure p h_o²/(6 eta U l) at mid-width and x/l, (..., places)."""
 
     @abstractmethod
     def gradient(self, x: Array) -> Array:
-        """Pressure gradient h_o²/(eta U) dp/dx at mid-width and x/l, for one place a pad."""
+        """Return the pressure gradient h_o²/(eta U) dp/dx at mid-width and x/l, for one place a pad."""
 
 
 def pad_film(level: str, a: Array, width: Array) -> PadFilm:
-    """The film at a level of fidelity: `infinite`, without side leakage, or `finite`.
+    """Return the film at a level of fidelity: `infinite`, without side leakage, or `finite`.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def shear_of_wedge(a: Array) -> Array:
 
 @units("m", "Pa/m", "Pa*s", "m/s", returns="m/s")
 def velocity_profile(h: Array, pressure_gradient: Array, eta: Array, u_a: Array) -> Array:
-    """Velocity at `HEIGHTS` across the film, (..., 41): see `slider.film_velocity` [m/s].
+    """Return the velocity at `HEIGHTS` across the film, (..., 41): see `slider.film_velocity` [m/s].
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def velocity_profile(h: Array, pressure_gradient: Array, eta: Array, u_a: Array)
 
 
 def _bearing(a: Array) -> Array:
-    """The film ratio of a film that bears: 1 for one that is ruptured, or not a number."""
+    """Return the film ratio of a film that bears: 1 for one that is ruptured, or not a number."""
     return np.where(a > 1, a, 1.0)
 
 
@@ -171,7 +171,7 @@ class InfinitePad(PadFilm):
     """The closed forms of an incline without side leakage; P = 0 where they would pull."""
 
     def pressure(self, x: Array) -> Array:
-        """Pressure p h_o²/(6 eta U l) at x/l, (..., places)."""
+        """Return the pressure p h_o²/(6 eta U l) at x/l, (..., places)."""
         return pressure_incline_Rayleigh_1918(x, _bearing(self.a)[..., None]) + 0 * self.a[..., None]
 
     def gradient(self, x: Array) -> Array:
@@ -182,7 +182,7 @@ class InfinitePad(PadFilm):
 
 
 def _infinite(a: Array) -> InfinitePad:
-    """The closed forms for pads (...)."""
+    """Return the closed forms for pads (...)."""
     wedge, nothing = _bearing(a), 0 * a
     bears = a > 1
     return InfinitePad(
@@ -206,7 +206,7 @@ class FinitePad(PadFilm):
     """(..., n + 1) pressure p h_o²/(6 eta U l) at the nodes, equally spaced in t."""
 
     def pressure(self, x: Array) -> Array:
-        """Pressure p h_o²/(6 eta U l) at mid-width and x/l, (..., places), by cubics."""
+        """Return the pressure p h_o²/(6 eta U l) at mid-width and x/l, (..., places), by cubics."""
         return np.maximum(interpolated(self.P, self.mesh.coordinate(x))[0], 0)
 
     def gradient(self, x: Array) -> Array:

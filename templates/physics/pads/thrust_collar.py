@@ -80,7 +80,7 @@ class CollarFilm:
 
 
 def collar_film(level: str, a: Array, angle: Array, reach: Array) -> CollarFilm:
-    """The film of pads in a row.
+    """Return the film of pads in a row.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def collar_film(level: str, a: Array, angle: Array, reach: Array) -> CollarFilm:
 
 
 def _extrapolated(a: Array, angle: Array, reach: Array) -> Array:
-    """Load, inlet and side flow of sectors (N, 3), by Richardson from two meshes."""
+    """Return the load, inlet and side flow of sectors (N, 3), by Richardson from two meshes."""
     along, across_half = _MESH
     coarse = solved_sectors(a, angle, reach, along // 2, across_half // 2)
     fine = solved_sectors(a, angle, reach, along, across_half)
@@ -113,7 +113,7 @@ def _extrapolated(a: Array, angle: Array, reach: Array) -> Array:
 
 
 def collar_temperature(collar: Collar, film: CollarFilm) -> Array:
-    """Temperature of a film that bears the load, NaN without a supply [K]."""
+    """Return the temperature of a film that bears the load, NaN without a supply [K]."""
     gain = collar.load / collar.heat_capacity * film.friction / (film.inlet - film.side / 2)
     kept = collar.carried * (film.inlet - film.side)
     return collar.T_supply + gain * (kept / (film.inlet - kept) + 0.5)
@@ -134,7 +134,7 @@ def _excess(level: str, law: Law, logarithm: Array, collar: Collar, oil: tuple[A
     "solved numerically by bracketing the film ratio, of pads by finite volumes of the Reynolds equation"
 )
 def working_collar(level: str, collar: Collar, law: Law, *oil: Array) -> CollarFilm:
-    """The film that bears the load with the viscosity that the oil has at the film's temperature.
+    """Return the film that bears the load with the viscosity that the oil has at the film's temperature.
 
     Parameters
     ----------

@@ -23,13 +23,13 @@ WEIBULL, LEAST = 1.5, 0.05
 
 
 def _last(value: Array, curve: Array) -> Array:
-    """A number for each point, to go with a curve for each point."""
+    """Return a number for each point, to go with a curve for each point."""
     return np.asarray(value)[..., None] if np.ndim(curve) else np.asarray(value)
 
 
 @units("N", "1", "N", returns="1")
 def relative_axial_load(F_a: Array, f_0: Array, C_0: Array) -> Array:
-    """The largest f0 Fa/C0 over the cycle [1]; 0 without axial load."""
+    """Return the largest f0 Fa/C0 over the cycle [1]; 0 without axial load."""
     largest = np.max(F_a, axis=-1) if np.ndim(F_a) else F_a
     return np.where(largest == 0, 0.0, np.where(np.isnan(f_0), 0.0, f_0) * largest / C_0)[()]
 
@@ -62,7 +62,7 @@ def equivalent_load_ISO_281_2007(F_r: Array, F_a: Array, f_0: Array, C_0: Array)
 @on_paper("mean of P^p over the cycle, to the power 1/p")
 @units(None, "1", returns="N")
 def mean_load(P: Array, p: Array) -> Array:
-    """The constant load of the same life [N]: the mean of P^p at equal steps, to the power 1/p."""
+    """Return the constant load of the same life [N]: the mean of P^p at equal steps, to the power 1/p."""
     if not np.ndim(P):
         return np.asarray(P)[()]
     largest = np.max(P, axis=-1, keepdims=True)
@@ -72,7 +72,7 @@ def mean_load(P: Array, p: Array) -> Array:
 
 @units("N", "N", returns="N")
 def static_load_ISO_76_2006(F_r: Array, F_a: Array) -> Array:
-    """The greatest static equivalent load of the cycle [N]: max(0.6 Fr + 0.5 Fa, Fr)."""
+    """Return the greatest static equivalent load of the cycle [N]: max(0.6 Fr + 0.5 Fa, Fr)."""
     P_0 = np.maximum(0.6 * F_r + 0.5 * F_a, F_r + 0 * F_a)
     return np.max(P_0, axis=-1) if np.ndim(P_0) else P_0
 
@@ -103,5 +103,5 @@ def time_of_turns(turns: Array, omega: Array) -> Array:
 
 @units("N", "N", returns="1", latex=r"\frac{{{0}}}{{{1}}}")
 def safety(C_0: Array, P_0: Array) -> Array:
-    """Static capacity over static load [1]; none (NaN) without load."""
+    """Return the static capacity over static load [1]; none (NaN) without load."""
     return (C_0 / np.where(P_0 > 0, P_0, np.nan))[()]

@@ -61,7 +61,7 @@ def splined_summit_integral(u: Array) -> Array:
 
 @units("1", "1", "Pa", returns="Pa", latex=r"\frac{{16\sqrt{{2}}\,\pi}}{{15}}\,{0}^2\sqrt{{{1}}}\,{2}")
 def contact_scale(product: Array, slenderness: Array, modulus: Array) -> Array:
-    """Contact pressure over F_{5/2} [Pa].
+    """Return the contact pressure over F_{5/2} [Pa].
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def contact_scale(product: Array, slenderness: Array, modulus: Array) -> Array:
 
 
 def contact_integrals(eps: Array, roughness: Array) -> tuple[Array, Array]:
-    """What the contact of a journal sums up to: along the line of centres, and around [-].
+    """Return what the contact of a journal sums up to: along the line of centres, and around [-].
 
     They are the integrals over the angle of F_{5/2} cos(phi) and of F_{5/2}, phi from the narrowest gap.
 

@@ -66,7 +66,7 @@ def mean_gap(u: Array) -> Array:
 def rough_journal(
     eps: float, ratio: float, roughness: float, asymmetry: float, around: int = 64, across: int = 8
 ) -> tuple[float, float]:
-    """Sommerfeld number and attitude [rad] of a journal by the average Reynolds equation.
+    """Return the Sommerfeld number and attitude [rad] of a journal by the average Reynolds equation.
 
     Parameters
     ----------

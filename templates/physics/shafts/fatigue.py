@@ -42,7 +42,7 @@ _LONGEST = np.log(1e300)  # of a life that is reported as a number
 
 @units(None, "Pa", "Pa", "Pa", returns="1", latex=_SHARES)
 def mean_share(correction: str, mean: Array, ultimate: Array, coefficient: Array) -> Array:
-    """What a mean stress [Pa] takes from the amplitude that is borne [1]; 1 takes all of it.
+    """Return what a mean stress [Pa] takes from the amplitude that is borne [1]; 1 takes all of it.
 
     Goodman: sigma_m/sigma_u. Gerber: (sigma_m/sigma_u)². Morrow: sigma_m/sigma_f'.
     """
@@ -87,7 +87,7 @@ def load_safety_factor(correction: str, amplitude: Array, allowable: Array, shar
 
 @units("Pa", "Pa", returns="1", latex=r"\frac{{{0}}}{{{1}}}")
 def ratio_or_none(strength: Array, stress: Array) -> Array:
-    """Strength over stress, both in Pa [1]; NaN without stress."""
+    """Return the strength over stress, both in Pa [1]; NaN without stress."""
     return np.where(stress > 0, strength / np.where(stress > 0, stress, 1.0), np.nan)[()]
 
 

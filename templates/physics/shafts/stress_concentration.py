@@ -31,7 +31,7 @@ _CHARTED = {TORSION: (0.25, 4.0), BENDING: (0.1, 20.0)}
 
 @units(None, "m", "m", "m", returns="1", latex=r"K_{{t}}^{{\mathrm{{Pilkey}}}}\left({1},{2},{3}\right)")
 def shoulder_fillet_Pilkey_2008(loading: str, D: Array, d: Array, r: Array) -> Array:
-    """Stress concentration factor [1] of a fillet r between diameters D > d [m], on the section d.
+    """Return the stress concentration factor [1] of a fillet r between diameters D > d [m], on the section d.
 
     In bending of the normal, in torsion of the shear stress; NaN where a dimension is missing.
     """
@@ -66,7 +66,7 @@ def notch_is_known(K_t: Array, slope: Array, amplitude: Array, S_a: Array, mean:
 
 @units("1", "1", returns="1", latex=r"1+{1}\left({0}-1\right)")
 def fatigue_notch_factor_Peterson(K_t: Array, q: Array) -> Array:
-    """Fatigue notch factor [1] of a stress concentration K_t [1] at a notch sensitivity q [1]."""
+    """Return the fatigue notch factor [1] of a stress concentration K_t [1] at a notch sensitivity q [1]."""
     return 1 + q * (K_t - 1)
 
 

@@ -138,14 +138,14 @@ def _singular_values(matrix: Array) -> Array:
 
 
 def _left_vectors(matrix: Array) -> Array:
-    """The left singular vectors [..., mode, row], in the order of the values; NaN as those."""
+    """Return the left singular vectors [..., mode, row], in the order of the values; NaN as those."""
     finite = _finite(matrix)
     columns = np.linalg.svd(np.where(finite, matrix, 0.0))[0]
     return np.where(finite, columns[..., ::-1].swapaxes(-1, -2), np.nan)
 
 
 def _finite(matrix: Array) -> NDArray[np.bool_]:
-    """Which matrices are finite [..., 1, 1]."""
+    """Return which matrices are finite [..., 1, 1]."""
     return np.asarray(np.isfinite(matrix).all(axis=(-2, -1), keepdims=True))
 
 
@@ -158,7 +158,7 @@ def _scaled(shapes: Array) -> Array:
 
 
 def _with_rigid(elastic: Array, value: float, axis: int) -> Array:
-    """The elastic modes after the one in which the chain turns as a whole."""
+    """Return the elastic modes after the one in which the chain turns as a whole."""
     shape = list(elastic.shape)
     shape[axis] = 1
     return np.concatenate([np.full(shape, value), elastic], axis=axis)

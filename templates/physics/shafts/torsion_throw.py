@@ -39,20 +39,20 @@ def ring(outer: Array, inner: Array) -> Array:
 
 @units("m", returns="1")
 def recommended(overlap: Array) -> Any:
-    """Which formula suits a throw whose pin overlaps the journal by so much [m]: carter or wilson."""
+    """Return which formula suits a throw whose pin overlaps the journal by so much [m]: carter or wilson."""
     return _selected([overlap > 0, overlap <= 0], [WILSON, CARTER])
 
 
 @units("m", "m", returns="1")
 def reason(overlap: Array, effective_throw: Array) -> Any:
-    """Why that formula is recommended; the throw [m] is what Ker Wilson leaves of it for the webs."""
+    """Return why that formula is recommended; the throw [m] is what Ker Wilson leaves of it for the webs."""
     cases = [(overlap > 0) & (effective_throw < 0), overlap > 0, overlap <= 0]
     return _selected(cases, [TOO_SHORT, OVERLAPPING, APART])
 
 
 @units("m", "N*m/rad", "N*m/rad", returns="N*m/rad", latex=r"{2}\text{{ if }}{0}>0\text{{, else }}{1}")
 def recommended_stiffness(overlap: Array, carter: Array, wilson: Array) -> Array:
-    """The stiffness [N m/rad] after the formula that is recommended at this overlap [m]."""
+    """Return the stiffness [N m/rad] after the formula that is recommended at this overlap [m]."""
     return np.where(overlap > 0, wilson, carter)[()]
 
 

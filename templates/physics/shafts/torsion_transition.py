@@ -45,7 +45,7 @@ TOO_SHORT = (
 
 @units("m", "m", "m", returns="1", latex=r"3x^{{2}}-2x^{{3}},\ x=\frac12+\frac{{5\,{0}}}{{{1}+{2}}}")
 def share_of_wilson(overlap: Array, journal: Array, pin: Array) -> Array:
-    """Share of Ker Wilson's formula [1] at an overlap of journal and pin diameters [m]: 0 to 1."""
+    """Return the share of Ker Wilson's formula [1] at an overlap of journal and pin diameters [m]: 0 to 1."""
     place = np.clip(0.5 + overlap / (2 * HALF_WIDTH * (journal + pin)), 0.0, 1.0)
     return place**2 * (3 - 2 * place)
 
@@ -63,13 +63,13 @@ def joined_stiffness(share: Array, carter: Array, wilson: Array) -> Array:
 
 @units("1", returns="1")
 def recommended(share: Array) -> Any:
-    """Which formula suits a throw, by the share [1] of Ker Wilson's: carter, wilson or between."""
+    """Return which formula suits a throw, by the share [1] of Ker Wilson's: carter, wilson or between."""
     return _selected([share <= 0, share >= 1, share > 0], [CARTER, WILSON, BETWEEN])
 
 
 @units("1", "m", returns="1")
 def reason(share: Array, effective_throw: Array) -> Any:
-    """Why that is recommended; the throw [m] is what Ker Wilson leaves of it for the webs."""
+    """Return why that is recommended; the throw [m] is what Ker Wilson leaves of it for the webs."""
     cases = [(share >= 1) & (effective_throw < 0), share >= 1, share <= 0, share > 0]
     return _selected(cases, [TOO_SHORT, OVERLAPPING, APART, NEITHER])
 

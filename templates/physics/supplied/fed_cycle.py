@@ -100,7 +100,7 @@ class FedOrbit:
     """Results of marching in time."""
 
     def admitted(self, eps_max: Array) -> "FedOrbit":
-        """The same with NaN where the largest eccentricity was not admitted."""
+        """Return the same with NaN where the largest eccentricity was not admitted."""
         lost = np.isnan(eps_max)
 
         def kept(values: Array) -> Array:
@@ -168,7 +168,7 @@ class _Cases:
     }
 )
 def fed_orbit(level: str, fed: FedDuty) -> FedOrbit:
-    """The periodic orbit of each point, at a level of fidelity."""
+    """Return the periodic orbit of each point, at a level of fidelity."""
     cases = _cases(level, fed)
     if level != "supplied":
         return _shaped(_periodic(level, cases), cases)
@@ -212,7 +212,7 @@ def fed_film(level: str, fed: FedDuty, orbit: FedOrbit) -> CycleFilm:
 
 
 def fed_duty(duty: Duty, feeding: Feeding, pressure: Array) -> FedDuty:
-    """A duty with what feeds it, at a supply pressure P = p psi²/(eta Omega) [-]."""
+    """Return a duty with what feeds it, at a supply pressure P = p psi²/(eta Omega) [-]."""
     share = np.where(feeding.grooved, feeding.groove_width / feeding.W, 0.0)
     supply = supply_of(feeding, pressure) if np.size(pressure) == 1 else None
     return FedDuty(duty, share, feeding.groove_start, feeding.groove_extent, supply)
@@ -250,7 +250,7 @@ def _cases(level: str, fed: FedDuty) -> _Cases:
 
 
 def _taken(level: str, ratio: Array, groove: Groove, turns: Array) -> Mask:
-    """Which cases a level takes: by their width, that of the lands, and what the sleeve does."""
+    """Return which cases a level takes: by their width, that of the lands, and what the sleeve does."""
     low, high = WIDTHS[level]
     taken = (ratio >= low) & (ratio <= high)
     if level != "mobility_grooved":
@@ -288,12 +288,12 @@ def _of_map(level: str, cases: _Cases, eps: Array) -> tuple[Array, Array, Array,
 
 
 def _filmless(orbit: FedOrbit) -> FedOrbit:
-    """The same without any eccentricity: there is no film, and no refusal either."""
+    """Return the same without any eccentricity: there is no film, and no refusal either."""
     return replace(orbit, eps_max=np.full_like(orbit.eps_max, np.nan)[()])
 
 
 def _shaped(orbit: Orbit, cases: _Cases, marched: SuppliedOrbit | None = None) -> FedOrbit:
-    """The cases in the shape of the points."""
+    """Return the cases in the shape of the points."""
     points = cases.points
     x, y = (e.reshape(*points, -1) for e in orbit.eps)
     gap = orbit.between.reshape(points)
@@ -313,7 +313,7 @@ def _nowhere(load: CyclicLoad) -> Orbit:
 
 
 def _sampled(marched: SuppliedOrbit, load: CyclicLoad) -> Orbit:
-    """A marched orbit at the load's angles."""
+    """Return a marched orbit at the load's angles."""
     eps = np.stack([_at(marched, e, load) for e in marched.eps])
     gap, angle, error = (
         np.array([v])
@@ -327,7 +327,7 @@ def _at(marched: SuppliedOrbit, values: Array, load: CyclicLoad) -> Array:
 
 
 def _of_march(marched: SuppliedOrbit, load: CyclicLoad, eps: Array) -> tuple[Array, Array, Array, Array]:
-    """Pressure, mean side flow, shear and the load's work on the film, (1, N) each."""
+    """Return the pressure, mean side flow, shear and the load's work on the film, (1, N) each."""
     P, shear = (_at(marched, v, load)[None] for v in (marched.P_max, marched.shear))
     flow = np.full_like(P, marched.mean_side_flow)  # of the steps, which are finer than the load's angles
     rate = [_at(marched, _slope(marched.theta, e, load.period), load) for e in marched.eps]

@@ -71,7 +71,7 @@ class Feeding:
         return np.asarray(1.0 * self.grooved + self.sleeve_holed + self.pin_holed)[()]
 
     def partial(self) -> Mask:
-        """Where the groove does not go all around."""
+        """Return where the groove does not go all around."""
         return np.asarray(self.grooved & (self.groove_extent < AROUND))
 
     def parts(self) -> Iterator[tuple[Mask, Array, Array, Array, bool]]:
@@ -82,7 +82,7 @@ class Feeding:
         yield self.pin_holed, self.pin_angle, self.pin_arc / self.D, self.pin_length, True
 
     def pockets(self) -> Iterator[Pocket]:
-        """The pockets of a single point; one so small that it rounds to nothing feeds nothing."""
+        """Yield the pockets of a single point; one so small that it rounds to nothing feeds nothing."""
         for present, middle, half, length, on_journal in self.parts():
             if np.all(present):
                 whole = min(float(np.ravel(half)[0]), np.pi)
@@ -100,7 +100,7 @@ def supply_of(feeding: Feeding, pressure: Array) -> Supply | None:
 
 
 def supply_kind(feeding: Feeding) -> str:
-    """The kind of supply of all points; empty where they differ."""
+    """Return the kind of supply of all points; empty where they differ."""
     half = np.abs(feeding.groove_extent - np.pi) <= HALF + 1e-9
     kinds = {
         "none": feeding.count == 0,
@@ -153,7 +153,7 @@ def feed_under_load(duty: Duty, feeding: Feeding) -> Array:
 
 
 def _in_frame(duty: Duty) -> tuple[Array, Array, Array]:
-    """Directions of the load and turns of sleeve and journal in the frame, (..., N) each [rad]."""
+    """Return the directions of the load and turns of sleeve and journal in the frame, (..., N) each [rad]."""
     period, Omega = cycle_of(duty.angle), np.asarray(duty.Omega)[..., None]
     of_sleeve, of_journal = ((speed - duty.omega_F) / Omega for speed in (duty.omega_B, duty.omega_J))
     x, y, *speeds, _ = np.broadcast_arrays(duty.F_x, duty.F_y, of_sleeve, of_journal, duty.angle)

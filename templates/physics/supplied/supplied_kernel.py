@@ -102,7 +102,7 @@ def lost(mesh: Mesh, around: Array, across: Array, P: Array, loss: Array) -> Non
 
 @compiled
 def diagonal(mesh: Mesh, around: Array, across: Array) -> Array:
-    """Sum of a cell's conductances, (n, m) [-]."""
+    """Return the sum of a cell's conductances, (n, m) [-]."""
     n, m = around.size, mesh.width.size
     total = np.empty((n, m))
     for i in range(n):
@@ -183,7 +183,7 @@ def complement(P: Array, void: Array, A: Array, T: Array, smooth: bool) -> tuple
 
 @compiled
 def borne(mesh: Mesh, alpha: Array, k: Array) -> tuple[float, float]:
-    """What a pressure alpha k bears along both axes of the mesh."""
+    """Return what a pressure alpha k bears along both axes of the mesh."""
     n, m = k.shape
     x, y = 0.0, 0.0
     for i in range(n):
@@ -242,7 +242,7 @@ def responses(
     mesh: Mesh, flows: tuple[Array, Array], A: Array, T: Array, feeding: Array, loss: Array,
     law: tuple[Array, Array, Array, Array],
 ) -> Array:  # fmt: skip
-    """The unknown k of every cell without displacement, and by each component of it, (3, n, m)."""
+    """Return the unknown k of every cell without displacement, and by each component of it, (3, n, m)."""
     alpha, beta, P0, v0 = law
     n, m = A.shape
     own, right, k = np.empty((n, m)), np.empty((n * m, 3)), np.empty((3, n, m))
@@ -267,7 +267,7 @@ def responses(
 def displaced(
     mesh: Mesh, e: Array, P: Array, k: Array, alpha: Array, P0: Array, S: Array, mass: float, inertia: Array
 ) -> tuple[float, float]:
-    """The change of the eccentricity for which the film bears the load and the journal's inertia."""
+    """Return the change of the eccentricity for which the film bears the load and the journal's inertia."""
     n, m = P.shape
     x, y = S[0], S[1]
     for i in range(n):

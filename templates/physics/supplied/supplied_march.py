@@ -157,19 +157,19 @@ class State:
 
 
 def gap_at(mesh: Mesh, e: Array) -> Array:
-    """Gap over the radial clearance H at the nodes, (n,) [-]."""
+    """Return the gap over the radial clearance H at the nodes, (n,) [-]."""
     return np.asarray(1 - e @ mesh.normal)
 
 
 def start(mesh: Mesh, duty: Duty) -> State:
-    """A full film, the journal half way along the load."""
+    """Return a full film, the journal half way along the load."""
     S = duty.seen(np.array([duty.begin]))[0][0]
     e, none = 0.5 * S / max(float(np.hypot(*S)), 1e-9), np.zeros((mesh.order.size, mesh.width.size))
     return State(duty.begin, e, none, none, none + gap_at(mesh, e)[:, None], np.zeros(2), 0.0)
 
 
 def stepped(mesh: Mesh, duty: Duty, states: list[State], h: float) -> State | None:
-    """The state after a step: of second order if it can be, by the active set if it can be."""
+    """Return the state after a step: of second order if it can be, by the active set if it can be."""
     from templates.physics.supplied.supplied_kernel import covered, solved  # numba takes a second
 
     last = states[-1]

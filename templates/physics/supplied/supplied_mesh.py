@@ -93,17 +93,17 @@ def supplied_mesh(
 
 
 def _towards_end(t: Array, fine: float) -> Array:
-    """Places 0 … 1 whose distance shrinks to `fine` of equal ones."""
+    """Return the places 0 … 1 whose distance shrinks to `fine` of equal ones."""
     return np.asarray(1 - (1 - t) * (fine + (1 - fine) * (1 - t)))
 
 
 def _inner_cells(edge: float, across: int) -> int:
-    """Cells from the middle to the first edge; three rows at least are left for the land."""
+    """Return the cells from the middle to the first edge; three rows at least are left for the land."""
     return min(max(1, round(_DENSITY * edge * across)), max(1, across - 3))
 
 
 def _quadrature(zeta: Array, inner: int, edges: int) -> Array:
-    """Weights that give an even parabola across exactly; the pressure has a kink at each edge."""
+    """Return the weights that give an even parabola across exactly; the pressure has a kink at each edge."""
     weights = np.zeros(zeta.size)
     first = inner if edges else zeta.size - 1
     if first == 1:

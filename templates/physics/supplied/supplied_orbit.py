@@ -234,7 +234,7 @@ class _Progress:
 
 
 def transferred(mesh: Mesh, finer: Mesh, state: State) -> State:
-    """A state on another mesh."""
+    """Return a state on another mesh."""
     void = carried(mesh, finer, state.void, state.void[:, -1])
     P = carried(mesh, finer, state.P, 0 * state.P[:, -1])
     oil = (1 - void) * gap_at(finer, state.e)[:, None]
@@ -251,7 +251,7 @@ def return_error(duty: Duty) -> float:
 
 
 def under_load(duty: Duty) -> float:
-    """Share of the cycle in which every pocket lies within 60° of the load's direction [-]."""
+    """Return the share of the cycle in which every pocket lies within 60° of the load's direction [-]."""
     theta = duty.begin + duty.load.period * np.arange(720) / 720
     S, places = duty.seen(theta)
     off = places[..., 0] - np.arctan2(S[:, 1], S[:, 0])[:, None]
@@ -269,7 +269,7 @@ def _require_return(duty: Duty) -> None:
 
 
 def _measured(duty: Duty, runs: list[Run], mesh_error: float = 0.0) -> SuppliedOrbit:
-    """What the last cycle was like."""
+    """Return what the last cycle was like."""
     run = next((run for run in reversed(runs) if run.gaps), runs[-1])
     mesh, states = run.mesh, run.states[1:] or run.states
     theta, z = in_frame(duty, states)
@@ -316,7 +316,7 @@ def _verdict(run: Run, share: float) -> Verdict:
 
 
 def _flows(states: list[State]) -> tuple[float, float]:
-    """Oil fed and oil lost over a cycle.
+    """Return oil fed and oil lost over a cycle.
 
     A step of BDF2 stores a mean of the flow at its end and of the mean of the step before. Summed in this way
     the flows are those of the oil that the march kept; the trapezoidal rule differs by up to some per cent
@@ -327,6 +327,6 @@ def _flows(states: list[State]) -> tuple[float, float]:
 
 
 def _stored(mesh: Mesh, states: list[State]) -> float:
-    """Oil in the film at the end of a cycle less that at its start."""
+    """Return oil in the film at the end of a cycle less that at its start."""
     kept = (states[-1].oil - states[0].oil) @ mesh.width
     return float(kept.sum()) * np.pi / mesh.order.size

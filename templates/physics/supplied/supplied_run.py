@@ -121,7 +121,7 @@ def run_in(
 
 
 def change(gaps: list[float], cycles: int) -> float:
-    """The largest relative change of the least gap from cycle to cycle, in the last so many."""
+    """Return the largest relative change of the least gap from cycle to cycle, in the last so many."""
     return float(np.abs(np.diff(gaps[-cycles - 1 :]) / gaps[-cycles:]).max())
 
 
@@ -153,7 +153,7 @@ def in_frame(duty: Duty, states: list[State]) -> tuple[Array, Array]:
 
 
 def least_gap(theta: Array, gap: Array, period: float) -> tuple[float, float]:
-    """The smallest gap of a cycle between its angles, by a parabola through three, and its angle.
+    """Return the smallest gap of a cycle between its angles, by a parabola through three, and its angle.
 
     Parameters
     ----------

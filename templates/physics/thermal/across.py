@@ -44,7 +44,7 @@ class Across:
 
 
 def strip_edges(count: int) -> Array:
-    """Edges of the strips across, (J + 1,), 0 … 1 [-], finer towards the walls."""
+    """Return the edges of the strips across, (J + 1,), 0 … 1 [-], finer towards the walls."""
     even = np.linspace(0, 1, count + 1)
     return (even + (1 - np.cos(np.pi * even)) / 2) / 2
 

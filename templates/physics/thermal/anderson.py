@@ -22,7 +22,7 @@ class Anderson:
         self.changes: list[Array] = []
 
     def after(self, place: Array, change: Array) -> Array:
-        """The next guess, where g(place) = place + change."""
+        """Return the next guess, where g(place) = place + change."""
         if self.changes and np.abs(change).max() > 3 * np.abs(self.changes[-1]).max():
             self.places, self.changes = [], []
         self.places = [*self.places, place][-_KEPT:]

@@ -41,7 +41,7 @@ class Arc:
 
 
 def groove_arc(start: float, length: float, thin: tuple[float, float], ratio: float, n: int, m: int) -> Arc:
-    """Nodes from one edge of the groove around to the other.
+    """Return the nodes from one edge of the groove around to the other.
 
     Parameters
     ----------

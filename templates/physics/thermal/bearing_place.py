@@ -50,7 +50,7 @@ class Placing:
         self.slopes: Array | None = None
 
     def placed(self, fluidity: Array, accuracy: float) -> Pressed:
-        """The film that bears the load with a fluidity (n + 1, J).
+        """Return the film that bears the load with a fluidity (n + 1, J).
 
         Raises
         ------
@@ -85,7 +85,7 @@ class Placing:
     def _nearer(
         self, fluidity: Array, step: Array, size: float, tries: int
     ) -> tuple[Array, Pressed, Array] | None:
-        """The place after a step, or half of it and so on, at which less is lacking; with its film."""
+        """Return the place after a step, or half of it and so on, at which less is lacking; with its film."""
         for _ in range(tries):
             y = self.y + step
             if np.hypot(*y) < FARTHEST:
@@ -97,7 +97,7 @@ class Placing:
         return None
 
     def _newton(self, lack: Array) -> Array:
-        """The step of y that would make up for what is lacking."""
+        """Return the step of y that would make up for what is lacking."""
         step = -np.linalg.lstsq(np.asarray(self.slopes), lack, rcond=1e-12)[0]
         size = float(np.hypot(*step))
         if not size > 0:
@@ -105,7 +105,7 @@ class Placing:
         return np.asarray(step * min(1.0, _LONGEST / size))
 
     def _film(self, fluidity: Array, y: Array) -> Pressed:
-        """The film at a place, kept as the start of the next."""
+        """Return the film at a place, kept as the start of the next."""
         gap: Gap = gap_of(self.arc, y, fluidity, self.edges, self.feed)
         try:
             film = pressed(gap, self.near)
@@ -118,7 +118,7 @@ class Placing:
         return film
 
     def _lack(self, film: Pressed) -> Array:
-        """Logarithm of force over load, and the angle between them."""
+        """Return the logarithm of force over load, and the angle between them."""
         along, ahead = film.force
         size = float(np.hypot(along, ahead))
         if not (np.isfinite(size) and size > 0):

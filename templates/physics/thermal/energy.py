@@ -96,7 +96,7 @@ class Carried:
 
 
 def carried(film: Pressed) -> Carried:
-    """Flows that conserve the oil of every strip, and the dissipation.
+    """Return the flows that conserve the oil of every strip, and the dissipation.
 
     The half cells at the groove count with the nodes beside them: so the groove mixes, and nothing else.
     """
@@ -112,7 +112,7 @@ def carried(film: Pressed) -> Carried:
 
 
 def _inner(values: Array) -> Array:
-    """Values of the inner nodes, with those at the groove added to the nodes beside it."""
+    """Return the values of the inner nodes, with those at the groove added to the nodes beside it."""
     inner = values[1:-1].copy()
     inner[0] += values[0]
     inner[-1] += values[-1]
@@ -138,7 +138,7 @@ def _dissipation(film: Pressed, drag: Array) -> Array:
 
 
 def heated(film: Pressed, heating: Heating, edges: Array) -> Heated:
-    """The temperatures of a film.
+    """Return the temperatures of a film.
 
     Raises
     ------
@@ -188,7 +188,7 @@ class _System:
         self.add(taker, giver, -flow)
 
     def matrix(self) -> csc_array:
-        """The matrix; sets the right side too."""
+        """Set the right side and return the matrix."""
         flow, heat = self.flow, self.heating
         index = self.index
         whole = np.concatenate([np.full((1, self.J), self.groove), index, np.full((1, self.J), self.groove)])
@@ -232,7 +232,7 @@ class _System:
             self.add(self.journal, self.index[:, -1], -self.to_journal)
 
     def read(self, solved: Array) -> Heated:
-        """Temperatures and where the heat goes."""
+        """Return the temperatures and where the heat goes."""
         flow, heat = self.flow, self.heating
         inner, groove, journal = solved[: self.groove].reshape(self.index.shape), *solved[self.groove :]
         T = np.concatenate([np.full((1, self.J), groove), inner, np.full((1, self.J), groove)])
@@ -251,7 +251,7 @@ class _System:
 
 
 def _exponential(flow: Array, conduction: Array) -> tuple[Array, Array]:
-    """Coefficients of what goes up and down between strips: conduction × B(∓flow/conduction).
+    """Return the coefficients of what goes up and down between strips: conduction × B(∓flow/conduction).
 
     B(x) = x/(exp(x) − 1) is exact for a flow and a conduction that do not change between the two.
     """

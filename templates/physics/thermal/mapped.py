@@ -13,7 +13,7 @@ from templates.physics.thermal.thermal_case import ThermalCase
 
 
 def mapped_values(case: ThermalCase) -> dict[str, Array]:
-    """The values of `WarmFilm` that one temperature has; eps infinite where there is no balance."""
+    """Return the values of `WarmFilm` that one temperature has; eps infinite where there is no balance."""
     area = np.pi * case.D * case.W
     running = Running(
         F=case.F, D=case.D, W=case.W, psi=case.psi, omega_m=case.omega, omega_s=case.omega, A=case.A,

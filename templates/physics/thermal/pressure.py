@@ -52,7 +52,7 @@ class Gap:
         return float(np.arctan2(self.y[1], self.y[0]))
 
     def H(self, phi: Array) -> Array:
-        """Gap over radial clearance, without cancellation where it is narrow [-]."""
+        """Return the gap over radial clearance, without cancellation where it is narrow [-]."""
         return (1 - self.eps) + 2 * self.eps * np.sin((phi - self.attitude) / 2) ** 2
 
     @property
@@ -73,7 +73,7 @@ class Gap:
 
 
 def gap_of(arc: Arc, y: Array, fluidity: Array, edges: Array, feed: tuple[float, float]) -> Gap:
-    """The gap at a place of the journal with a fluidity (n + 1, J) at the nodes.
+    """Return the gap at a place of the journal with a fluidity (n + 1, J) at the nodes.
 
     `feed` is the pressure of the groove and its length over the bearing's width [-].
     """
@@ -137,7 +137,7 @@ def pressed(gap: Gap, start: tuple[Array, Array] | None = None) -> Pressed:
 
 
 def _network(gap: Gap) -> Network:
-    """The balances of flow."""
+    """Return the balances of flow."""
     arc, n, m = gap.arc, gap.arc.phi.size - 1, gap.arc.zeta.size - 1
     step, axial = _steps(n), _steps(m)
     along = 12 * gap.faces.conductance * gap.H_faces**3 / np.diff(arc.phi)

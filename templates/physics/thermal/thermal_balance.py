@@ -50,7 +50,7 @@ class Bearing:
     """Viscosity of the supply over that at a temperature [K]."""
 
     def arc(self, y: Array, mesh: tuple[int, int, int]) -> Arc:
-        """The film's mesh, graded to a place of the journal."""
+        """Return the film's mesh, graded to a place of the journal."""
         centre, width, _ = self.groove
         eps, attitude = float(np.tanh(np.hypot(*y))), float(np.arctan2(y[1], y[0]))
         return groove_arc(
@@ -58,11 +58,11 @@ class Bearing:
         )
 
     def placing(self, y: Array, mesh: tuple[int, int, int]) -> Placing:
-        """A search on a mesh from a place."""
+        """Return a search on a mesh from a place."""
         return Placing(self.arc(y, mesh), strip_edges(mesh[2]), self.So, (self.pressure, self.groove[2]), y)
 
     def start(self) -> Array:
-        """Where a film of the supply's viscosity, fed along its widest gap, would have the journal."""
+        """Return where a film of the supply's viscosity, fed along its widest gap, would have the journal."""
         eps = mapped_eccentricity(np.asarray(self.So), np.asarray(self.ratio))
         eps = np.clip(np.where(np.isnan(eps), _HEAVIEST, eps), _LIGHTEST, _HEAVIEST)
         attitude = mapped_film(eps, np.asarray(self.ratio))["attitude"]
@@ -93,7 +93,7 @@ class Warm:
 
 
 def one_temperature(bearing: Bearing, placing: Placing, T: float, step: float) -> OneTemperature:
-    """The effective temperature, by the secant from one guess [K] to another by at most `step` [K].
+    """Return the effective temperature, by the secant from one guess [K] to another by at most `step` [K].
 
     Raises
     ------
@@ -122,7 +122,7 @@ def one_temperature(bearing: Bearing, placing: Placing, T: float, step: float) -
 
 
 def _mean(film: Pressed, heating: Heating) -> float:
-    """Mean of supply and outlet, by the heat that side flow and air carry off [K]."""
+    """Return the mean of supply and outlet, by the heat that side flow and air carry off [K]."""
     flow = carried(film)
     side = float(flow.side.sum())
     air = 0.0 if np.isinf(heating.wall) else 2 * np.pi * heating.wall
@@ -133,7 +133,7 @@ def _mean(film: Pressed, heating: Heating) -> float:
 
 
 def warm(bearing: Bearing, placing: Placing, T: Array) -> Warm:
-    """The film with a temperature at each place, from a guess (n + 1, J) [K].
+    """Return the film with a temperature at each place, from a guess (n + 1, J) [K].
 
     Raises
     ------
@@ -160,7 +160,7 @@ def warm(bearing: Bearing, placing: Placing, T: Array) -> Warm:
 
 
 def both(bearing: Bearing, level: str) -> tuple[OneTemperature, tuple[Warm, Warm]]:
-    """The film of one temperature on the level's mesh, and that of all temperatures before and on it.
+    """Return the film of one temperature on the level's mesh, and that of all temperatures before and on it.
 
     Raises
     ------
@@ -180,7 +180,7 @@ def both(bearing: Bearing, level: str) -> tuple[OneTemperature, tuple[Warm, Warm
 
 
 def _carried_over(coarse: Warm, finer: Placing) -> Array:
-    """Temperatures of one mesh at the nodes and strips of another."""
+    """Return the temperatures of one mesh at the nodes and strips of another."""
     T, arc = coarse.heated.T, coarse.placing.arc
     middle, new = (((edges[1:] + edges[:-1]) / 2) for edges in (coarse.placing.edges, finer.edges))
     columns = np.stack([np.interp(finer.arc.phi, arc.phi, strip) for strip in T.T], axis=1)

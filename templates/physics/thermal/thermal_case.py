@@ -63,7 +63,7 @@ class ThermalCase:
     """Density [kg/m³] at a temperature [K]."""
 
     def viscosity(self, T: Array) -> Array:
-        """Dynamic viscosity [Pa s] at T [K]."""
+        """Return the dynamic viscosity [Pa s] at T [K]."""
         return viscosity_at(
             T, self.A, self.B, self.a, self.b, self.offset, self.eta, self.rho_ref, self.T_ref
         )
@@ -74,7 +74,7 @@ class ThermalCase:
         return bool(np.isfinite(needed).all())
 
     def bearing(self) -> Bearing:
-        """One point, dimensionless."""
+        """Return one point, dimensionless."""
         eta = float(self.viscosity(self.supply))
         scale = eta * self.omega / self.psi**2
         per_second = self.heat_capacity * self.omega
@@ -94,7 +94,7 @@ class ThermalCase:
         )  # fmt: skip
 
     def _thinner(self, eta: float) -> Callable[[Array], Array]:
-        """A viscosity [Pa s] over that at a temperature [K]; 0 where the oil is as good as stiff."""
+        """Return a viscosity [Pa s] over that at a temperature [K]; 0 where the oil is as good as stiff."""
 
         def fluidity(T: Array) -> Array:
             with np.errstate(over="ignore"):
@@ -105,5 +105,5 @@ class ThermalCase:
 
 @units(None, "K", returns="Pa*s", latex=r"\eta\left({1}\right)")
 def warm_viscosity(case: ThermalCase, T: Array) -> Array:
-    """Viscosity of the case's oil at a temperature T [K]; NaN where that is [Pa s]."""
+    """Return the viscosity of the case's oil at a temperature T [K]; NaN where that is [Pa s]."""
     return np.where(np.isnan(T), np.nan, case.viscosity(T))[()]

@@ -62,7 +62,7 @@ class WarmFilm:
     """(..., 72) temperature of the bush's surface at `ANGLES` [K]."""
 
     def admitted(self, eps: Array) -> "WarmFilm":
-        """The same with NaN where eps was not admitted."""
+        """Return the same with NaN where eps was not admitted."""
         none = np.isnan(eps)
         each = {f.name: getattr(self, f.name) for f in fields(self)}
         bush = np.where(np.asarray(none)[..., None], np.nan, each.pop("bush"))
@@ -107,7 +107,7 @@ def warm_film(level: str, case: ThermalCase) -> WarmFilm:
 
 
 def _of_one(case: ThermalCase) -> WarmFilm:
-    """The film at level one_temperature; what that has not is NaN."""
+    """Return the film at level one_temperature; what that has not is NaN."""
     values = mapped_values(case)
     shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
     none = np.full(shape, np.nan)
@@ -117,7 +117,7 @@ def _of_one(case: ThermalCase) -> WarmFilm:
 
 
 def _measured(single: OneTemperature, coarse: Warm, fine: Warm) -> dict[str, float]:
-    """The single values of `WarmFilm`."""
+    """Return the single values of `WarmFilm`."""
     film, heat, supply = fine.film, fine.heated, fine.supply
     least, before = 1 - film.gap.eps, 1 - coarse.film.gap.eps
     return {
@@ -135,12 +135,12 @@ def _measured(single: OneTemperature, coarse: Warm, fine: Warm) -> dict[str, flo
 
 
 def _above_rounding(value: float, size: float) -> float:
-    """A difference of numbers of a size, 0 where it is no more than their rounding."""
+    """Return a difference of numbers of a size, 0 where it is no more than their rounding."""
     return value if abs(value) > _ROUNDING * size else 0.0
 
 
 def _around(warm: Warm) -> Array:
-    """Temperature of the bush's surface at `ANGLES`; in the groove that of its oil."""
+    """Return the temperature of the bush's surface at `ANGLES`; in the groove that of its oil."""
     phi = warm.placing.arc.phi
     return np.interp(
         phi[0] + (ANGLES - phi[0]) % (2 * np.pi), phi, warm.heated.bush, right=warm.heated.groove
@@ -149,7 +149,7 @@ def _around(warm: Warm) -> Array:
 
 @units("1", returns="rad", latex=r"k\,5°")
 def bush_angles(eps: Array) -> Array:
-    """The angles of the bush's temperatures, from the load, for each eccentricity [-]; [rad]."""
+    """Return the angles of the bush's temperatures, from the load, for each eccentricity [-]; [rad]."""
     return np.asarray(np.broadcast_to(ANGLES, (*np.shape(eps), ANGLES.size)))
 
 
@@ -162,5 +162,5 @@ def bush_angles(eps: Array) -> Array:
 )
 @units("1", returns="K")
 def in_kelvin(value: Array) -> Array:
-    """A temperature, or a heat over that of 1 K, of a `WarmFilm` [K]."""
+    """Return a temperature, or a heat over that of 1 K, of a `WarmFilm` [K]."""
     return value

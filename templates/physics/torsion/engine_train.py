@@ -26,20 +26,20 @@ def train_of(
     excited: Array,
     propeller: Propeller | None,
 ) -> Train:
-    """The train of a layout that the rules admit."""
+    """Return the train of a layout that the rules admit."""
     assert layout is not None
     return Train(layout, J, k, c, eta, absolute, propeller, int(numbered(excited)[0]))
 
 
 def propeller_of(number: Array, torque: Array, speed: Array, factor: Array) -> Propeller | None:
-    """The propeller on the inertia of that number; None where none is given."""
+    """Return the propeller on the inertia of that number; None where none is given."""
     return None if np.isnan(number) else Propeller(int(number) - 1, torque, speed, factor)
 
 
 def response_of(
     train: Train, excitation: Excitation, speeds: Array, excited: Array, factors: Array, firing: Array
 ) -> Response:
-    """The response to cylinders on the excited inertias."""
+    """Return the response to cylinders on the excited inertias."""
     each = np.broadcast_to(factors, np.broadcast_shapes(np.shape(factors), np.shape(firing)))
     cylinders = excitation.of_cylinders(speeds, each, firing)
     places = np.equal.outer(numbered(excited), np.arange(train.layout.count)).astype(float)

@@ -39,7 +39,7 @@ class Propeller:
     factor: Array
 
     def damping(self, speeds: Array) -> Array:
-        """The slope of its torque [N m s/rad] at its mean speeds [rad/s], (…, V)."""
+        """Return the slope of its torque [N m s/rad] at its mean speeds [rad/s], (…, V)."""
         each = (np.asarray(one)[..., None] for one in (self.torque, self.speed, self.factor))
         torque, reference, factor = each
         return np.asarray(factor * torque * np.abs(speeds) / reference**2)
@@ -69,7 +69,7 @@ class Train:
         return self.layout.difference @ self.layout.reduction
 
     def damping_of_inertias(self, speeds: Array) -> Array:
-        """Damping to the ground [N m s/rad], (…, V, n), with that of the propeller."""
+        """Return the damping to the ground [N m s/rad], (…, V, n), with that of the propeller."""
         own = np.broadcast_to(self.absolute, (*np.shape(self.absolute)[:-1], self.layout.count))[..., None, :]
         if self.propeller is None:
             return own
@@ -78,7 +78,7 @@ class Train:
         return np.asarray(own + self.propeller.damping(speeds * ratio)[..., None] * at)
 
     def respond(self, speeds: Array, orders: Array, torque: Phasors) -> Response:
-        """The response to torques of the inertias [N m], (…, V, H, n), at speeds [rad/s], (…, V)."""
+        """Return the response to torques of the inertias [N m], (…, V, H, n), at speeds [rad/s], (…, V)."""
         ground = self.damping_of_inertias(speeds)
         frequency = np.asarray(speeds)[..., :, None] * orders
         stiff = np.einsum("sa,...s,sb->...ab", self.twists, self.k * (1 + 1j * self.eta), self.twists)
@@ -106,7 +106,7 @@ class Train:
 
 
 def _solved(matrix: Phasors, w: Array, mass: Array, right: Phasors) -> Phasors:
-    """Solutions (…, V, H, q); NaN where a resonance without damping leaves no digits."""
+    """Return the solutions (…, V, H, q); NaN where a resonance without damping leaves no digits."""
     inertia = w**2 * mass[..., None, None, :]
     diagonal = np.abs(np.diagonal(matrix, axis1=-2, axis2=-1) + inertia) + inertia
     scale = 1 / np.sqrt(diagonal)
@@ -121,7 +121,7 @@ def _solved(matrix: Phasors, w: Array, mass: Array, right: Phasors) -> Phasors:
 
 
 def _nudged(matrix: Phasors, loads: Phasors) -> Phasors:
-    """Solutions of which those of singular matrices are very large; NaN where even that fails."""
+    """Return the solutions of which those of singular matrices are very large; NaN where even that fails."""
     try:
         return np.asarray(np.linalg.solve(matrix + 1j * _NUDGE * np.eye(matrix.shape[-1]), loads)[..., 0])
     except np.linalg.LinAlgError:

@@ -52,31 +52,31 @@ def stress_of(torque: Array, section: Array) -> Array:
 @on_paper("solved numerically by one linear system for each speed and order")
 @units(None, returns="N*m")
 def amplitudes_of_orders(response: Response) -> Array:
-    """Amplitude of each order of the shafts' torque [N m], (…, S, V, H)."""
+    """Return the amplitude of each order of the shafts' torque [N m], (…, S, V, H)."""
     return np.moveaxis(np.abs(response.shaft_torque), -1, -3)
 
 
 @units("N*m", returns="N*m", latex=r"\max_{{n}}{0}")
 def largest_of_torques(torque: Array) -> Array:
-    """The largest over the speeds [N m], (…, S)."""
+    """Return the largest over the speeds [N m], (…, S)."""
     return np.asarray(torque.max(axis=-1))
 
 
 @units("Pa", returns="Pa", latex=r"\max_{{n}}{0}")
 def largest_of_stresses(stress: Array) -> Array:
-    """The largest over the speeds [Pa], (…, S)."""
+    """Return the largest over the speeds [Pa], (…, S)."""
     return np.asarray(stress.max(axis=-1))
 
 
 @units("rad", returns="rad", latex=r"\max_{{n}}{0}")
 def largest_of_angles(angle: Array) -> Array:
-    """The largest over the speeds [rad], (…, member)."""
+    """Return the largest over the speeds [rad], (…, member)."""
     return np.asarray(angle.max(axis=-1))
 
 
 @units("N*m", "rad/s", returns="rad/s", latex=r"\arg\max_{{n}}{0}")
 def speed_of_largest(torque: Array, speeds: Array) -> Array:
-    """The speed [rad/s] at which each shaft's torque (…, S, V) is largest, (…, S)."""
+    """Return the speed [rad/s] at which each shaft's torque (…, S, V) is largest, (…, S)."""
     at = np.argmax(torque, axis=-1)
     each = np.broadcast_to(np.asarray(speeds)[..., None, :], torque.shape)
     chosen = np.take_along_axis(each, at[..., None], axis=-1)[..., 0]
@@ -85,7 +85,7 @@ def speed_of_largest(torque: Array, speeds: Array) -> Array:
 
 @units("N*m", "N*m", "1", returns="1", latex=r"\arg\max_{{h}}{1}")
 def order_of_largest(torque: Array, amplitudes: Array, orders: Array) -> Array:
-    """The order that is largest where each shaft's torque is largest, (…, S)."""
+    """Return the order that is largest where each shaft's torque is largest, (…, S)."""
     at = np.argmax(torque, axis=-1)[..., None, None]
     there = np.take_along_axis(amplitudes, np.broadcast_to(at, (*at.shape[:-1], orders.size)), axis=-2)
     largest = orders[np.argmax(there[..., 0, :], axis=-1)]
@@ -94,13 +94,13 @@ def order_of_largest(torque: Array, amplitudes: Array, orders: Array) -> Array:
 
 @units("N*m", returns="N*m", latex=r"\max_{{s}}{0}")
 def torque_envelope(torque: Array) -> Array:
-    """The largest of all shafts [N m], (…, V)."""
+    """Return the largest of all shafts [N m], (…, V)."""
     return np.asarray(torque.max(axis=-2))
 
 
 @units("Pa", returns="Pa", latex=r"\max_{{s}}{0}")
 def stress_envelope(stress: Array) -> Array:
-    """The largest of all shafts [Pa], (…, V)."""
+    """Return the largest of all shafts [Pa], (…, V)."""
     return np.asarray(stress.max(axis=-2))
 
 
@@ -110,31 +110,31 @@ def stress_envelope(stress: Array) -> Array:
     latex=r"\sum_{{h}}\tfrac12\left|\Delta\Phi\right|^2 h\omega\left(k\eta+h\omega c\right)",
 )
 def heat_of_shafts(response: Response) -> Array:
-    """Power that damping of the shafts turns to heat [W], (…, S, V)."""
+    """Return the power that damping of the shafts turns to heat [W], (…, S, V)."""
     return _across(response.shaft_power)
 
 
 @units("W", returns="W", latex=r"\max_{{n}}{0}")
 def largest_of_powers(power: Array) -> Array:
-    """The largest over the speeds [W], (…, S)."""
+    """Return the largest over the speeds [W], (…, S)."""
     return np.asarray(power.max(axis=-1))
 
 
 @units(None, returns="W", latex=r"\sum_{{h}}\tfrac12\left|\Phi\right|^2\left(h\omega\right)^2c")
 def loss_of_inertias(response: Response) -> Array:
-    """Power that damping to the ground takes from the inertias [W], (…, n, V)."""
+    """Return the power that damping to the ground takes from the inertias [W], (…, n, V)."""
     return _across(response.ground_power)
 
 
 @units(None, returns="W", latex=r"\sum_{{h}}\tfrac12 h\omega\,\mathrm{{Im}}\left(\Phi^*T\right)")
 def power_put_in(response: Response) -> Array:
-    """Power that the varying torque puts in [W], (…, V)."""
+    """Return the power that the varying torque puts in [W], (…, V)."""
     return response.power_in
 
 
 @units("W", "W", returns="W", latex=r"\sum {0}+\sum {1}")
 def power_lost(shafts: Array, inertias: Array) -> Array:
-    """Power that all damping takes [W], (…, V)."""
+    """Return the power that all damping takes [W], (…, V)."""
     return np.asarray(shafts.sum(axis=-2) + inertias.sum(axis=-2))
 
 
@@ -162,7 +162,7 @@ def speed_spectrum(response: Response, number: Array) -> Array:
     None, "1", "rad/s", returns="1", latex=r"\frac{{\omega_{{max}}-\omega_{{min}}}}{{\overline{{\omega}}}}"
 )
 def irregularity(response: Response, number: Array, speeds: Array) -> Array:
-    """Swing of the angular speed of one inertia, numbered from 1, over its mean speed, (…, V)."""
+    """Return the swing of the angular speed of one inertia, numbered from 1, over its mean speed, (…, V)."""
     at = int(number) - 1
     layout = response.train.layout
     mean = np.abs(np.asarray(speeds) * layout.speeds[at] / layout.speeds[response.train.crank])

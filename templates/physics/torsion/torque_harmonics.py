@@ -33,7 +33,7 @@ class Excitation:
     inertia: Phasors
 
     def of_cylinders(self, speeds: Array, factors: Array, firing: Array) -> Phasors:
-        """Harmonics of each cylinder [N m], (…, V, H, N), at speeds [rad/s], (…, V)."""
+        """Return the harmonics of each cylinder [N m], (…, V, H, N), at speeds [rad/s], (…, V)."""
         behind = firing - firing[..., :1]
         phase = np.exp(-1j * self.orders[:, None] * behind[..., None, None, :])
         gas = self.gas[..., None, :, None] * np.asarray(factors)[..., None, None, :]
@@ -89,12 +89,12 @@ def resolves(theta: Array, highest: Array) -> bool:
 
 
 def _lines(cycle: Cycle, highest: Array) -> int:
-    """Number of orders up to the highest."""
+    """Return the number of orders up to the highest."""
     return int(np.floor(float(highest) * cycle.strokes / 2 + 1e-9))
 
 
 def excitation(theta: Array, gas: Array, inertia: Array, reference: Array, highest: Array) -> Excitation:
-    """The harmonics of one cylinder; a torque that is not given is none.
+    """Return the harmonics of one cylinder; a torque that is not given is none.
 
     `inertia` is the torque [N m] at the speed `reference` [rad/s]; it grows with the square of the speed.
     """
@@ -141,7 +141,7 @@ def half_swing(amplitudes: Phasors) -> Array:
 
 
 def _extreme(amplitudes: Phasors, curve: Array) -> Array:
-    """The largest value of each curve, (R,), by two of Newton's steps from the sample at its top."""
+    """Return the largest value of each curve, (R,), by two of Newton's steps from the sample at its top."""
     step = TURN / curve.shape[-1]
     at = _tops(curve, _LOW * np.abs(amplitudes).sum(axis=-1))
     k = np.arange(1, amplitudes.shape[-1] + 1)
@@ -174,7 +174,7 @@ def _tops(curve: Array, low: Array) -> Integers:
 
 @units("rad", "1", returns="1", latex=r"\frac{{2 j}}{{z}}\le {1}")
 def orders_of(theta: Array, highest: Array) -> Array:
-    """The orders up to the highest, (H,): whole ones in two strokes, halves as well in four."""
+    """Return the orders up to the highest, (H,): whole ones in two strokes, halves as well in four."""
     cycle = cycle_of(theta)
     assert cycle is not None  # a rule refuses others
     return np.arange(1, _lines(cycle, highest) + 1) * 2 / cycle.strokes

@@ -21,12 +21,12 @@ _SAME = 1e-9  # mean speeds that agree to this are one
 
 
 def listed(values: Array) -> Array:
-    """A list as given, in its unit; empty where it is not given."""
+    """Return a list as given, in its unit; empty where it is not given."""
     return np.zeros(0) if np.ndim(values) == 0 else np.asarray(values)
 
 
 def numbered(values: Array) -> Integers:
-    """Numbers from 1 as places from 0; the ground is −1."""
+    """Return the numbers from 1 as places from 0; the ground is −1."""
     return np.asarray(listed(values), dtype=np.int64) - 1
 
 
@@ -112,7 +112,7 @@ class TrainLayout:
         return list(zip(pairs, self.ratios.tolist(), strict=True))
 
     def _turning(self) -> list[tuple[tuple[int, int], float]]:
-        """What makes inertias turn together: shafts between two of them, and gears."""
+        """Return what makes inertias turn together: shafts between two of them, and gears."""
         shafts = [((int(i), int(j)), 1.0) for i, j in self.shafts if j != GROUND]
         return [*shafts, *self._driven()]
 

@@ -27,7 +27,7 @@ def _rows(train: Train) -> Array:
 @on_paper("solved numerically by singular values of the train's matrix of twists")
 @units(None, returns="rad/s", latex=r"\sqrt{{\lambda_m\left(M^{{-1}}K\right)}}")
 def natural_frequencies(train: Train) -> Array:
-    """Natural angular frequencies [rad/s], ascending, (…, q); 0 for what turns without twist."""
+    """Return the natural angular frequencies [rad/s], ascending, (…, q); 0 for what turns without twist."""
     rows = _rows(train)
     is_finite = np.asarray(np.isfinite(rows).all(axis=(-2, -1), keepdims=True))
     values = np.linalg.svd(np.where(is_finite, rows, 0), compute_uv=False)[..., ::-1]
@@ -38,7 +38,7 @@ def natural_frequencies(train: Train) -> Array:
 @on_paper("solved numerically by singular values of the train's matrix of twists")
 @units(None, returns="1")
 def mode_shapes(train: Train) -> Array:
-    """Angles of all inertias in the modes, (…, q, n), each with 1 as its largest entry."""
+    """Return the angles of all inertias in the modes, (…, q, n), each with 1 as its largest entry."""
     rows = _rows(train)
     is_finite = np.asarray(np.isfinite(rows).all(axis=(-2, -1), keepdims=True))
     free = np.linalg.svd(np.where(is_finite, rows, 0), full_matrices=False)[2][..., ::-1, :]
