@@ -115,7 +115,6 @@ ABOUT = {
         "app/calculations/*.py",
     ),
     "tests/app/test_saves_as_jobs.py": ("app/*jobs/*.py", "app/designs/*.py", "app/calculations/*.py"),
-    "tests/app/test_old_database.py": ("app/*storage/*.py",),
     "tests/app/test_sheet_start.py": ("app/worksheets/*.py", "app/*storage/*.py"),
     "tests/app/test_study_resumes.py": ("app/studies/*.py",),
     "tests/app/test_team_templates.py": ("app/catalogue/*.py", "templates/core/checking/*.py"),

@@ -35,7 +35,7 @@ def test_the_papers_bearing_is_tied_to_its_film(http):
     }
 
 
-@pytest.mark.parametrize("engine", ["engine", "bearing_load"])
+@pytest.mark.parametrize("engine", ["flywheel", "bearing_load"])
 def test_the_bore_of_a_cylinder_is_not_that_of_a_shell(http, engine):
     document = {
         "name": "bores",
