@@ -41,8 +41,8 @@ def upgrade() -> None:
 FAILED = "SELECT id, problem FROM job WHERE state = 'failed' AND problem NOT LIKE '%/problems/geometry%'"
 QUEUED = """ -- a job of a kind that neither program knows, as the older does not know those of the newer
 INSERT INTO job (id, kind, state, payload, attempt, crashes, progress, log, created, updated, client, others,
-                 turn, operated)
-VALUES ('of-newer', 'of_newer', 'queued', '{}', 0, 0, 0, '[]', '', '', '', '[]', 0, 0)
+                 turn, operated, event, losses)
+VALUES ('of-newer', 'of_newer', 'queued', '{}', 0, 0, 0, '[]', '', '', '', '[]', 0, 0, 0, 0)
 """
 
 
