@@ -2,15 +2,17 @@
 
 import pytest
 
-from app.designs.variant_sheets.grid import grid_of
-from app.designs.variant_sheets.reading import read_variants
+from app.designs.variant_sheets.grid import grid_of, refuse
+from app.designs.variant_sheets.reading import readable_variants
 from templates.core.errors import InvalidInputs
 
 UNITS = {"width": "mm", "film.radial_load": "N", "film.speed": "rad/s", "pad.speed": "m/s", "film.width": "m"}
 
 
 def read(*rows):
-    return read_variants(grid_of(rows), UNITS, {}).variants
+    sheet, faults = readable_variants(grid_of(rows), UNITS, {})
+    refuse(faults)
+    return sheet.variants
 
 
 @pytest.mark.parametrize("heading", ["film.radial_load", "radial load", "Radial  Load", "RADIAL_LOAD"])

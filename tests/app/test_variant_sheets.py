@@ -10,8 +10,8 @@ from openpyxl import Workbook, load_workbook
 from seeds import examples
 
 from app.designs.variant_sheets.csv_files import read_csv, write_csv
-from app.designs.variant_sheets.grid import address
-from app.designs.variant_sheets.reading import read_variants
+from app.designs.variant_sheets.grid import address, refuse
+from app.designs.variant_sheets.reading import readable_variants
 from app.designs.variant_sheets.writing import rows_of, sheet_columns
 from app.designs.variant_sheets.xlsx_files import MOST_UNPACKED, read_xlsx, write_xlsx
 from app.schemas.variants import VariantColumn, VariantsOut
@@ -43,6 +43,13 @@ def through_csv(variants):
 def through_xlsx(variants):
     columns = sheet_columns(out_of(variants))
     return read_xlsx(write_xlsx(rows_of(columns), [c.is_result for c in columns], "n"))
+
+
+def read_variants(grid, units, before):
+    """Return the variants of a sheet, if all its cells can be read."""
+    sheet, faults = readable_variants(grid, units, before)
+    refuse(faults)
+    return sheet
 
 
 def faults_of(call, *arguments):
