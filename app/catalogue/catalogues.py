@@ -17,7 +17,7 @@ from pathlib import Path
 
 from app.catalogue.checking import Check
 from app.catalogue.finding import find_templates
-from app.catalogue.sheets import Key, ReleasedSheet, Sheets
+from app.catalogue.sheets import Key, Sheets
 from app.catalogue.team import Snapshot, TeamFile, TeamFiles, joined, merged, with_models
 from app.workers.errors import WorkerError
 from cad.catalogue import models as find_models
@@ -55,10 +55,6 @@ class Catalogues:
     def models(self) -> Catalogue[CadModel]:
         """The CAD models."""
         return self.snapshot.models
-
-    def worksheet_of(self, cls: type[Template]) -> ReleasedSheet | None:
-        """The worksheet that a template is; None of one from a file."""
-        return self.snapshot.sheets.released.get((cls.id, cls.version))
 
     def publish(self, sheets: Sheets, drafts: Drafts) -> None:
         """Let these worksheets stand among the templates from now on."""

@@ -2,15 +2,15 @@
 
 import pytest
 
-from app.designs.variant_sheets.grid import grid_of, refuse
-from app.designs.variant_sheets.reading import readable_variants
-from templates.core.errors import InvalidInputs
+from app.designs.variant_sheets.grid import grid_of
+from app.designs.variant_sheets.reading import read_variants
+from templates.core.errors import InvalidInputs, refuse
 
 UNITS = {"width": "mm", "film.radial_load": "N", "film.speed": "rad/s", "pad.speed": "m/s", "film.width": "m"}
 
 
 def read(*rows):
-    sheet, faults = readable_variants(grid_of(rows), UNITS, {})
+    sheet, faults = read_variants(grid_of(rows), UNITS, {})
     refuse(faults)
     return sheet.variants
 

@@ -67,7 +67,7 @@ class SheetVariants:
         return replace(fault, name=self.addresses.get((variant, place), row or fault.name))
 
 
-def readable_variants(grid: Grid, units: Units, before: Variants) -> tuple[SheetVariants, list[Fault]]:
+def read_variants(grid: Grid, units: Units, before: Variants) -> tuple[SheetVariants, list[Fault]]:
     """The cells of a sheet that can be read as variants, and the faults of all others.
 
     A value that means what it meant before is kept as it was typed then. Rows without a name of their own are
