@@ -20,7 +20,7 @@ from app.catalogue.finding import find_templates
 from app.plain import Raw
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
-from templates.core.language.evaluate import Answer
+from templates.core.language.answer import Answer
 from templates.core.language.evaluate import evaluate as evaluate_template
 from templates.core.language.template import Template
 from templates.core.paper.mathml import unit_symbol

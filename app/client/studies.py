@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
+from app.client.connections import AwaitedConnection, BlockingConnection
 from app.client.design_operations import design
 from app.client.exchange import (
     BASE,
@@ -31,9 +32,6 @@ from app.client.problem import Problem, checked
 from app.schemas.criteria import Word
 from app.schemas.designs import Design
 from app.schemas.studies import Study, StudyList, StudyRow, StudyRows
-
-if TYPE_CHECKING:
-    from app.client.clients import AsyncClient, Client
 
 Where = Word | Literal["refused"]
 """A choice of rows: by their worst verdict, or those without values."""
@@ -120,7 +118,7 @@ def filters(columns: Sequence[str] | None, where: Where | None, sort: str | None
 class ClientStudy:
     """A study of a `Client`; `study` is what the service said of it last."""
 
-    def __init__(self, client: Client, study: Study) -> None:
+    def __init__(self, client: BlockingConnection, study: Study) -> None:
         self._client, self.study = client, study
 
     @property
@@ -169,7 +167,7 @@ class ClientStudy:
 class AsyncClientStudy:
     """A study of an `AsyncClient`, as `ClientStudy`; its methods are awaited."""
 
-    def __init__(self, client: AsyncClient, study: Study) -> None:
+    def __init__(self, client: AwaitedConnection, study: Study) -> None:
         self._client, self.study = client, study
 
     @property

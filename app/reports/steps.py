@@ -19,9 +19,8 @@ from app.schemas.designs import PreviewedStep
 from app.schemas.evaluations import CalculatedBy, Output, UsedInput, WorkedFormula
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
-from templates.core.language.intake import Input
 from templates.core.language.spec import Formula as DeclaredFormula
-from templates.core.language.spec import Profile
+from templates.core.language.spec import Input, Profile
 from templates.core.language.template import Template
 from templates.core.paper.expressions import relation_latex
 from templates.core.paper.mathml import mathml, symbol
