@@ -182,7 +182,7 @@ class Carriers:
         )
         if not (first and second):
             self._missing(one, size)
-        return Place(first, second, *one.inside[:1])
+        return Place(first, second, one.inside[0] if one.inside else "")
 
     def _about(self, one: Carried) -> list[FaceSeen]:
         """Return the cylinders of a part about an axis."""
