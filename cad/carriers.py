@@ -158,10 +158,12 @@ class Carriers:
         if not (-count <= low < count and -count <= high < count):
             self._missing(one, size)
         ends = levels[low], levels[high]
-        sides = [tuple(f.number for f in planes if abs(f.surface.point.dot(axis) - z) < _CLOSE) for z in ends]
+        first, second = (
+            tuple(f.number for f in planes if abs(f.surface.point.dot(axis) - z) < _CLOSE) for z in ends
+        )
         if not isclose(abs(ends[1] - ends[0]), size, abs_tol=2 * _CLOSE):
             self._missing(one, size)
-        return Place(*sides)
+        return Place(first, second)
 
     def _sides(self, one: Carried, size: float) -> Place | None:
         """Return the planes across an axis on both sides of the origin; None if the part lacks one."""
