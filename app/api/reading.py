@@ -268,12 +268,12 @@ class PlainRoute(StrictRoute):
         return body
 
 
-def _missing(*place: str) -> Json:
+def _missing(*place: str) -> dict[str, object]:
     """Return the fault of something that is required and was not sent."""
     return {"type": "missing", "loc": place, "msg": "Field required", "input": None}
 
 
-def _not_json(error: JSONDecodeError) -> Json:
+def _not_json(error: JSONDecodeError) -> dict[str, object]:
     """Return the fault of a body that is no JSON."""
     place, reason = ("body", error.pos), {"error": error.msg}
     return {"type": "json_invalid", "loc": place, "msg": "JSON decode error", "input": {}, "ctx": reason}
