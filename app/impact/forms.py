@@ -16,8 +16,7 @@ from app.plain import Raw
 from app.reference import Reference
 from app.storage.tables import canonical_json
 from templates.core.errors import FaultyText
-from templates.core.language.intake import Input
-from templates.core.language.spec import Choice, Curve, Table
+from templates.core.language.spec import Choice, Curve, Input, Table
 from templates.core.language.template import Template
 from templates.core.units.quantity import read, read_any
 from templates.core.units.relation import is_relation
@@ -36,7 +35,7 @@ class Form:
 
 
 def form_of(document: Document, catalogues: Catalogues) -> Form:
-    """The form of a document whose templates and models are in the catalogues."""
+    """Return the form of a document whose templates and models are in the catalogues."""
     plain = document.model_dump(mode="json", exclude={"name", "variants"})
     opening = _Opening({})
     plain["parameters"] = {n: opening.parameter(n, raw) for n, raw in document.parameters.items()}
@@ -56,7 +55,7 @@ class _Opening:
     values: dict[Reference, float]
 
     def parameter(self, name: str, raw: Raw) -> Raw:
-        """A parameter of the design: its kind is that of its own unit."""
+        """Return a parameter of the design: its kind is that of its own unit."""
         if _is_written_out(raw):
             return raw
         try:
@@ -69,7 +68,7 @@ class _Opening:
         return {"open": f"{unit(typed.unit).base:~C}"}
 
     def inputs(self, block: str, values: Mapping[str, Raw], cls: type[Template] | None) -> dict[str, Raw]:
-        """The inputs of a step, or the parameters of a model."""
+        """Return the inputs of a step, or the parameters of a model."""
         declared = cls.inputs if cls else {}
         return {name: self._input(block, name, raw, declared.get(name)) for name, raw in values.items()}
 

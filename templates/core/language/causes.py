@@ -9,23 +9,20 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from templates.core.errors import Fault
+from templates.core.language.calculation import Calculation
 from templates.core.language.comparisons import Operand, Outcome, outcome
 from templates.core.language.spec import Choice, Requirement
-
-if TYPE_CHECKING:
-    from templates.core.language.template import Template
 
 BROKEN = "inconsistent"
 """The code of a fault that a broken rule is."""
 
 
-def suspects(template: Template, rule: Requirement) -> tuple[str, ...]:
-    """The inputs that can have broken a rule of a single point, by API name.
+def suspects(template: Calculation, rule: Requirement) -> tuple[str, ...]:
+    """Return the inputs that can have broken a rule of a single point, by API name.
 
     Those that were given come before those that follow from others, else in the order of the rule.
     """
@@ -49,8 +46,8 @@ def _compared(result: Outcome) -> Iterator[Operand]:
         yield from result.equated or (Operand(result.value),)
 
 
-def _inputs_of(template: Template, side: Operand) -> set[str]:
-    """The inputs from which a side follows; every one where it cannot be written."""
+def _inputs_of(template: Calculation, side: Operand) -> set[str]:
+    """Return the inputs from which a side follows; every one where it cannot be written."""
     if side.node is None:
         return set(template.inputs)
     read = (node.attr for node in ast.walk(side.node) if isinstance(node, ast.Attribute))
@@ -59,7 +56,10 @@ def _inputs_of(template: Template, side: Operand) -> set[str]:
 
 
 def by_cause(faults: Iterable[Fault]) -> list[Fault]:
-    """The faults of broken rules joined by the input that explains most of them; others as they are."""
+    """Return the faults of broken rules joined by the input that explains most of them.
+
+    Others as they are.
+    """
     faults = list(faults)
     broken = [fault for fault in faults if fault.code == BROKEN]
     return [fault for fault in faults if fault.code != BROKEN] + list(_joined(broken))
@@ -73,7 +73,7 @@ def _joined(broken: Sequence[Fault]) -> Iterator[Fault]:
 
 
 def _commonest(broken: Sequence[Fault]) -> str:
-    """The input that most rules can have been broken by; of several the one that they name first."""
+    """Return the input that most rules can have been broken by; of several the one that they name first."""
     places: dict[str, list[int]] = {}
     for fault in broken:
         for place, name in enumerate(fault.names):

@@ -7,14 +7,13 @@ from typing import Any
 
 from templates.core.errors import FaultyText
 from templates.core.judging.criterion import Criterion, Described, read_criterion
-from templates.core.language.intake import Input
-from templates.core.language.spec import Choice, Curve, Formula, Table, Text
+from templates.core.language.spec import Choice, Curve, Formula, Input, Table, Text
 
 
 def declared_criteria(
     name: str, raw: Any, inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]
 ) -> tuple[Criterion, ...]:
-    """The criteria that a class declares.
+    """Return the criteria that a class declares.
 
     Raises
     ------
@@ -44,7 +43,7 @@ def _check_defaults(criterion: Criterion, inputs: Mapping[str, Input]) -> None:
 
 
 def meanings_of(inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]) -> dict[str, Described]:
-    """Unit and words of the names that a criterion may use: neither words nor tables."""
+    """Return the unit and words of the names that a criterion may use: neither words nor tables."""
     declared = {**inputs, **formulas}
     return {
         name: Described(one.meaning.unit, one.meaning.words)

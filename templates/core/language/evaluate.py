@@ -16,36 +16,17 @@ from templates.core.judging.judgement import Judgement
 from templates.core.judging.limits import GivenLimit
 from templates.core.language import tolerances
 from templates.core.language.admission import absence
+from templates.core.language.answer import Answer, UsedInput
 from templates.core.language.climbing import Rung, climb
 from templates.core.language.criteria import Evaluated, judged, warned
-from templates.core.language.intake import Input, remarks
+from templates.core.language.intake import remarks
 from templates.core.language.ledger import Notice
 from templates.core.language.levels import accuracy, at_level
 from templates.core.language.request import read_request
-from templates.core.language.spec import Choice, Derived, Formula, Given, Profile, Text
+from templates.core.language.spec import Choice, Derived, Formula, Given, Input, Profile, Text
 from templates.core.language.template import Template
 from templates.core.language.unmet import unmet
 from templates.core.units.quantity import Typed, Unit
-
-
-@dataclass(slots=True)  # frozen, each would cost four times as much
-class Answer:
-    """One result in its unit; NaN in an array, or None, where there is none, with its reason."""
-
-    value: Any
-    unit: str | None
-    reason: str | None = None
-    reasons: NDArray[np.object_] | None = None
-
-
-@dataclass(frozen=True)
-class Echo:
-    """One input as it was used: as typed, or its default."""
-
-    value: Any
-    unit: str | None
-    source: str  # "given" or "default"
-    extra: Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -57,7 +38,7 @@ class Evaluation:
     """
 
     template: Template
-    inputs: dict[str, Echo]
+    inputs: dict[str, UsedInput]
     outputs: dict[str, Answer]
     level: Any
     error: dict[str, Any]
@@ -119,7 +100,7 @@ def evaluate(
 def _judged(
     rungs: list[Rung], whole: _Part, shown_in: Mapping[str, Unit], limits: Mapping[str, GivenLimit]
 ) -> list[Judgement]:
-    """The criteria whose outputs were evaluated."""
+    """Return the criteria whose outputs were evaluated."""
     template, is_joined = rungs[0].template, rungs[0].where is not None
     measured = accuracy(type(template))
     return judged(
@@ -156,7 +137,7 @@ def _part(template: Template, names: list[str], shown_in: Mapping[str, Unit]) ->
 
 
 def _joined(rungs: list[Rung], parts: list[_Part]) -> _Part:
-    """The answers of several levels, each at its own points, as arrays over all points."""
+    """Return the answers of several levels, each at its own points, as arrays over all points."""
     answers = {
         name: _joined_answer(rungs, rungs[0].template.formulas[name], [part.answers[name] for part in parts])
         for name in parts[0].answers
@@ -185,7 +166,7 @@ def _scattered(
 
 
 def _answers(template: Template, names: list[str], shown_in: Mapping[str, Unit]) -> dict[str, Answer]:
-    """Outputs in their units; one that is neither an array nor words is a single value."""
+    """Return outputs in their units; one that is neither an array nor words is a single value."""
     answers, absent = {}, template.ledger.absent
     for name in names:
         formula = template.formulas[name]
@@ -208,7 +189,10 @@ def _answers(template: Template, names: list[str], shown_in: Mapping[str, Unit])
 
 
 def _words(template: Template, formula: Text[Any], value: Any) -> Answer:
-    """An answer in words; an empty word is none, and there is none where a mask of anything beneath lies."""
+    """Return an answer in words.
+
+    An empty word is none, and there is none where a mask of anything beneath lies.
+    """
     why = absence(template, formula) or "there is nothing to tell here"
     if isinstance(value, str):
         return Answer(value or None, None, reason=None if value else why)
@@ -227,7 +211,7 @@ def _words(template: Template, formula: Text[Any], value: Any) -> Answer:
 def _with_reasons(
     template: Template, formula: Formula[Any], si: Array
 ) -> tuple[Array, NDArray[np.object_] | None]:
-    """The values with NaN where a mask of anything beneath covers them, and the reason for each NaN.
+    """Return the values with NaN where a mask of anything beneath covers them, and the reason for each NaN.
 
     A profile has one reason as a whole.
     """
@@ -250,7 +234,10 @@ def _with_reasons(
 
 
 def is_reported(template: Template, declared: Input) -> bool:
-    """True if an answer reports an input: it is given, or has a default that is not an output as well."""
+    """Return whether an answer reports an input.
+
+    It is given, or has a default that is not an output as well.
+    """
     if declared.name in template.ledger.typed:
         return True
     if isinstance(declared, Derived):
@@ -258,13 +245,13 @@ def is_reported(template: Template, declared: Input) -> bool:
     return not (isinstance(declared, Given) and declared.optional)
 
 
-def echoes_of(template: Template) -> dict[str, Echo]:
-    """The inputs as they were used: those given, and the defaults that an answer reports."""
+def echoes_of(template: Template) -> dict[str, UsedInput]:
+    """Return the inputs as they were used: those given, and the defaults that an answer reports."""
     echoes, given = {}, template.ledger.typed
     for name, declared in template.inputs.items():
         typed = given.get(name)
         if isinstance(typed, Typed):
-            echoes[name] = Echo(typed.value, typed.unit, "given", typed.extra)
+            echoes[name] = UsedInput(typed.value, typed.unit, "given", typed.extra)
         elif typed is None and isinstance(declared, Given) and declared.default and not declared.optional:
             echoes[name] = default_of(declared)
         elif typed is not None or is_reported(template, declared):
@@ -272,35 +259,42 @@ def echoes_of(template: Template) -> dict[str, Echo]:
     return echoes
 
 
-def _echo(template: Template, declared: Input, typed: str | None) -> Echo:
-    """An input that is an option, or whose default is a formula."""
+def _echo(template: Template, declared: Input, typed: str | None) -> UsedInput:
+    """Return an input that is an option, or whose default is a formula."""
     value = getattr(template, declared.attribute)
     source = "default" if typed is None else "given"
-    return Echo(value, None, source, {}) if isinstance(declared, Choice) else _shown(declared, value, source)
+    return (
+        UsedInput(value, None, source, {})
+        if isinstance(declared, Choice)
+        else _shown(declared, value, source)
+    )
 
 
 @lru_cache(maxsize=4096)  # worksheets come and go
-def default_of(declared: Given) -> Echo:
-    """The constant default of an input, as it is used."""
+def default_of(declared: Given) -> UsedInput:
+    """Return the constant default of an input, as it is used."""
     assert declared.default is not None
     return _shown(declared, declared.default.si, "default")
 
 
-def _shown(declared: Given | Derived[Any], si: Any, source: str) -> Echo:
+def _shown(declared: Given | Derived[Any], si: Any, source: str) -> UsedInput:
     shown = declared.meaning.scale.from_si(si)
     plain = _with_nulls(shown) if isinstance(shown, np.ndarray) else float(shown)
-    return Echo(plain, declared.meaning.unit, source, {})
+    return UsedInput(plain, declared.meaning.unit, source, {})
 
 
 def _with_nulls(shown: Array) -> list[Any]:
-    """An array as a list, None where a default follows from an input that means nothing."""
+    """Return an array as a list, None where a default follows from an input that means nothing."""
     plain = shown.astype(object)
     plain[np.isnan(shown)] = None
     return plain.tolist()
 
 
 def _standing(cls: type[Template], given: Mapping[str, Any]) -> list[Notice]:
-    """The warnings that hold whatever is calculated from these inputs: of the version, and of tolerances."""
+    """Return the warnings that hold whatever is calculated from these inputs.
+
+    Of the version, and of tolerances.
+    """
     noted = tolerances.unused(given)
     if cls.withdrawn:
         detail = f"{cls.id} version {cls.version} is withdrawn: {cls.withdrawn}"
@@ -309,7 +303,7 @@ def _standing(cls: type[Template], given: Mapping[str, Any]) -> list[Notice]:
 
 
 def answers_at_level(template: Template, outputs: Iterable[str]) -> tuple[dict[str, Answer], dict[str, Any]]:
-    """Answers in declared units and error estimates of a template at its level, without warnings.
+    """Return answers in declared units and error estimates of a template at its level, without warnings.
 
     Raises
     ------
@@ -324,7 +318,7 @@ def answers_at_level(template: Template, outputs: Iterable[str]) -> tuple[dict[s
 def evaluate_at_level(
     template: Template, outputs: Iterable[str]
 ) -> tuple[dict[str, Answer], dict[str, Any], list[Notice]]:
-    """Answers in declared units, error estimates, and all warnings so far of a template at its level.
+    """Return answers in declared units, error estimates, and all warnings so far of a template at its level.
 
     What the template has computed before is not computed again.
 
@@ -338,7 +332,7 @@ def evaluate_at_level(
 
 
 def notices_of(template: Template) -> list[Notice]:
-    """All warnings so far of a template at its level, but for those of criteria."""
+    """Return all warnings so far of a template at its level, but for those of criteria."""
     return [*_standing(type(template), template.ledger.typed), *_noticed([Rung(template, None)])]
 
 
@@ -355,6 +349,6 @@ def criterion_warnings(
 
 
 def _noticed(rungs: list[Rung]) -> list[Notice]:
-    """The warnings of all levels, each once."""
+    """Return the warnings of all levels, each once."""
     noticed = (notice for rung in rungs for notice in rung.template.ledger.warnings)
     return list(dict.fromkeys([*noticed, *(notice for rung in rungs for notice in remarks(rung.template))]))

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import filterfalse
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -15,21 +15,17 @@ from numpy.typing import NDArray
 from templates.core.arrays import Array
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_names
 from templates.core.language.admission import outside_published
+from templates.core.language.calculation import Calculation
 from templates.core.language.causes import BROKEN, suspects
 from templates.core.language.ledger import Mask, Notice
-from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Requirement, Table
+from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Input, Requirement, Table
 from templates.core.units.quantity import Typed, read
 from templates.core.units.tolerance import LONGEST_TEXT, Tolerance
 from templates.core.units.units import Value, unit
 
-Input = Given | Choice | Derived[Any]
 
-if TYPE_CHECKING:
-    from templates.core.language.template import Template
-
-
-def read_inputs(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, Typed | str], list[Fault]]:
-    """Every input that was given, read in its unit, and what is wrong with the others."""
+def read_inputs(cls: type[Calculation], raw: Mapping[str, Any]) -> tuple[dict[str, Typed | str], list[Fault]]:
+    """Return every input that was given, read in its unit, and what is wrong with the others."""
     typed: dict[str, Typed | str] = {}
     faults = unknown_names(filterfalse(cls.inputs.__contains__, raw), cls.inputs, "input")
     for name, declared in cls.inputs.items():
@@ -73,7 +69,7 @@ class Intake:
     missing: set[str] = field(default_factory=set)
 
 
-def admitted(cls: type[Template], typed: Mapping[str, Typed | str]) -> Intake:
+def admitted(cls: type[Calculation], typed: Mapping[str, Typed | str]) -> Intake:
     """The SI value of every input that was given or has a constant default, and what is wrong with it."""
     intake = Intake()
     for name, declared in cls.inputs.items():
@@ -112,8 +108,8 @@ class PlainText(NamedTuple):
     value: Any
 
 
-def plain(cls: type[Template], raw: Mapping[str, Any]) -> Plain | None:
-    """The inputs of most requests, read and admitted at once; None if any needs a further look."""
+def plain(cls: type[Calculation], raw: Mapping[str, Any]) -> Plain | None:
+    """Return the inputs of most requests, read and admitted at once; None if any needs a further look."""
     left_out = _defaults.get(cls) or _left_out(cls)
     typed: dict[str, Typed | str] = {}
     values = left_out.values.copy()
@@ -142,11 +138,11 @@ class LeftOut(NamedTuple):
     needed: set[str]
 
 
-_defaults: WeakKeyDictionary[type[Template], LeftOut] = WeakKeyDictionary()
+_defaults: WeakKeyDictionary[type[Calculation], LeftOut] = WeakKeyDictionary()
 
 
-def _left_out(cls: type[Template]) -> LeftOut:
-    """What stands for the inputs of a version that are not given."""
+def _left_out(cls: type[Calculation]) -> LeftOut:
+    """Return what stands for the inputs of a version that are not given."""
     intake, needed = Intake(), set[str]()
     for name, declared in cls.inputs.items():
         default = None if isinstance(declared, Derived) else declared.default
@@ -163,7 +159,10 @@ def _left_out(cls: type[Template]) -> LeftOut:
 
 @lru_cache(maxsize=4096)  # who varies one input sends the others again
 def plain_text(declared: Input, text: str) -> PlainText | None:
-    """An input as typed and its value [SI], if that needs no further look; for texts short enough to keep."""
+    """Return an input as typed and its value [SI], if that needs no further look.
+
+    For texts short enough to keep.
+    """
     try:
         typed = _read_one(declared, text)
     except FaultyText:
@@ -173,7 +172,7 @@ def plain_text(declared: Input, text: str) -> PlainText | None:
 
 
 def _plain_value(declared: Input, typed: Typed) -> np.float64 | None:
-    """One number within its bounds and the published range."""
+    """Return one number within its bounds and the published range."""
     si, bounds = typed.si, declared.plain
     if bounds and isinstance(si, float) and typed.tolerance is None and bounds[0] <= si <= bounds[1]:
         value = np.float64(si)
@@ -190,7 +189,10 @@ def _note_missing(declared: Input, intake: Intake) -> None:
 
 
 def _bounded(declared: Input, typed: Typed) -> tuple[Any, Fault | Mask | None]:
-    """The value and what is wrong with it; a faulty point of an array is masked, and is not a fault."""
+    """Return the value and what is wrong with it.
+
+    A faulty point of an array is masked, and is not a fault.
+    """
     if isinstance(declared, Table):
         return _rows(declared, typed.si)
     if isinstance(typed.si, np.ndarray) and is_single(declared):
@@ -208,7 +210,7 @@ def _bounded(declared: Input, typed: Typed) -> tuple[Any, Fault | Mask | None]:
 
 
 def _end_outside(declared: Declaration, si: Value, tolerance: Tolerance) -> Fault | None:
-    """The fault of a tolerance by which a single value may lie outside its bounds."""
+    """Return the fault of a tolerance by which a single value may lie outside its bounds."""
     ends = (si + tolerance.lower, si + tolerance.upper)
     outside = next((end for end in ends if not declared.meaning.admits(end)), None)
     if outside is None:
@@ -220,7 +222,7 @@ def _end_outside(declared: Declaration, si: Value, tolerance: Tolerance) -> Faul
 
 
 def _along_a_cycle(declared: Curve, typed: Typed) -> tuple[Any, Fault | None]:
-    """A curve means something as a whole: one point out of its domain refuses it."""
+    """Return a curve means something as a whole: one point out of its domain refuses it."""
     meaning, value = declared.meaning, typed.si
     if not isinstance(value, np.ndarray):
         detail = f"{meaning.words} is a curve: give an array over the {declared.along}, in {meaning.unit}"
@@ -230,7 +232,7 @@ def _along_a_cycle(declared: Curve, typed: Typed) -> tuple[Any, Fault | None]:
 
 
 def _rows(declared: Table, value: Any) -> tuple[tuple[tuple[float, ...], ...], Fault | None]:
-    """The rows of a table; a single row may stand alone."""
+    """Return the rows of a table; a single row may stand alone."""
     rows = np.atleast_2d(value)
     fits = rows.ndim == 2 and rows.shape[1] == len(declared.columns) and len(rows) <= declared.most
     if not fits or not np.all(declared.meaning.admits(rows)):
@@ -260,8 +262,8 @@ def _masked_points(
     return np.where(inside, value, np.nan), Mask((declared.attribute,), ~inside, reason)
 
 
-def as_typed(cls: type[Template], name: str, value: Any) -> Any:
-    """An SI value as if it had been typed in the declared unit."""
+def as_typed(cls: type[Calculation], name: str, value: Any) -> Any:
+    """Return an SI value as if it had been typed in the declared unit."""
     declared = cls.inputs.get(name)
     if declared is None or isinstance(declared, Choice):
         return value
@@ -270,7 +272,7 @@ def as_typed(cls: type[Template], name: str, value: Any) -> Any:
     return Typed(shown.tolist() if isinstance(shown, np.ndarray) else shown, declared.meaning.unit, si, {})
 
 
-def check_shapes(self: Template) -> None:
+def check_shapes(self: Calculation) -> None:
     """Refuse arrays whose points cannot be broadcast together, and curves of different lengths.
 
     Raises
@@ -293,7 +295,7 @@ def check_shapes(self: Template) -> None:
             raise InvalidInputs(_of_different_shapes(self, shapes)) from None
 
 
-def _of_different_shapes(self: Template, shapes: Iterable[str]) -> list[Fault]:
+def _of_different_shapes(self: Calculation, shapes: Iterable[str]) -> list[Fault]:
     """A fault for each of the arrays that have to go together, with the shapes of all as they were given."""
     names = {self.declarations[n].name: np.shape(getattr(self, n)) for n in shapes}
     listed = ", ".join(f"{name} {'×'.join(map(str, shape))}" for name, shape in names.items())
@@ -308,19 +310,22 @@ def is_single(declared: Declaration) -> bool:
     return isinstance(declared, Given) and declared.single
 
 
-def is_curve(self: Template, attribute: str) -> bool:
+def is_curve(self: Calculation, attribute: str) -> bool:
     """Return whether an attribute is an input along the crank angle."""
     return isinstance(self.declarations[attribute], Curve)
 
 
-def points_of(self: Template, arrays: Mapping[str, Array]) -> tuple[int, ...]:
-    """The shape of the points that arrays of inputs, by attribute, make; a curve is one thing for each."""
+def points_of(self: Calculation, arrays: Mapping[str, Array]) -> tuple[int, ...]:
+    """Return the shape of the points that arrays of inputs, by attribute, make.
+
+    A curve is one thing for each.
+    """
     shapes = (array.shape[:-1] if is_curve(self, name) else array.shape for name, array in arrays.items())
     return np.broadcast_shapes(*shapes)
 
 
-def violations(self: Template, rules: Iterable[Requirement]) -> list[Fault]:
-    """The faults of the rules that do not hold; points of arrays are masked instead."""
+def violations(self: Calculation, rules: Iterable[Requirement]) -> list[Fault]:
+    """Return the faults of the rules that do not hold; points of arrays are masked instead."""
     faults: list[Fault] = []
     missing = self.ledger.missing
     for rule in rules:
@@ -337,29 +342,29 @@ def violations(self: Template, rules: Iterable[Requirement]) -> list[Fault]:
     return faults
 
 
-def _violation(self: Template, rule: Requirement) -> Fault:
-    """The fault of a rule that does not hold."""
+def _violation(self: Calculation, rule: Requirement) -> Fault:
+    """Return the fault of a rule that does not hold."""
     name, *also = names = suspects(self, rule)
     values = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in names)
     return Fault(name, BROKEN, f"{rule.sentence}, but {values}; {rule.remedy}", tuple(also))
 
 
-def _violated_points(self: Template, rule: Requirement, holds: NDArray[np.bool_]) -> list[Mask]:
-    """The mask of the points at which a rule does not hold, if there are any."""
+def _violated_points(self: Calculation, rule: Requirement, holds: NDArray[np.bool_]) -> list[Mask]:
+    """Return the mask of the points at which a rule does not hold, if there are any."""
     if holds.all():
         return []
     names = tuple(self.inputs[name].attribute for name in rule.names)
     return [Mask(names, ~holds, f"{rule.sentence}: {rule.remedy}")]
 
 
-def remarks(self: Template) -> Iterator[Notice]:
-    """A warning for every rule that refuses nothing, where it does not hold."""
+def remarks(self: Calculation) -> Iterator[Notice]:
+    """Yield a warning for every rule that refuses nothing, where it does not hold."""
     for rule in self._remarks:
         if not np.all(rule.function(self)):
             yield from (Notice(rule.warning, name, f"{rule.sentence}; {rule.remedy}") for name in rule.names)
 
 
-def _shown(self: Template, declared: Declaration) -> str:
+def _shown(self: Calculation, declared: Declaration) -> str:
     value = getattr(self, declared.attribute)
     if isinstance(value, str):
         return value

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name
-from templates.core.language.intake import Input, is_single
+from templates.core.language.intake import is_single
 from templates.core.language.request import read_options
-from templates.core.language.spec import Choice, Curve, Formula, Profile, Table, Text
+from templates.core.language.spec import Choice, Curve, Formula, Input, Profile, Table, Text
 from templates.core.language.template import Template
 from templates.core.units.quantity import Typed, read
 from templates.core.units.units import Value
@@ -56,7 +56,7 @@ def read_question(
 
 
 def _unknown(cls: type[Template], name: str, faults: list[Fault]) -> Input | None:
-    """The declaration of the unknown, if it is a quantity that can take any value."""
+    """Return the declaration of the unknown, if it is a quantity that can take any value."""
     declared = cls.inputs.get(name)
     if declared is None:
         fault = unknown_name(name, _solvable(cls), "input")
@@ -103,7 +103,7 @@ def _faulty_inputs(
     declared: Input | None,
     ends: tuple[float, float],
 ) -> list[Fault]:
-    """The faults of the other inputs, seen with the unknown in the middle of its bounds."""
+    """Return the faults of the other inputs, seen with the unknown in the middle of its bounds."""
     curves = [name for name, d in cls.inputs.items() if isinstance(d, (Curve, Table))]
     arrays = [name for name, value in raw.items() if _is_array(value) and name not in curves]
     faults = [Fault(f"inputs.{n}", "not_a_number", "solve takes single values, not arrays") for n in arrays]
@@ -122,5 +122,5 @@ def _is_array(value: Any) -> bool:
 
 
 def typed_values(declared: Input, si: Value) -> Typed:
-    """Values of the unknown [SI] as if they had been typed."""
+    """Return values of the unknown [SI] as if they had been typed."""
     return Typed(None, declared.meaning.unit, si, {})

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import copyreg
 import hashlib
 import json
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 from templates.core.language.template import Template
 from templates.core.sheets.building import Builder
 from templates.core.sheets.built import Built
-from templates.core.sheets.classes import class_of
+from templates.core.sheets.classes import SheetClass, class_of
 from templates.core.sheets.depths import set_order
 from templates.core.sheets.faults import SheetRefused
 from templates.core.sheets.grammar import LANGUAGE
@@ -61,21 +63,21 @@ class Sheet:
 
     @property
     def title(self) -> str:
-        """The first heading; empty where there is none."""
+        """Return the first heading; empty where there is none."""
         return title_of(self.chunks)
 
     @property
     def tests(self) -> tuple[SheetTest, ...]:
-        """The tests that it holds; `run_tests` runs them."""
+        """Return the tests that it holds; `run_tests` runs them."""
         return tuple(self.built.tests)
 
     @cached_property
     def names(self) -> tuple[Named, ...]:
-        """The names that formulas may use, for completion."""
+        """Return the names that formulas may use, for completion."""
         return tuple(self.built.named.values())
 
     def digest(self) -> str:
-        """SHA-256 of the statements and the version of the language; prose and layout do not count."""
+        """Return the SHA-256 of the statements and the language version, without prose and layout."""
         return self._digest
 
     @cached_property
@@ -86,7 +88,7 @@ class Sheet:
 
     @cached_property
     def statements(self) -> tuple[Statement, ...]:
-        """Every statement with prose and remarks, in the order of the lines."""
+        """Return every statement with prose and remarks, in the order of the lines."""
         lines = {statement.chunk.line: statement for statement in self.built.statements}
         written = latex_of(self.template("worksheet", 1), self.built)
         return tuple(self._statement(chunk, lines.get(chunk.line), written) for chunk in self.chunks)
@@ -132,3 +134,24 @@ def read(text: str) -> Sheet:
     if faults := [*built.faults, *faults_of_loops(built)] or [*set_order(built)]:
         raise SheetRefused(faults)
     return Sheet(text, tuple(chunks), built)
+
+
+@lru_cache(maxsize=64)
+def from_text(text: str, id: str, version: int, withdrawn: str | None = None) -> type[Template]:
+    """The class of a worksheet in this process, one for each text, id, version and reason of withdrawal.
+
+    Raises
+    ------
+    SheetRefused
+        If the text has faults.
+    """
+    cls = read(text).template(id, version)
+    cls.withdrawn = withdrawn
+    return cls
+
+
+def _reduced(cls: Any) -> tuple[Callable[..., Any], tuple[str, str, int, str | None]]:
+    return from_text, (cls.sheet.text, cls.id, cls.version, cls.withdrawn)
+
+
+copyreg.pickle(SheetClass, _reduced)
