@@ -23,11 +23,11 @@ import pint
 
 from templates.core.catalogue.finding import Catalogue, find
 from templates.core.errors import Fault, InvalidInputs, unknown_name
-from templates.core.language.evaluate import Answer, criterion_warnings, evaluate, evaluate_at_level
-from templates.core.language.intake import Input
+from templates.core.language.answer import Answer
+from templates.core.language.evaluate import criterion_warnings, evaluate, evaluate_at_level
 from templates.core.language.ledger import Notice
 from templates.core.language.levels import at_level
-from templates.core.language.spec import Choice, Declaration, Text
+from templates.core.language.spec import Choice, Declaration, Input, Text
 from templates.core.language.template import Template
 from templates.core.units.units import registry
 

@@ -52,7 +52,7 @@ GROWING = {
 }
 """Records that one function fills step by step before it returns them."""
 
-MANY = {"Answer", "Compared", "Echo", "Estimate", "Judgement", "Worst"}
+MANY = {"Answer", "Compared", "Estimate", "Judgement", "UsedInput", "Worst"}
 """Records of which each calculation makes hundreds: frozen, one would cost four times as much or more."""
 
 

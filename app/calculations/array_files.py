@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.calculations.errors import NoArray
-from templates.core.language.evaluate import Answer, Evaluation
+from templates.core.language.answer import Answer
+from templates.core.language.evaluate import Evaluation
 
 NPY = "application/x-npy"
 JSON = "application/json"

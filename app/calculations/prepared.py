@@ -18,18 +18,12 @@ from app.calculations import criteria, rendering
 from app.calculations.waiting import Waiting, is_waiting
 from templates.core.judging.judgement import Judgement
 from templates.core.judging.summary import rank
+from templates.core.language.answer import Answer, UsedInput
 from templates.core.language.criteria import Evaluated, judged_alone, warned
-from templates.core.language.evaluate import (
-    Answer,
-    Echo,
-    answers_at_level,
-    default_of,
-    echoes_of,
-    notices_of,
-)
-from templates.core.language.intake import Input, plain_text
+from templates.core.language.evaluate import answers_at_level, default_of, echoes_of, notices_of
+from templates.core.language.intake import plain_text
 from templates.core.language.levels import accuracy
-from templates.core.language.spec import Given
+from templates.core.language.spec import Given, Input
 from templates.core.language.template import Template
 
 LONGEST_NAME = 100  # of an output in a request
@@ -105,7 +99,7 @@ class Prepared:
     def _used(self, inputs: Mapping[str, str], template: Template) -> list[bytes]:
         """The inputs as they were used."""
         used: list[bytes] = []
-        others: Mapping[str, Echo] | None = None
+        others: Mapping[str, UsedInput] | None = None
         for name, declared, default in self._inputs:
             said = _given(declared, inputs[name]) if name in inputs else default
             if said is None:
@@ -174,9 +168,9 @@ def _given(declared: Input, text: str) -> bytes | None:
     plain = plain_text(declared, text)
     if plain is None or isinstance(plain.typed, str):
         return None
-    return _member(declared.name, Echo(plain.typed.value, plain.typed.unit, "given", plain.typed.extra))
+    return _member(declared.name, UsedInput(plain.typed.value, plain.typed.unit, "given", plain.typed.extra))
 
 
-def _member(name: str, echo: Echo) -> bytes:
+def _member(name: str, echo: UsedInput) -> bytes:
     """An input as it was used, as a member of an object."""
     return to_json(rendering.inputs({name: echo}))[1:-1]

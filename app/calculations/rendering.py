@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from app.calculations import criteria
 from app.plain import JsonObject
 from templates.core.catalogue.digests import digest
-from templates.core.language.evaluate import Answer, Echo, Evaluation
+from templates.core.language.answer import Answer, UsedInput
+from templates.core.language.evaluate import Evaluation
 from templates.core.language.ledger import Notice
 from templates.core.language.template import Template
 
@@ -95,7 +96,7 @@ def errors(errors: Mapping[str, object]) -> dict[str, object]:
     }
 
 
-def inputs(echoes: Mapping[str, Echo]) -> dict[str, object]:
+def inputs(echoes: Mapping[str, UsedInput]) -> dict[str, object]:
     """The inputs as they were used."""
     shown: dict[str, object] = {}
     for name, used in echoes.items():

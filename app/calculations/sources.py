@@ -13,7 +13,7 @@ from cad.brought import class_of as class_of_description
 from templates.core.catalogue.finding import declared_in, declared_in_file
 from templates.core.catalogue.loading import load, origin
 from templates.core.language.template import Template
-from templates.core.sheets.classes import from_text
+from templates.core.sheets.sheet import from_text
 
 _PROGRAM = str(Path(templates.__file__).parents[1])
 """The folder in which this machine has the packages of the program."""

@@ -24,9 +24,8 @@ from app.reference import Reference
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, unknown_names
 from templates.core.judging.limits import GivenLimit, read_limits
-from templates.core.language.intake import Input
 from templates.core.language.meaning import Meaning
-from templates.core.language.spec import Given
+from templates.core.language.spec import Given, Input
 from templates.core.language.template import Template
 from templates.core.units.relation import Kind, Relation, is_relation, parse
 

@@ -20,8 +20,7 @@ from cad.model import CadModel
 from templates.core.judging.criterion import Criterion as Judged
 from templates.core.judging.criterion import Limit
 from templates.core.judging.limits import GivenLimit
-from templates.core.language.intake import Input
-from templates.core.language.spec import Choice, Declaration, Formula
+from templates.core.language.spec import Choice, Declaration, Formula, Input
 from templates.core.language.template import Template
 from templates.core.units.operations import Kind
 from templates.core.units.relation import Relation

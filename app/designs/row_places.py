@@ -17,8 +17,7 @@ from app.plain import Raw
 from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name
-from templates.core.language.intake import Input
-from templates.core.language.spec import Choice, Curve, Given, Profile, Table
+from templates.core.language.spec import Choice, Curve, Given, Input, Profile, Table
 from templates.core.units.units import Value
 
 

@@ -17,7 +17,8 @@ from app.designs.network import Block
 from app.designs.row_refusals import Refusal, is_of_all_rows, masked, refusal_of
 from templates.core.arrays import Mask
 from templates.core.errors import InvalidInputs
-from templates.core.language.evaluate import Answer, answers_at_level
+from templates.core.language.answer import Answer
+from templates.core.language.evaluate import answers_at_level
 from templates.core.language.intake import is_single
 from templates.core.language.levels import at_level
 from templates.core.language.spec import Curve, Profile, Table

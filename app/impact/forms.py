@@ -16,8 +16,7 @@ from app.plain import Raw
 from app.reference import Reference
 from app.storage.tables import canonical_json
 from templates.core.errors import FaultyText
-from templates.core.language.intake import Input
-from templates.core.language.spec import Choice, Curve, Table
+from templates.core.language.spec import Choice, Curve, Input, Table
 from templates.core.language.template import Template
 from templates.core.units.quantity import read, read_any
 from templates.core.units.relation import is_relation

@@ -4,7 +4,6 @@ How units are written depends on the kind of database: `app.storage.group_writer
 `app.storage.pooled_writer` (PostgreSQL).
 """
 
-import asyncio
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
@@ -95,10 +94,6 @@ class Database:
             Whatever the unit raises; its changes, and no others, are undone.
         """
         return self._writer.write(unit)
-
-    async def awrite(self, unit: Unit[T]) -> T:
-        """Like `write`, for a caller in an event loop."""
-        return await asyncio.wrap_future(self.submit(unit))
 
     def submit(self, unit: Unit[T]) -> "Future[T]":
         """Have a unit of work written; its future raises as `write` does."""

@@ -12,7 +12,8 @@ import numpy as np
 from handbook.criteria import described_row
 from handbook.rendering import render
 from handbook.rendering import unit as unit_of
-from templates.core.language.evaluate import Answer, evaluate
+from templates.core.language.answer import Answer
+from templates.core.language.evaluate import evaluate
 from templates.core.language.levels import SINGLE, accuracy, accuracy_file, truth_of
 from templates.core.language.template import Template
 from templates.core.paper.schema import describe

@@ -13,7 +13,7 @@ from app.calculations.errors import NoArray
 from app.calculations.schemas import OIL_FILM
 from app.client import Client, Problem
 from app.settings import Settings
-from templates.core.language.evaluate import Answer
+from templates.core.language.answer import Answer
 
 PLACE = f"{API}/templates/oil_film/versions/1/evaluate"
 FILM = "minimum_film_thickness"

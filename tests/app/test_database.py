@@ -1,6 +1,5 @@
 """One writer, many readers: durable, isolated unit by unit, in groups."""
 
-import asyncio
 import os
 import signal
 import sqlite3
@@ -174,8 +173,8 @@ def test_rows_stay_readable_after_their_session(database):
     assert database.write(unit).name == "a"
 
 
-def test_an_event_loop_may_wait_for_a_write(database):
-    assert asyncio.run(database.awrite(adding("a"))) is None
+def test_a_write_may_be_waited_for_later(database):
+    assert database.submit(adding("a")).result(timeout=10) is None
     assert names(database) == {"a"}
 
 

@@ -4,13 +4,15 @@ import pytest
 
 from app.designs.variant_sheets.grid import grid_of
 from app.designs.variant_sheets.reading import read_variants
-from templates.core.errors import InvalidInputs
+from templates.core.errors import InvalidInputs, refuse
 
 UNITS = {"width": "mm", "film.radial_load": "N", "film.speed": "rad/s", "pad.speed": "m/s", "film.width": "m"}
 
 
 def read(*rows):
-    return read_variants(grid_of(rows), UNITS, {}).variants
+    sheet, faults = read_variants(grid_of(rows), UNITS, {})
+    refuse(faults)
+    return sheet.variants
 
 
 @pytest.mark.parametrize("heading", ["film.radial_load", "radial load", "Radial  Load", "RADIAL_LOAD"])

@@ -15,7 +15,7 @@ from app.designs.variant_sheets.reading import read_variants
 from app.designs.variant_sheets.writing import rows_of, sheet_columns
 from app.designs.variant_sheets.xlsx_files import MOST_UNPACKED, read_xlsx, write_xlsx
 from app.schemas.variants import VariantColumn, VariantsOut
-from templates.core.errors import InvalidInputs
+from templates.core.errors import InvalidInputs, refuse
 
 UNITS = {
     "clearance": "um",
@@ -26,6 +26,13 @@ UNITS = {
     "shell.wall": "mm",
 }
 QUANTITIES = {"clearance": "um", "bearing": "1", "film.bearing_width": "mm", "film.radial_load": "kN"}
+
+
+def sheet_of(grid, before=None):
+    """Return the variants of a sheet; raise InvalidInputs with every faulty cell."""
+    sheet, faults = read_variants(grid, UNITS, before or {})
+    refuse(faults)
+    return sheet
 
 
 def out_of(variants):
@@ -60,7 +67,7 @@ def attempt(call):
 
 
 def csv_faults(text, before=None):
-    return faults_of(lambda: read_variants(read_csv(text.encode()), UNITS, before or {}))
+    return faults_of(lambda: sheet_of(read_csv(text.encode()), before or {}))
 
 
 def book_of(*rows, title="Sheet", hidden=False):
@@ -112,21 +119,19 @@ tables = st.dictionaries(
 @settings(max_examples=examples(150), deadline=None)
 @given(tables)
 def test_a_round_trip_through_csv_changes_no_value(variants):
-    assert read_variants(through_csv(variants), UNITS, variants).variants == variants
+    assert sheet_of(through_csv(variants), variants).variants == variants
 
 
 @settings(max_examples=examples(25), deadline=None)
 @given(tables)
 def test_a_round_trip_through_xlsx_changes_no_value(variants):
-    assert read_variants(through_xlsx(variants), UNITS, variants).variants == variants
+    assert sheet_of(through_xlsx(variants), variants).variants == variants
 
 
 @settings(max_examples=examples(100), deadline=None)
 @given(st.text(max_size=200))
 def test_any_text_is_read_or_refused(text):
-    variants, faults = attempt(
-        lambda: read_variants(read_csv(text.encode(errors="replace")), UNITS, {}).variants
-    )
+    variants, faults = attempt(lambda: sheet_of(read_csv(text.encode(errors="replace"))).variants)
     assert all(fault.name and fault.detail for fault in faults)
     assert all(set(overrides) <= set(UNITS) for overrides in (variants or {}).values())
 
@@ -136,7 +141,7 @@ def test_what_a_new_sheet_says_becomes_values_with_the_unit_of_their_column():
         "variant,clearance,film.radial_load =,film.oil_grade\nunit,um,,\n"
         "main_1,55,,iso_vg_32\nmain_2,0.06 mm,2 * load,"
     )
-    assert read_variants(read_csv(text.encode()), UNITS, {}).variants == {
+    assert sheet_of(read_csv(text.encode())).variants == {
         "main_1": {"clearance": "55 um", "film.oil_grade": "iso_vg_32"},
         "main_2": {"clearance": "0.06 mm", "film.radial_load": "= 2 * load"},
     }
@@ -145,7 +150,7 @@ def test_what_a_new_sheet_says_becomes_values_with_the_unit_of_their_column():
 @pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"], ids=["plain", "with a byte-order mark"])
 def test_semicolons_and_decimal_commas_are_read(mark):
     text = "variant;clearance;film.bearing_width\nunit;mm;mm\nmain_1;0,055;18,5\nmain_2;0,06 mm;\n"
-    assert read_variants(read_csv(mark + text.encode()), UNITS, {}).variants == {
+    assert sheet_of(read_csv(mark + text.encode())).variants == {
         "main_1": {"clearance": "0.055 mm", "film.bearing_width": "18.5 mm"},
         "main_2": {"clearance": "0.06 mm"},
     }
@@ -153,12 +158,12 @@ def test_semicolons_and_decimal_commas_are_read(mark):
 
 def test_a_unit_may_stand_in_brackets_without_a_row_of_units():
     text = "variant;clearance [um]\nmain_1;55\n"
-    assert read_variants(read_csv(text.encode()), UNITS, {}).variants == {"main_1": {"clearance": "55 um"}}
+    assert sheet_of(read_csv(text.encode())).variants == {"main_1": {"clearance": "55 um"}}
 
 
 def test_result_columns_and_blank_rows_are_ignored():
     text = "variant,clearance,results: verdict\n,um,\nmain_1,55,=rubbish\n,,3 met\n"
-    assert read_variants(read_csv(text.encode()), UNITS, {}).variants == {"main_1": {"clearance": "55 um"}}
+    assert sheet_of(read_csv(text.encode())).variants == {"main_1": {"clearance": "55 um"}}
 
 
 def test_every_faulty_cell_is_named_at_once():
@@ -202,7 +207,7 @@ def test_faults_of_a_save_are_named_by_their_cells():
     from templates.core.errors import Fault
 
     text = "variant,clearance\nunit,um\n\nmain_1,55\n"
-    sheet = read_variants(read_csv(text.encode()), UNITS, {})
+    sheet = sheet_of(read_csv(text.encode()))
     names = ("variants.main_1.clearance", "variants.main_1", "variants.main_1.film.speed", "film.speed")
     error = sheet.named(InvalidInputs(Fault(name, "c", "d") for name in names))
     assert [fault.name for fault in error.faults] == ["B4", "A4", "A4", "film.speed"]
@@ -250,7 +255,7 @@ def test_formulas_dates_and_errors_in_cells_are_refused_by_address():
         ["main_1", "=1+1", datetime.datetime(2026, 1, 2), True, "=1+1"],
         ["main_2", 60, 18.5, 2, None],
     )
-    faults = faults_of(lambda: read_variants(read_xlsx(content), UNITS, {}))
+    faults = faults_of(lambda: sheet_of(read_xlsx(content)))
     assert {name: fault.code for name, fault in faults.items()} == {
         "B3": "formula",
         "C3": "date",

@@ -67,20 +67,7 @@ class SheetVariants:
         return replace(fault, name=self.addresses.get((variant, place), row or fault.name))
 
 
-def read_variants(grid: Grid, units: Units, before: Variants) -> SheetVariants:
-    """The variants of a sheet, if all its cells can be read.
-
-    Raises
-    ------
-    InvalidInputs
-        With every cell that cannot, by its address.
-    """
-    sheet, faults = readable_variants(grid, units, before)
-    refuse(faults)
-    return sheet
-
-
-def readable_variants(grid: Grid, units: Units, before: Variants) -> tuple[SheetVariants, list[Fault]]:
+def read_variants(grid: Grid, units: Units, before: Variants) -> tuple[SheetVariants, list[Fault]]:
     """The cells of a sheet that can be read as variants, and the faults of all others.
 
     A value that means what it meant before is kept as it was typed then. Rows without a name of their own are

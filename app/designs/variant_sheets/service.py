@@ -11,7 +11,7 @@ from app.designs.reading import read_document, resolved
 from app.designs.service import Designs, Saved
 from app.designs.variant_sheets.csv_files import read_csv, write_csv
 from app.designs.variant_sheets.grid import MOST_FAULTS, Grid, cell_of
-from app.designs.variant_sheets.reading import SheetVariants, readable_variants
+from app.designs.variant_sheets.reading import SheetVariants, read_variants
 from app.designs.variant_sheets.units import units_of
 from app.designs.variant_sheets.writing import rows_of, sheet_columns
 from app.designs.variant_sheets.xlsx_files import read_xlsx, write_xlsx
@@ -61,7 +61,7 @@ def save_sheet(
         raw = repository.newest(session, id).document
     document = resolved(read_document(raw), designs.catalogues)
     network, _ = build_graph(document.model_copy(update={"variants": {}}), designs.catalogues)
-    sheet, faults = readable_variants(grid, units_of(network), document.variants)
+    sheet, faults = read_variants(grid, units_of(network), document.variants)
     if not faults:
         try:
             return replace_variants(designs, id, sheet.variants, None, expected, once)

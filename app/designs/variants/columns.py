@@ -13,8 +13,7 @@ from app.reference import Reference
 from app.schemas.answers import Shown
 from app.schemas.variants import VariantColumn
 from templates.core.errors import FaultyText
-from templates.core.language.intake import Input
-from templates.core.language.spec import Choice
+from templates.core.language.spec import Choice, Input
 from templates.core.units.quantity import Typed, read, read_any
 
 

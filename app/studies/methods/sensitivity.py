@@ -175,11 +175,6 @@ def indices(points: SobolPoints, output: str, y: Array) -> Indices:
     return Indices(*(_plain(by_name[name]) for name in ("S1", "S1_conf", "ST", "ST_conf")))
 
 
-def most_base(rows: int, dimensions: int) -> int:
-    """The largest power of two of base points whose Sobol' indices need at most so many rows."""
-    return 1 << max((rows // (dimensions + 2)).bit_length() - 1, 1)
-
-
 def _problem(space: Space) -> dict[str, object]:
     """The unit cube as a problem of SALib."""
     return {"num_vars": len(space), "names": space.names, "bounds": [[0.0, 1.0]] * len(space)}

@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 from templates.core.catalogue.digests import digest, release_file
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import is_reported
-from templates.core.language.intake import Input
-from templates.core.language.spec import Choice
+from templates.core.language.spec import Choice, Input
 from templates.core.language.template import Template
 
 STEPS = (0.9, 1.1)  # every numeric input in turn, around the example

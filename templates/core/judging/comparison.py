@@ -108,14 +108,3 @@ def _opposed(sign: Sign, value: Bounds, limit: Bounds) -> tuple[Bounds, Bounds]:
     if sign == ">=":
         return (value[0], limit[1]), (value[1], limit[0])
     return (limit[0], value[1]), (limit[1], value[0])
-
-
-def judge_rows(criterion: Criterion, estimates: Mapping[str, Estimate]) -> Codes:
-    """Return the verdict at every point, as places in `WORST_FIRST`; for arrays of designs.
-
-    Raises
-    ------
-    FaultyText
-        With code `shape`, where arrays of different lengths meet.
-    """
-    return compare(criterion, estimates).rows()

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
+from templates.core.language.calculation import Calculation
 from templates.core.language.ledger import Mask, Notice
 from templates.core.language.spec import Declaration, Formula, Profile
 
-if TYPE_CHECKING:
-    from templates.core.language.template import Template
 
-
-def absence(self: Template, declaration: Formula[Any]) -> str | None:
+def absence(self: Calculation, declaration: Formula[Any]) -> str | None:
     """Why a result may be NaN without being a fault: an optional input is missing, or it does not exist."""
     missing = sorted(self.ledger.missing & self.ancestors(declaration.attribute))
     if missing:
@@ -24,7 +22,7 @@ def absence(self: Template, declaration: Formula[Any]) -> str | None:
     return declaration.meaning.absent or _explained(self, declaration)
 
 
-def _explained(self: Template, declaration: Formula[Any]) -> str | None:
+def _explained(self: Calculation, declaration: Formula[Any]) -> str | None:
     """Why a result beneath this one exists at no point, if its formula noted that."""
     explaining = [mask for mask in self.ledger.masks if mask.explains and mask.where.all()]
     if not explaining:
@@ -33,7 +31,7 @@ def _explained(self: Template, declaration: Formula[Any]) -> str | None:
     return next((mask.reason for mask in explaining if not beneath.isdisjoint(mask.names)), None)
 
 
-def refusal(self: Template, declaration: Formula[Any], value: float) -> Fault:
+def refusal(self: Calculation, declaration: Formula[Any], value: float) -> Fault:
     """The fault of a formula's result outside its domain, with the inputs that it follows from."""
     meaning = declaration.meaning.at(self.level)
     beneath = sorted(self.depends_on(declaration.attribute) & self.declarations.keys())
@@ -48,7 +46,7 @@ def refusal(self: Template, declaration: Formula[Any], value: float) -> Fault:
     return Fault(declaration.name, "outside_domain", detail)
 
 
-def whole(self: Template, declaration: Formula[Any], value: Array) -> Array:
+def whole(self: Calculation, declaration: Formula[Any], value: Array) -> Array:
     """The profile of a single point: refused unless all of it means something, or none of it exists."""
     inside = declaration.meaning.at(self.level).admits(value)
     if not inside.all():
@@ -59,7 +57,7 @@ def whole(self: Template, declaration: Formula[Any], value: Array) -> Array:
     return value
 
 
-def masked(self: Template, declaration: Formula[Any], value: Array) -> Array:
+def masked(self: Calculation, declaration: Formula[Any], value: Array) -> Array:
     """The results with NaN where they mean nothing, the reason noted; a profile is masked as a whole."""
     meaning = declaration.meaning.at(self.level)
     inside = meaning.admits(value)

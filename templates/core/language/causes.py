@@ -9,22 +9,19 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from templates.core.errors import Fault
+from templates.core.language.calculation import Calculation
 from templates.core.language.comparisons import Operand, Outcome, outcome
 from templates.core.language.spec import Choice, Requirement
-
-if TYPE_CHECKING:
-    from templates.core.language.template import Template
 
 BROKEN = "inconsistent"
 """The code of a fault that a broken rule is."""
 
 
-def suspects(template: Template, rule: Requirement) -> tuple[str, ...]:
+def suspects(template: Calculation, rule: Requirement) -> tuple[str, ...]:
     """The inputs that can have broken a rule of a single point, by API name.
 
     Those that were given come before those that follow from others, else in the order of the rule.
@@ -49,7 +46,7 @@ def _compared(result: Outcome) -> Iterator[Operand]:
         yield from result.equated or (Operand(result.value),)
 
 
-def _inputs_of(template: Template, side: Operand) -> set[str]:
+def _inputs_of(template: Calculation, side: Operand) -> set[str]:
     """The inputs from which a side follows; every one where it cannot be written."""
     if side.node is None:
         return set(template.inputs)

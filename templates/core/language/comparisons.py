@@ -14,17 +14,15 @@ import ast
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 from numpy.typing import NDArray
 
 from templates.core.arrays import Truth
-
-if TYPE_CHECKING:
-    from templates.core.language.spec import Requirement
-    from templates.core.language.template import Template
+from templates.core.language.calculation import Calculation
+from templates.core.language.spec import Requirement
 
 Sign = Literal["<", "<=", ">", ">="]
 Mask = NDArray[np.bool_]
@@ -198,7 +196,7 @@ def _none_of(guards: Sequence[Outcome], where: Truth) -> Mask:
     return free
 
 
-def outcome(template: Template, rule: Requirement) -> Outcome:
+def outcome(template: Calculation, rule: Requirement) -> Outcome:
     """Run a rule and record its comparisons.
 
     A rule that does not run with operands has its truth alone.
@@ -215,7 +213,7 @@ def outcome(template: Template, rule: Requirement) -> Outcome:
 class _Recorded:
     """A template whose values are operands, for the time of one rule."""
 
-    def __init__(self, template: Template) -> None:
+    def __init__(self, template: Calculation) -> None:
         self._template = template
 
     def __getattr__(self, name: str) -> Any:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache, reduce
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -17,14 +17,12 @@ from templates.core.judging.judging import Absent, Along, Instead, judge
 from templates.core.judging.limits import GivenLimit
 from templates.core.judging.summary import worst_first
 from templates.core.language.admission import absence
+from templates.core.language.answer import Answer
 from templates.core.language.ledger import Notice
+from templates.core.language.levels import Accuracy
 from templates.core.language.spec import Curve, Declaration, Formula, Profile
+from templates.core.language.template import Template
 from templates.core.units.units import Unit, Value
-
-if TYPE_CHECKING:
-    from templates.core.language.evaluate import Answer
-    from templates.core.language.levels import Accuracy
-    from templates.core.language.template import Template
 
 NOT_JUDGED = "check_not_judged"
 RIGHT_ANGLE = math.pi / 2  # to which the errors of angles are relative [rad]

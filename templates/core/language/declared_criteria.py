@@ -7,8 +7,7 @@ from typing import Any
 
 from templates.core.errors import FaultyText
 from templates.core.judging.criterion import Criterion, Described, read_criterion
-from templates.core.language.intake import Input
-from templates.core.language.spec import Choice, Curve, Formula, Table, Text
+from templates.core.language.spec import Choice, Curve, Formula, Input, Table, Text
 
 
 def declared_criteria(

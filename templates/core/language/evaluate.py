@@ -16,36 +16,17 @@ from templates.core.judging.judgement import Judgement
 from templates.core.judging.limits import GivenLimit
 from templates.core.language import tolerances
 from templates.core.language.admission import absence
+from templates.core.language.answer import Answer, UsedInput
 from templates.core.language.climbing import Rung, climb
 from templates.core.language.criteria import Evaluated, judged, warned
-from templates.core.language.intake import Input, remarks
+from templates.core.language.intake import remarks
 from templates.core.language.ledger import Notice
 from templates.core.language.levels import accuracy, at_level
 from templates.core.language.request import read_request
-from templates.core.language.spec import Choice, Derived, Formula, Given, Profile, Text
+from templates.core.language.spec import Choice, Derived, Formula, Given, Input, Profile, Text
 from templates.core.language.template import Template
 from templates.core.language.unmet import unmet
 from templates.core.units.quantity import Typed, Unit
-
-
-@dataclass(slots=True)  # frozen, each would cost four times as much
-class Answer:
-    """One result in its unit; NaN in an array, or None, where there is none, with its reason."""
-
-    value: Any
-    unit: str | None
-    reason: str | None = None
-    reasons: NDArray[np.object_] | None = None
-
-
-@dataclass(frozen=True)
-class Echo:
-    """One input as it was used: as typed, or its default."""
-
-    value: Any
-    unit: str | None
-    source: str  # "given" or "default"
-    extra: Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -57,7 +38,7 @@ class Evaluation:
     """
 
     template: Template
-    inputs: dict[str, Echo]
+    inputs: dict[str, UsedInput]
     outputs: dict[str, Answer]
     level: Any
     error: dict[str, Any]
@@ -260,13 +241,13 @@ def is_reported(template: Template, declared: Input) -> bool:
     return not (isinstance(declared, Given) and declared.optional)
 
 
-def echoes_of(template: Template) -> dict[str, Echo]:
+def echoes_of(template: Template) -> dict[str, UsedInput]:
     """The inputs as they were used: those given, and the defaults that an answer reports."""
     echoes, given = {}, template.ledger.typed
     for name, declared in template.inputs.items():
         typed = given.get(name)
         if isinstance(typed, Typed):
-            echoes[name] = Echo(typed.value, typed.unit, "given", typed.extra)
+            echoes[name] = UsedInput(typed.value, typed.unit, "given", typed.extra)
         elif typed is None and isinstance(declared, Given) and declared.default and not declared.optional:
             echoes[name] = default_of(declared)
         elif typed is not None or is_reported(template, declared):
@@ -274,24 +255,28 @@ def echoes_of(template: Template) -> dict[str, Echo]:
     return echoes
 
 
-def _echo(template: Template, declared: Input, typed: str | None) -> Echo:
+def _echo(template: Template, declared: Input, typed: str | None) -> UsedInput:
     """An input that is an option, or whose default is a formula."""
     value = getattr(template, declared.attribute)
     source = "default" if typed is None else "given"
-    return Echo(value, None, source, {}) if isinstance(declared, Choice) else _shown(declared, value, source)
+    return (
+        UsedInput(value, None, source, {})
+        if isinstance(declared, Choice)
+        else _shown(declared, value, source)
+    )
 
 
 @lru_cache(maxsize=4096)  # worksheets come and go
-def default_of(declared: Given) -> Echo:
+def default_of(declared: Given) -> UsedInput:
     """The constant default of an input, as it is used."""
     assert declared.default is not None
     return _shown(declared, declared.default.si, "default")
 
 
-def _shown(declared: Given | Derived[Any], si: Any, source: str) -> Echo:
+def _shown(declared: Given | Derived[Any], si: Any, source: str) -> UsedInput:
     shown = declared.meaning.scale.from_si(si)
     plain = _with_nulls(shown) if isinstance(shown, np.ndarray) else float(shown)
-    return Echo(plain, declared.meaning.unit, source, {})
+    return UsedInput(plain, declared.meaning.unit, source, {})
 
 
 def _with_nulls(shown: Array) -> list[Any]:

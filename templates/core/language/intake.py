@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import filterfalse
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -15,20 +15,16 @@ from numpy.typing import NDArray
 from templates.core.arrays import Array
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_names
 from templates.core.language.admission import outside_published
+from templates.core.language.calculation import Calculation
 from templates.core.language.causes import BROKEN, suspects
 from templates.core.language.ledger import Mask, Notice
-from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Requirement, Table
+from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Input, Requirement, Table
 from templates.core.units.quantity import Typed, read
 from templates.core.units.tolerance import LONGEST_TEXT, Tolerance
 from templates.core.units.units import Value, unit
 
-Input = Given | Choice | Derived[Any]
 
-if TYPE_CHECKING:
-    from templates.core.language.template import Template
-
-
-def read_inputs(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, Typed | str], list[Fault]]:
+def read_inputs(cls: type[Calculation], raw: Mapping[str, Any]) -> tuple[dict[str, Typed | str], list[Fault]]:
     """Every input that was given, read in its unit, and what is wrong with the others."""
     typed: dict[str, Typed | str] = {}
     faults = unknown_names(filterfalse(cls.inputs.__contains__, raw), cls.inputs, "input")
@@ -73,7 +69,7 @@ class Intake:
     missing: set[str] = field(default_factory=set)
 
 
-def admitted(cls: type[Template], typed: Mapping[str, Typed | str]) -> Intake:
+def admitted(cls: type[Calculation], typed: Mapping[str, Typed | str]) -> Intake:
     """The SI value of every input that was given or has a constant default, and what is wrong with it."""
     intake = Intake()
     for name, declared in cls.inputs.items():
@@ -112,7 +108,7 @@ class PlainText(NamedTuple):
     value: Any
 
 
-def plain(cls: type[Template], raw: Mapping[str, Any]) -> Plain | None:
+def plain(cls: type[Calculation], raw: Mapping[str, Any]) -> Plain | None:
     """The inputs of most requests, read and admitted at once; None if any needs a further look."""
     left_out = _defaults.get(cls) or _left_out(cls)
     typed: dict[str, Typed | str] = {}
@@ -142,10 +138,10 @@ class LeftOut(NamedTuple):
     needed: set[str]
 
 
-_defaults: WeakKeyDictionary[type[Template], LeftOut] = WeakKeyDictionary()
+_defaults: WeakKeyDictionary[type[Calculation], LeftOut] = WeakKeyDictionary()
 
 
-def _left_out(cls: type[Template]) -> LeftOut:
+def _left_out(cls: type[Calculation]) -> LeftOut:
     """What stands for the inputs of a version that are not given."""
     intake, needed = Intake(), set[str]()
     for name, declared in cls.inputs.items():
@@ -260,7 +256,7 @@ def _masked_points(
     return np.where(inside, value, np.nan), Mask((declared.attribute,), ~inside, reason)
 
 
-def as_typed(cls: type[Template], name: str, value: Any) -> Any:
+def as_typed(cls: type[Calculation], name: str, value: Any) -> Any:
     """An SI value as if it had been typed in the declared unit."""
     declared = cls.inputs.get(name)
     if declared is None or isinstance(declared, Choice):
@@ -270,7 +266,7 @@ def as_typed(cls: type[Template], name: str, value: Any) -> Any:
     return Typed(shown.tolist() if isinstance(shown, np.ndarray) else shown, declared.meaning.unit, si, {})
 
 
-def check_shapes(self: Template) -> None:
+def check_shapes(self: Calculation) -> None:
     """Refuse arrays whose points cannot be broadcast together, and curves of different lengths.
 
     Raises
@@ -293,7 +289,7 @@ def check_shapes(self: Template) -> None:
             raise InvalidInputs(_of_different_shapes(self, shapes)) from None
 
 
-def _of_different_shapes(self: Template, shapes: Iterable[str]) -> list[Fault]:
+def _of_different_shapes(self: Calculation, shapes: Iterable[str]) -> list[Fault]:
     """A fault for each of the arrays that have to go together, with the shapes of all as they were given."""
     names = {self.declarations[n].name: np.shape(getattr(self, n)) for n in shapes}
     listed = ", ".join(f"{name} {'×'.join(map(str, shape))}" for name, shape in names.items())
@@ -308,18 +304,18 @@ def is_single(declared: Declaration) -> bool:
     return isinstance(declared, Given) and declared.single
 
 
-def is_curve(self: Template, attribute: str) -> bool:
+def is_curve(self: Calculation, attribute: str) -> bool:
     """Return whether an attribute is an input along the crank angle."""
     return isinstance(self.declarations[attribute], Curve)
 
 
-def points_of(self: Template, arrays: Mapping[str, Array]) -> tuple[int, ...]:
+def points_of(self: Calculation, arrays: Mapping[str, Array]) -> tuple[int, ...]:
     """The shape of the points that arrays of inputs, by attribute, make; a curve is one thing for each."""
     shapes = (array.shape[:-1] if is_curve(self, name) else array.shape for name, array in arrays.items())
     return np.broadcast_shapes(*shapes)
 
 
-def violations(self: Template, rules: Iterable[Requirement]) -> list[Fault]:
+def violations(self: Calculation, rules: Iterable[Requirement]) -> list[Fault]:
     """The faults of the rules that do not hold; points of arrays are masked instead."""
     faults: list[Fault] = []
     missing = self.ledger.missing
@@ -337,14 +333,14 @@ def violations(self: Template, rules: Iterable[Requirement]) -> list[Fault]:
     return faults
 
 
-def _violation(self: Template, rule: Requirement) -> Fault:
+def _violation(self: Calculation, rule: Requirement) -> Fault:
     """The fault of a rule that does not hold."""
     name, *also = names = suspects(self, rule)
     values = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in names)
     return Fault(name, BROKEN, f"{rule.sentence}, but {values}; {rule.remedy}", tuple(also))
 
 
-def _violated_points(self: Template, rule: Requirement, holds: NDArray[np.bool_]) -> list[Mask]:
+def _violated_points(self: Calculation, rule: Requirement, holds: NDArray[np.bool_]) -> list[Mask]:
     """The mask of the points at which a rule does not hold, if there are any."""
     if holds.all():
         return []
@@ -352,14 +348,14 @@ def _violated_points(self: Template, rule: Requirement, holds: NDArray[np.bool_]
     return [Mask(names, ~holds, f"{rule.sentence}: {rule.remedy}")]
 
 
-def remarks(self: Template) -> Iterator[Notice]:
+def remarks(self: Calculation) -> Iterator[Notice]:
     """A warning for every rule that refuses nothing, where it does not hold."""
     for rule in self._remarks:
         if not np.all(rule.function(self)):
             yield from (Notice(rule.warning, name, f"{rule.sentence}; {rule.remedy}") for name in rule.names)
 
 
-def _shown(self: Template, declared: Declaration) -> str:
+def _shown(self: Calculation, declared: Declaration) -> str:
     value = getattr(self, declared.attribute)
     if isinstance(value, str):
         return value

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name
-from templates.core.language.intake import Input, is_single
+from templates.core.language.intake import is_single
 from templates.core.language.request import read_options
-from templates.core.language.spec import Choice, Curve, Formula, Profile, Table, Text
+from templates.core.language.spec import Choice, Curve, Formula, Input, Profile, Table, Text
 from templates.core.language.template import Template
 from templates.core.units.quantity import Typed, read
 from templates.core.units.units import Value

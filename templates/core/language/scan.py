@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 from templates.core.arrays import Array
 from templates.core.errors import Unreachable
-from templates.core.language.evaluate import Answer, Evaluation, evaluate
-from templates.core.language.intake import Input
+from templates.core.language.answer import Answer
+from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.meaning import Meaning
 from templates.core.language.question import typed_values
-from templates.core.language.spec import Curve, Formula
+from templates.core.language.spec import Curve, Formula, Input
 from templates.core.language.template import Template
 
 SAMPLES = 257  # of the first call

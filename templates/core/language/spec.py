@@ -217,6 +217,10 @@ class Shared(Generic[T]):
         return inputs_read_as_given(self.function)
 
 
+Input = Given | Choice | Derived[Any]
+"""What a user gives, or what stands for it."""
+
+
 class Requirement:
     """A rule between inputs; where it does not hold, the inputs it names are refused."""
 

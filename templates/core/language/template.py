@@ -9,16 +9,16 @@ from __future__ import annotations
 import inspect
 import math
 import re
-from collections.abc import Collection, Iterator, Mapping
-from typing import Any, ClassVar, NoReturn, Self
+from collections.abc import Collection, Mapping
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.arrays import Array, Truth
 from templates.core.errors import InvalidInputs
-from templates.core.judging.criterion import Criterion
 from templates.core.language.admission import absence, masked, outside_published, refusal, whole
+from templates.core.language.calculation import Calculation
 from templates.core.language.causes import by_cause
 from templates.core.language.declare import (
     by_name,
@@ -36,7 +36,6 @@ from templates.core.language.declare import (
 )
 from templates.core.language.declared_criteria import declared_criteria
 from templates.core.language.intake import (
-    Input,
     admitted,
     as_typed,
     check_shapes,
@@ -47,7 +46,6 @@ from templates.core.language.intake import (
     violations,
 )
 from templates.core.language.ledger import Ledger, Mask
-from templates.core.language.origin import Written
 from templates.core.language.spec import (
     Choice,
     Declaration,
@@ -67,39 +65,8 @@ __all__ = [
 VERSIONED = re.compile(r"(?:^|.*\.)([a-z][a-z0-9_]*)_v([1-9][0-9]*)$")
 
 
-class Template:
+class Template(Calculation):
     """Base of all templates and CAD models."""
-
-    id: ClassVar[str] = ""
-    version: ClassVar[int] = 0
-    withdrawn: ClassVar[str | None] = None
-    sheet: ClassVar[Written | None] = None  # the worksheet that it was made from
-    example: ClassVar[Mapping[str, Any]] = {}
-    criteria: ClassVar[Mapping[str, Any]] = {}  # by name: `"film >= limit"`, or an object with `require`
-    precision: ClassVar[float] = (
-        1e-12  # relative, to which results of a released version are held; solvers: 1e-8
-    )
-    level_precision: ClassVar[Mapping[str, float]] = {}  # of levels that repeat less well on other machines
-
-    inputs: ClassVar[dict[str, Input]] = {}
-    formulas: ClassVar[dict[str, Formula[Any]]] = {}
-    requirements: ClassVar[tuple[Requirement, ...]] = ()
-    declarations: ClassVar[dict[str, Declaration]] = {}
-    intermediates: ClassVar[dict[str, Shared[Any]]] = {}
-    declared_criteria: ClassVar[tuple[Criterion, ...]] = ()
-
-    levels: ClassVar[tuple[str, ...]] = ()  # fidelities, cheapest first
-    default_level: ClassVar[str] = ""
-    most_points: ClassVar[Mapping[str, int]] = {}  # that an expensive level takes at once
-    level: str
-
-    _ancestry: ClassVar[dict[str, frozenset[str]]] = {}
-    _dependencies: ClassVar[dict[str, frozenset[str]]] = {}
-    _results: ClassVar[frozenset[str]] = frozenset()  # attributes of formulas
-    _result_names: ClassVar[frozenset[str]] = frozenset()
-    _curves: ClassVar[frozenset[str]] = frozenset()  # names of formulas that are profiles
-    _remarks: ClassVar[tuple[Requirement, ...]] = ()  # the rules that refuse nothing
-    ledger: Ledger
 
     def __init_subclass__(cls) -> None:
         if match := VERSIONED.match(cls.__module__):
@@ -120,19 +87,6 @@ class Template:
         cls._remarks = tuple(rule for rule in cls.requirements if rule.warning)
         cls.intermediates = {name: v for name, v in everything.items() if isinstance(v, Shared)}
         cls.declared_criteria = declared_criteria(cls.__name__, cls.criteria, cls.inputs, cls.formulas)
-
-    def __init__(self, values: Mapping[str, Any], ledger: Ledger | None = None) -> None:
-        """Take SI values by attribute, unchecked; a user's input comes in by `from_quantities`."""
-        self.__dict__.update(values)
-        self.__dict__.setdefault("level", self.default_level)
-        self.__dict__["ledger"] = ledger or Ledger()
-        self.ledger.handed = frozenset(values)
-
-    def __setattr__(self, name: str, value: object) -> NoReturn:
-        raise AttributeError(f"a {type(self).__name__} is a record of one calculation; make a new one")
-
-    def __delattr__(self, name: str) -> NoReturn:
-        self.__setattr__(name, None)
 
     @classmethod
     def _own_words(cls) -> set[str]:
@@ -195,13 +149,6 @@ class Template:
         arrays = {name: given[name] for name in self.ledger.handed if isinstance(given[name], np.ndarray)}
         return points_of(self, arrays) if arrays else ()
 
-    def as_given(self, attribute: str) -> Any:
-        """The value of an input as it was given, or its default; NaN where its formula has to make it.
-
-        Name the attribute by a literal: the language reads from the source which inputs a formula depends on.
-        """
-        return vars(self)[attribute] if attribute in self.ledger.handed else np.float64(np.nan)
-
     def ladder(self) -> tuple[str, ...]:
         """The levels that can calculate these inputs, cheapest first."""
         return self.levels
@@ -255,43 +202,6 @@ class Template:
         beneath = {name for used in rule.uses for name in cls.dependencies(used)}.union(rule.uses_as_given)
         attributes = {cls.inputs[name].attribute for name in pending}
         return not (attributes.isdisjoint(beneath) and frozenset(pending).isdisjoint(rule.names))
-
-    @classmethod
-    def ancestors(cls, attribute: str) -> frozenset[str]:
-        """The attributes that are evaluated for this one, directly or not, itself included."""
-        if attribute not in cls._ancestry:
-            cls._ancestry[attribute] = frozenset(cls._beneath(attribute))
-        return cls._ancestry[attribute]
-
-    @classmethod
-    def dependencies(cls, attribute: str) -> frozenset[str]:
-        """The ancestors, and the inputs that any of them reads as given.
-
-        Formulas beneath an input's default may read the input as given: this is not an order of evaluation.
-        """
-        if attribute not in cls._dependencies:
-            ancestors = cls.ancestors(attribute)
-            as_given = (getattr(cls._node(name), "uses_as_given", ()) for name in ancestors)
-            cls._dependencies[attribute] = ancestors.union(*as_given)
-        return cls._dependencies[attribute]
-
-    def depends_on(self, attribute: str) -> frozenset[str]:
-        """The dependencies of an attribute here: an input read as given counts only where it was given."""
-        ancestors = self.ancestors(attribute)
-        return ancestors | (self.dependencies(attribute) & self.ledger.handed)
-
-    @classmethod
-    def _node(cls, attribute: str) -> Declaration | Shared[Any] | None:
-        return cls.declarations.get(attribute) or cls.intermediates.get(attribute)
-
-    @classmethod
-    def _beneath(cls, attribute: str) -> Iterator[str]:
-        attributes, waiting = {attribute}, [attribute]
-        while waiting:
-            yield (name := waiting.pop())
-            new = dict.fromkeys(n for n in getattr(cls._node(name), "uses", ()) if n not in attributes)
-            attributes |= new.keys()
-            waiting += new
 
     def inputs_si(self) -> dict[str, Any]:
         """Every input in SI by API name, defaults included."""

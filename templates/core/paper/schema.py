@@ -9,7 +9,7 @@ from typing import Any
 
 from templates.core.catalogue.digests import digest
 from templates.core.judging.criterion import Limit
-from templates.core.language.intake import Input, is_single
+from templates.core.language.intake import is_single
 from templates.core.language.meaning import Bounds
 from templates.core.language.spec import (
     Choice,
@@ -17,6 +17,7 @@ from templates.core.language.spec import (
     Declaration,
     Derived,
     Formula,
+    Input,
     Profile,
     Requirement,
     Table,

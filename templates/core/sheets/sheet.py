@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import copyreg
 import hashlib
 import json
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 from templates.core.language.template import Template
 from templates.core.sheets.building import Builder
 from templates.core.sheets.built import Built
-from templates.core.sheets.classes import class_of
+from templates.core.sheets.classes import SheetClass, class_of
 from templates.core.sheets.depths import set_order
 from templates.core.sheets.faults import SheetRefused
 from templates.core.sheets.grammar import LANGUAGE
@@ -132,3 +134,24 @@ def read(text: str) -> Sheet:
     if faults := [*built.faults, *faults_of_loops(built)] or [*set_order(built)]:
         raise SheetRefused(faults)
     return Sheet(text, tuple(chunks), built)
+
+
+@lru_cache(maxsize=64)
+def from_text(text: str, id: str, version: int, withdrawn: str | None = None) -> type[Template]:
+    """The class of a worksheet in this process, one for each text, id, version and reason of withdrawal.
+
+    Raises
+    ------
+    SheetRefused
+        If the text has faults.
+    """
+    cls = read(text).template(id, version)
+    cls.withdrawn = withdrawn
+    return cls
+
+
+def _reduced(cls: Any) -> tuple[Callable[..., Any], tuple[str, str, int, str | None]]:
+    return from_text, (cls.sheet.text, cls.id, cls.version, cls.withdrawn)
+
+
+copyreg.pickle(SheetClass, _reduced)

@@ -130,7 +130,7 @@ def test_progress_is_reported_and_logged(make, database, worker):
     jobs.register(KIND, handler)
 
     async def watch():
-        id = await database.awrite(lambda session: jobs.enqueue(session, KIND, {}))
+        id = await asyncio.wrap_future(database.submit(lambda session: jobs.enqueue(session, KIND, {})))
         async with jobs.events.subscribe(f"job:{id}") as events:
             jobs.start()
             names = []

@@ -14,13 +14,15 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
-from app import pint_alone  # noqa: F401  # before all that imports Pint
+from app.cli import start  # noqa: F401  # before all that imports Pint
+
+# isort: split
 from app.calculations.arguments import argument
 from app.catalogue.finding import find_templates
 from app.plain import Raw
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
-from templates.core.language.evaluate import Answer
+from templates.core.language.answer import Answer
 from templates.core.language.evaluate import evaluate as evaluate_template
 from templates.core.language.template import Template
 from templates.core.paper.mathml import unit_symbol

@@ -1,0 +1,30 @@
+"""The answers of an evaluation, and its inputs as they were used."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(slots=True)  # frozen, each would cost four times as much
+class Answer:
+    """One result in its unit; NaN in an array, or None, where there is none, with its reason."""
+
+    value: Any
+    unit: str | None
+    reason: str | None = None
+    reasons: NDArray[np.object_] | None = None
+
+
+@dataclass(frozen=True)
+class UsedInput:
+    """One input as it was used: as typed, or its default."""
+
+    value: Any
+    unit: str | None
+    source: str  # "given" or "default"
+    extra: Mapping[str, Any]
