@@ -121,7 +121,8 @@ class FedOrbit:
             return np.asarray(np.where(hidden, np.nan, values))[()]
 
         names = (field.name for field in fields(self) if field.name not in ("marched", "flooded"))
-        return replace(self, **{name: kept(getattr(self, name)) for name in names})
+        values = {name: kept(getattr(self, name)) for name in names}
+        return FedOrbit(**values, marched=self.marched, flooded=self.flooded)
 
     @property
     def verdict(self) -> str:
