@@ -286,8 +286,7 @@ class ArtifactStore:
             os.replace(target, aside)
 
     def _unreadable(self, sha: str, file: BufferedReader, error: OSError) -> Exception:
-        """Return ArtifactDamaged if the disk cannot read the bytes back; any other error as it is.
-        """
+        """Return ArtifactDamaged if the disk cannot read the bytes back; any other error as it is."""
         if error.errno not in _FAILING_DISK:
             return error
         return self._set_aside(sha, stamp_of(file), f"the disk cannot read it ({error.strerror})")
