@@ -83,7 +83,9 @@ ABOUT = {
         *("templates/physics/engine/*.py", "cad/cranks/*.py", "cad/models/crankshaft_v2.py"),
     ),
     "tests/app/test_events_resumed.py": ("app/*event*.py", "app/api/resuming.py"),
-    "tests/app/test_express_hostile.py": ("app/api/express.py", "app/api/reading.py", "app/api/problems.py"),
+    "tests/app/test_evaluate_hostile.py": (
+        *("app/api/routes/calculations.py", "app/api/reading.py", "app/api/problems.py"),
+    ),
     "tests/app/test_linear_input.py": ("app/reports/*.py", "app/api/problems.py", "app/designs/*.py"),
     "tests/app/test_list_parameters.py": ("app/designs/*.py", "app/web/*.py", "cad/lists.py"),
     "tests/app/test_orphans.py": ("app/*workers/*.py",),

@@ -15,7 +15,6 @@ from fastapi_offline import FastAPIOffline
 
 from app.api import docs, problems
 from app.api.description import describe_interface, operation_id
-from app.api.express import Express
 from app.api.gate import guard, observing, roles
 from app.api.gate.access import Access
 from app.api.gate.heads import HeadLimit
@@ -159,7 +158,6 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.include_router(problems.router)
     problems.install(app)
     docs.install(app)
-    app.add_middleware(Express)  # the innermost: all others see its answers
     pages.install(app)
     roles.install(app)
     app.add_middleware(Access, refuse=_refused)
