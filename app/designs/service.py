@@ -12,8 +12,9 @@ from app.calculations.steps import begun_steps
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository
 from app.designs.automap import proposals
-from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document, merge
+from app.designs.engine.calculate import calculate
+from app.designs.engine.calculation import Calculation
 from app.designs.errors import StaleRevision
 from app.designs.graph import Graph, build_graph, raise_if
 from app.designs.news import note_revision

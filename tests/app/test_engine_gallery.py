@@ -13,10 +13,10 @@ from patience import until
 from recorded_fillets import FOUR, V_EIGHT
 from serving import API, revision
 
-from app.designs.calculate import calculate
 from app.designs.document import Document
+from app.designs.engine.calculate import calculate
+from app.designs.engine.verdicts import judged
 from app.designs.graph import Catalogues, build_graph
-from app.designs.judging import judged
 from app.designs.service import resolved
 from app.reference import Reference
 from app.web.gallery import GALLERY

@@ -5,8 +5,8 @@ import dataclasses
 import pytest
 
 from app.catalogue.finding import find_templates
-from app.designs.calculate import calculate, resume
 from app.designs.document import Document
+from app.designs.engine.calculate import calculate, resume
 from app.designs.graph import Catalogues, build_graph
 from app.designs.network import Block, Solid, SolidAnalysis
 from app.reference import Reference

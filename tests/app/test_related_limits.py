@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from test_design_criteria import CATALOGUES, calculated, document, faults_of, film, graph_of, verdicts
 
-from app.designs.calculate import calculate
 from app.designs.document import Document, merge
 from app.designs.drives import network_of
-from app.designs.judging import _operations
-from app.designs.net import Net
-from app.designs.shifting import Upstream
+from app.designs.engine.calculate import calculate
+from app.designs.engine.net import Net
+from app.designs.engine.shifts import Upstream
+from app.designs.engine.verdicts import _operations
 from app.reference import Reference
 from templates.core.judging.bands import Estimate
 from templates.core.judging.comparison import WORST_FIRST
