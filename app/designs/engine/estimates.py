@@ -56,7 +56,7 @@ class RowEstimate:
     @property
     def is_stated(self) -> bool:
         """Whether anybody measured the error of the model, known or not."""
-        return self.one.is_stated or bool(np.isnan(self.one.error).any())
+        return self.one.is_stated or (not self.has_rows and bool(np.isnan(self.one.error).any()))
 
     @property
     def rank(self) -> int:

@@ -66,7 +66,9 @@ class Table:
                 self.errors[reference] = self._filled(self.errors.get(reference), chunk, error, reference)
                 if step and (absence := step.absence(output)):
                     self.absent.setdefault(reference, absence)
-        self.levels |= rows.levels_used()
+        needed = rows.needs.members if rows.needs else ()
+        steps = (name for name in needed if not rows.graph.blocks[name].is_model)
+        self.levels |= dict.fromkeys(steps) | rows.levels_used()
         self.refusals |= _refusals(rows, start)
 
     def judge(
