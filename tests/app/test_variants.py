@@ -242,7 +242,7 @@ class TestItems:
     def test_each_variant_takes_its_own_item(self):
         design = self.indexed("bearing", {f"main_{n}": {"bearing": f"{n}"} for n in range(1, 6)})
         outcomes = together(design, UNBUILT)
-        loads = [outcome.calculation.values["film.radial_load"] for outcome in outcomes]
+        loads = [outcome.calculation.values["film.radial_load"].value for outcome in outcomes]
         assert loads == pytest.approx([20e3, 22e3, 24e3, 22e3, 20e3], rel=SAME)
         assert_as_alone(design)
 
