@@ -27,7 +27,6 @@ from app.designs.decisions import Decisions
 from app.designs.labels import Labelling
 from app.designs.long_answers import LongAnswers
 from app.designs.previewing import Previews
-from app.designs.quick import QuickSaves
 from app.designs.recent import Recent
 from app.designs.regeneration import Regeneration
 from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
@@ -37,12 +36,12 @@ from app.identity.sealing import Sealer
 from app.identity.service import Identity
 from app.impact.service import Impacts
 from app.jobs.service import Jobs
-from app.machines import LOCAL
 from app.observation import metrics
 from app.reports.paper import Press
 from app.reports.service import Reports
 from app.retention.service import Retention
 from app.settings import Settings
+from app.settings.machines import LOCAL
 from app.solids.analyses import ANALYSIS, Analyses, ModelAnalysis
 from app.solids.builds import Builds
 from app.solids.finding import Analysing
@@ -151,7 +150,6 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
         threads=Threads(),
         answering=Answering(calculations.pool, calculations.jobs, settings.calculation_deadline),
         designs=designs,
-        quick=QuickSaves(designs),
         labelling=Labelling(designs),
         previews=previews,
         decisions=decisions,

@@ -15,7 +15,6 @@ from fastapi_offline import FastAPIOffline
 
 from app.api import docs, problems
 from app.api.description import describe_interface, operation_id
-from app.api.express import Express
 from app.api.gate import guard, observing, roles
 from app.api.gate.access import Access
 from app.api.gate.heads import HeadLimit
@@ -61,11 +60,11 @@ from app.api.routes.variants import router as variants
 from app.api.routes.worksheet_imports import router as worksheet_imports
 from app.api.routes.worksheets import router as written_worksheets
 from app.assembly import assemble
-from app.hosts import Hosts
 from app.identity.errors import IdentityError
 from app.jobs.shutdown import on_stop_signal
 from app.schemas.problems import PROBLEM_CONTENT
 from app.settings import Settings
+from app.settings.hosts import Hosts
 from app.storage.errors import DatabaseUnavailable
 from app.web import assembly as pages
 
@@ -159,7 +158,6 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.include_router(problems.router)
     problems.install(app)
     docs.install(app)
-    app.add_middleware(Express)  # the innermost: all others see its answers
     pages.install(app)
     roles.install(app)
     app.add_middleware(Access, refuse=_refused)
@@ -195,7 +193,7 @@ def spared_by_collections() -> Iterator[None]:
     if gc.isenabled():
         gc.collect()
     gc.freeze()  # what `serve` has imported without collections holds hardly any garbage
-    gc.enable()  # `app.beginning` has switched it off
+    gc.enable()  # `app.cli.start` has switched it off
     try:
         yield
     finally:

@@ -22,7 +22,7 @@ def draw() -> None:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    second = json.loads((FOLDER / "oil_film_v3.accuracy.json").read_text(encoding="utf-8"))
+    second = json.loads((FOLDER / "oil_film_v2.accuracy.json").read_text(encoding="utf-8"))
     first = json.loads((FOLDER / "oil_film_v1.accuracy.json").read_text(encoding="utf-8"))
     figure, axes = plt.subplots(2, 3, figsize=(13, 7.5), layout="constrained")
     _against_cost(axes[0, 0], second)
@@ -62,7 +62,7 @@ def _against_cost(panel: Any, content: dict[str, Any]) -> None:
 
 
 def _error_map(panel: Any, level: str, content: dict[str, Any]) -> Any:
-    """Error of the film thickness over the plane; white where it was refused or not measured."""
+    """Return the error of the film thickness over the plane; white where it was refused or not measured."""
     from matplotlib.colors import LogNorm
 
     table = np.array(content["levels"][level]["errors"]["minimum_film_thickness"], dtype=float)

@@ -24,7 +24,7 @@ Environment variables, read once when the service starts. The service ignores a 
 table: look at the spelling first. Lists and objects are written as JSON: `["/srv/templates"]`. Options of
 `crankwright serve` come first.
 
-This page is written by `python -m benchmarks.settings_page` from `app/settings.py`.
+This page is written by `python -m benchmarks.settings_page` from `app/settings/__init__.py`.
 
 | variable | type | default | meaning |
 |---|---|---|---|
@@ -66,7 +66,7 @@ def _type(field: FieldInfo) -> str:
 
 
 def _words(kind: Any) -> str:
-    """A type in words that an operator reads."""
+    """Return a type in words that an operator reads."""
     origin, inside = get_origin(kind), get_args(kind)
     if origin is Annotated:
         return _words(inside[0])

@@ -1,11 +1,11 @@
-"""Bearings of `oil_film` 3 that are not plain: meshes, start line, and grooves under load.
+"""Bearings of `oil_film` 2 that are not plain: meshes, start line, and grooves under load.
 
     python -m benchmarks.shapes mesh        ten minutes: 60 bearings, benchmarks/results/shapes_mesh.json
     python -m benchmarks.shapes start_line  K_xx and the whirl limit with both start lines
     python -m benchmarks.shapes groove      what a film with a groove in the load line bears
 
 The errors of a plain, aligned bearing without grooves are measured by `benchmarks.accuracy`. `mesh` compares
-the film that version 3 states with one extrapolated from 128 × 16 and 256 × 32 intervals. It keeps what it
+the film that it states with one extrapolated from 128 × 16 and 256 × 32 intervals. It keeps what it
 has and goes on there.
 """
 
@@ -35,7 +35,7 @@ PLAIN = Shape("plain", 2, *(np.array(v) for v in (0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 
 
 
 def drawn(seed: int) -> Loaded:
-    """A random bearing of usual size: lobed or not, tilted or not, grooved or not."""
+    """Return a random bearing of usual size: lobed or not, tilted or not, grooved or not."""
     rng = np.random.default_rng([20261122, seed])
     lobes = int(rng.choice([1, 2, 3, 4]))
     bore = Bore(
@@ -67,7 +67,7 @@ def stated(loaded: Loaded) -> tuple[dict[str, float], float]:
 
 
 def measured(seed: int) -> dict[str, Any]:
-    """The errors of one bearing, relative, and what it cost."""
+    """Return the errors of one bearing, relative, and what it cost."""
     loaded, begin = drawn(seed), process_time()
     about: dict[str, Any] = {"seed": seed, "conserving": loaded.conserving, "tilted": bool(loaded.tilt.any())}
     try:

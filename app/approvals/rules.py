@@ -20,12 +20,12 @@ ROLES: dict[Step, Role] = {
 
 
 def state_of(taken: Sequence[ApprovalRow]) -> ApprovalState:
-    """The last step that was taken."""
+    """Return the last step that was taken."""
     return last_of({row.step for row in taken}) or "unsigned"
 
 
 def next_step(taken: Sequence[ApprovalRow]) -> Step | None:
-    """The step that comes next on the way to a release; None behind that."""
+    """Return the step that comes next on the way to a release; None behind that."""
     steps = {row.step for row in taken}
     return next((step for step in ORDER[:3] if step not in steps), None)
 
@@ -68,9 +68,12 @@ def require_principal(step: Step, who: Principal, row: RevisionRow, taken: Seque
             raise SamePrincipal(f"{detail}; or save a revision of your own", who.id)
         return
     if row.author == who.id:
-        raise SamePrincipal(f"{who.name} is the author of revision {row.number}: another has to act", who.id)
+        raise SamePrincipal(
+            f"{who.name} is the author of revision {row.number}: somebody else has to act", who.id
+        )
     for before in taken:
         if before.principal_id == who.id:
             raise SamePrincipal(
-                f"{who.name} took the step {before.step} of revision {row.number}: another has to act", who.id
+                f"{who.name} took the step {before.step} of revision {row.number}: somebody else has to act",
+                who.id,
             )

@@ -34,7 +34,7 @@ class Base(Bounded):
 
 
 class Fixed(Bounded):
-    """A fixed part: a STEP file that was brought, or a model of a design as one of its revisions has it."""
+    """A fixed part: an imported STEP file, or a model of a design as one of its revisions has it."""
 
     model_config = _STRICT
 
@@ -69,7 +69,7 @@ class Fixed(Bounded):
             If it names no source, or both; or a number is none.
         """
         if (self.model is None) == (self.design is None):
-            raise ValueError("give either `model`, a STEP file that was brought, or `design`")
+            raise ValueError("give either `model`, an imported STEP file, or `design`")
         if self.model and (self.revision or self.part):
             raise ValueError("`revision` and `part` belong to `design`")
         if self.design and self.version:
@@ -79,7 +79,7 @@ class Fixed(Bounded):
         return self
 
     def place(self) -> dict[str, float]:
-        """Its shifts [mm] and turns [deg], by parameter.
+        """Return its shifts [mm] and turns [deg], by parameter.
 
         Raises
         ------
@@ -90,7 +90,7 @@ class Fixed(Bounded):
         return shifts | {name: _number(name, getattr(self, name), "deg", 360.0) for name in TURNS}
 
     def density_si(self) -> float:
-        """Its density [kg/m³].
+        """Return its density [kg/m³].
 
         Raises
         ------
@@ -142,7 +142,7 @@ def is_assembly(content: bytes) -> bool:
 
 
 def read(content: bytes) -> AssemblyManifest:
-    """A manifest from its JSON.
+    """Return a manifest from its JSON.
 
     Raises
     ------
@@ -161,7 +161,7 @@ def read(content: bytes) -> AssemblyManifest:
 
 
 def _number(name: str, text: str, wanted: str, most: float) -> float:
-    """A text as one number in a unit.
+    """Return a text as one number in a unit.
 
     Raises
     ------

@@ -29,13 +29,13 @@ class FreeCad:
 
 
 def missing(reason: str) -> ProgramMissing:
-    """The refusal where FreeCAD cannot be used, with what to do."""
+    """Return the refusal where FreeCAD cannot be used, with what to do."""
     return ProgramMissing("program_missing", f"{reason}: {INSTALL}")
 
 
 @cache
 def find(folder: Path | None = None, python: str = "/usr/bin/python3") -> FreeCad:
-    """FreeCAD in a folder, or where Linux distributions install it.
+    """Return FreeCAD in a folder, or where Linux distributions install it.
 
     Raises
     ------
@@ -50,5 +50,5 @@ def find(folder: Path | None = None, python: str = "/usr/bin/python3") -> FreeCa
     if place is None:
         raise missing(f"FreeCAD is not installed ({', '.join(places)} has no FreeCAD.so)")
     if not os.access(python, os.X_OK):
-        raise missing(f"FreeCAD needs the Python {python}, which is not there")
+        raise missing(f"FreeCAD needs the Python {python}, which is not installed")
     return FreeCad(python, place)

@@ -57,7 +57,7 @@ def note_bytes(session: Session, size: int) -> None:
 
 
 def used(session: Session, principal: str) -> Used:
-    """The usage of a principal."""
+    """Return the usage of a principal."""
     row = session.get(UsageRow, (principal, today()), populate_existing=True)
     total = select(StorageRow.bytes).where(StorageRow.principal_id == principal)
     waiting = select(func.count()).where(JobRow.client == client_of(principal), JobRow.state == "queued")
@@ -68,7 +68,7 @@ def used(session: Session, principal: str) -> Used:
 
 
 def own_limits(session: Session, settings: Settings) -> Limits | None:
-    """The limits of the acting principal; None: nothing limits it."""
+    """Return the limits of the acting principal; None: nothing limits it."""
     who = ACTING.get()
     if who.id in BUILT_IN:
         return None
@@ -102,4 +102,4 @@ def check(limits: Limits, used: Used, name: str) -> None:
         raise LimitReached(f"{name} has used {amounts}", seconds_to_midnight())
     if used.bytes >= limits.storage_mb * MIB:
         amounts = f"{used.bytes / MIB:.0f} MiB of {limits.storage_mb:.0f} MiB of storage"
-        raise LimitReached(f"{name} has used {amounts}, which no waiting and no deletion gives back", None)
+        raise LimitReached(f"{name} has used {amounts}, which neither waiting nor deletion restores", None)

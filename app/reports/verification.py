@@ -36,7 +36,7 @@ class Line:
 
 
 def read_block(pdf: bytes) -> Block:
-    """The approval block that a report carries.
+    """Return the approval block that a report carries.
 
     Raises
     ------
@@ -52,7 +52,9 @@ def read_block(pdf: bytes) -> Block:
     except Exception as error:  # whatever somebody wrote into the file
         raise NotReport(f"the file cannot be read as PDF: {plain(str(error), 200)}") from error
     if len(attached) != 1 or len(attached[0]) > LARGEST_BLOCK:
-        raise NotReport(f"the file carries no attachment {ATTACHMENT}: it is not a report, or an old one")
+        raise NotReport(
+            f"the file has no attachment {ATTACHMENT}: it is not a report, or one of an older version"
+        )
     try:
         return Block.model_validate_json(attached[0])
     except ValidationError as error:
@@ -162,7 +164,7 @@ def _text(pdf: bytes, printed: bytes) -> Iterator[Line]:
 
 
 def _lines(pdf: bytes) -> list[str]:
-    """The lines of the pages."""
+    """Return the lines of the pages."""
     from pypdf import PdfReader
 
     pages = PdfReader(io.BytesIO(pdf)).pages

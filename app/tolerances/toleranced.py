@@ -33,7 +33,7 @@ class Varied:
 
 
 def varied(graph: Graph, behind: Collection[Cell]) -> tuple[list[Varied], list[Warning]]:
-    """The toleranced values from which something follows, and a warning for every other one.
+    """Return the toleranced values from which something follows, and a warning for every other one.
 
     `behind` are the cells from which anything that was asked for follows.
     """
@@ -54,7 +54,7 @@ def varied(graph: Graph, behind: Collection[Cell]) -> tuple[list[Varied], list[W
 
 
 def _factor(cell: Cell, typed: Typed) -> Factor | str:
-    """A toleranced value as a factor, or why it is none."""
+    """Return a toleranced value as a factor, or why it is none."""
     tolerance, value = typed.tolerance, typed.si
     assert tolerance is not None
     lower, upper = tolerance.lower, tolerance.upper
@@ -73,6 +73,6 @@ def faults(chosen: Sequence[Varied], warnings: Sequence[Warning]) -> Iterator[Fa
     if not chosen:
         others = "; ".join(f"{w.name}: {w.detail}" for w in warnings[:3])
         detail = f"nothing that was asked for follows from a value with a tolerance{others and ': ' + others}"
-        yield Fault("design", "no_tolerance", f"{detail}; write one as in 55 ± 5 um")
+        yield Fault("design", "no_tolerance", f"{detail}; write it like 55 ± 5 um")
     if len(chosen) > MOST:
         yield Fault("design", "too_many", f"{len(chosen)} values vary; an analysis takes at most {MOST}")

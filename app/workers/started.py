@@ -6,8 +6,8 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 
-from app.machines import LOCAL
 from app.settings import Settings
+from app.settings.machines import LOCAL
 from app.workers.base import BatchWorker, Worker
 from app.workers.light import CHECKS
 from app.workers.local import LocalProcesses
@@ -26,7 +26,7 @@ class Workers:
 
 
 def why_silent_here() -> str:
-    """Why no process of this machine answers."""
+    """Return why no process of this machine answers."""
     return "they are being started, or hang"
 
 

@@ -16,7 +16,7 @@ NAME = r"^[^\x00-\x1f\x7f]*[^\x00-\x20\x7f][^\x00-\x1f\x7f]*$"
 
 
 def storable(text: str) -> str:
-    """A text that the database can keep.
+    """Return a text that the database can keep.
 
     Raises
     ------
@@ -27,12 +27,12 @@ def storable(text: str) -> str:
         raise ValueError(f"a worksheet has at most {LONGEST_TEXT} bytes in UTF-8, not {size}")
     if (place := text.find("\0")) >= 0:
         line = text.count("\n", 0, place) + 1
-        raise ValueError(f"a worksheet has no character NUL; remove it from line {line}")
+        raise ValueError(f"a worksheet must not contain the character NUL; remove it from line {line}")
     return text
 
 
 def legible(name: str) -> str:
-    """A name of a person that can be read.
+    """Return a name of a person that can be read.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def legible(name: str) -> str:
         If it has no letter and no digit, as a name of blanks that nobody sees.
     """
     if not any(map(str.isalnum, name)):
-        raise ValueError("a name has a letter or a digit; write it as in A. Weber")
+        raise ValueError("a name needs a letter or a digit, like A. Weber")
     return name
 
 
@@ -60,7 +60,7 @@ EDITED = EXAMPLE.replace("> 0;", "> 0; <= 2 m;")
 
 
 def _examples(**example: JsonValue) -> ConfigDict:
-    """The configuration of a body with an example that can be sent as it is."""
+    """Return the configuration of a body with an example that can be sent as it is."""
     return ConfigDict(extra="forbid", strict=True, json_schema_extra={"examples": [{**example}]})
 
 

@@ -101,14 +101,16 @@ class Reader:
         part = self.part(statement, tree)
         constant, sort = part
         if not isinstance(constant, Constant):
-            raise statement.refuse("limit", "a limit is one number", tree, "write it as in <= 2 m")
+            raise statement.refuse("limit", "a limit is one number", tree, "write it like <= 2 m")
         if next(tree.find_data("quantity"), None) is None and is_number(sort.kind):
             return float(constant.value)
         value = self.fitting(statement, part, unit_text, "a limit", tree).value
         return float(unit(unit_text).from_si(value))
 
     def typed(self, statement: Parsed, tree: lark.Tree[Any], unit_text: str, name: str) -> Any:
-        """A value without names as a user types it: a text where it is one number, else a list or a number.
+        """Return a value without names as a user types it.
+
+        A text where it is one number, else a list or a number.
 
         Raises
         ------

@@ -60,7 +60,10 @@ class Scope(Protocol):
         """
 
     def function(self, name: str) -> Callable[[list[Part]], Part] | None:
-        """A function of the user's own, called with its arguments; None if there is none of this name."""
+        """Return a function of the user's own, called with its arguments.
+
+        None if there is none of this name.
+        """
 
     def spend(self) -> None:
         """Count an operation.
@@ -93,7 +96,9 @@ def checked(tree: lark.Tree[Any], scope: Scope) -> Part:
 
 
 def built(tree: lark.Tree[Any]) -> Any:
-    """The tree of an expression of which no name is known yet: every unit, function and number is checked.
+    """Return the tree of an expression of which no name is known yet.
+
+    Every unit, function and number is checked.
 
     Raises
     ------
@@ -150,7 +155,7 @@ class _Builder:
         """Return an item of an array or of a list that is written out."""
         shown = excerpt(f"{whole if isinstance(whole, lark.Token) else 'the list'}[{index}]")
         if whole in CONSTANTS or index in CONSTANTS:
-            raise FaultyText("syntax", f"{shown}: pi is not an array, and no index")
+            raise FaultyText("syntax", f"{shown}: pi is neither an array nor an index")
         place = str(index) if index.type == "NAME" else _place(shown, float(index))
         if isinstance(whole, lark.Token):
             return self.named_item(str(whole), place)
@@ -187,9 +192,7 @@ class _Builder:
             With code `too_large`: what stands between two signs is compared, and so calculated, twice.
         """
         if any(_size(node) > MAX_TWICE for node, _ in sides[1:-1]):
-            raise FaultyText(
-                "too_large", "chained comparisons stand in each other too often; join them by `and`"
-            )
+            raise FaultyText("too_large", "chained comparisons are nested too deeply; join them by `and`")
         pairs = zip(signs, sides, sides[1:], strict=False)
         tests = [self.apply(COMPARISONS[sign], [one, other]) for sign, one, other in pairs]
         return tests[0] if len(tests) == 1 else self.apply(LOGIC["and"], tests)

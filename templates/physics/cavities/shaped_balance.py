@@ -74,7 +74,7 @@ class Loaded:
 
     @property
     def line_turns(self) -> bool:
-        """Whether the line of supply turns with the journal."""
+        """Return whether the line of supply turns with the journal."""
         return not self.feed.grooves and not self.bore.is_lobed
 
     def lie(self, e: Array) -> Lie:
@@ -106,11 +106,14 @@ def balance(loaded: Loaded) -> Balance:
             return _refined(loaded, start, meshes)
         except (ArithmeticError, RuntimeError, np.linalg.LinAlgError) as reason:  # the last: singular
             failure = reason
-    raise NoBalance("no place was found at which the film bears the load") from failure
+    raise NoBalance("no position of the journal was found where the film supports the load") from failure
 
 
 def _ladders(loaded: Loaded) -> list[tuple[tuple[int, int], ...]]:
-    """Meshes to refine over; in a bore of lobes also without the coarsest, which may miss some of them."""
+    """Return meshes to refine over.
+
+    In a bore of lobes also without the coarsest, which may miss some of them.
+    """
     return [MESHES, MESHES[1:]] if loaded.bore.is_lobed and not loaded.feed.grooves else [MESHES]
 
 
@@ -134,7 +137,7 @@ def _inside(loaded: Loaded, e: Array) -> Array:
         if narrowest(loaded.bore, loaded.lie(e))[0] > 10 * LEAST_GAP:
             return e
         e = e * 0.9
-    raise NoBalance("the tilted journal touches the bore wherever it lies")
+    raise NoBalance("the tilted journal touches the bore in every position")
 
 
 def _refined(loaded: Loaded, e: Array, meshes: tuple[tuple[int, int], ...]) -> Balance:
@@ -143,7 +146,7 @@ def _refined(loaded: Loaded, e: Array, meshes: tuple[tuple[int, int], ...]) -> B
     for mesh in meshes:
         film, lie = _agreed(loaded, e, mesh, films[-1][0] if films else None)
         if np.linalg.det(film.linear[0]) <= 0:
-            raise NoBalance("the place found is not stable")
+            raise NoBalance("the equilibrium position found is not stable")
         films.append((film, lie))
         e = lie.e
     (coarse, at_coarse), (fine, at_fine) = films[-2:]
@@ -172,7 +175,7 @@ def _agreed(
 def _searched(
     loaded: Loaded, e: Array, nodes: Nodes, pockets: list[Pocket], near: ShapedFilm | None
 ) -> tuple[ShapedFilm, Array]:
-    """Newton's method on one mesh."""
+    """Return Newton's method on one mesh."""
     film = _solved(loaded, e, nodes, pockets, near)
     wanted = np.array([loaded.So, 0.0])
     for _ in range(_STEPS):
@@ -186,8 +189,8 @@ def _searched(
             return film, e
         film, e = _nearer(loaded, film, e, share * step, nodes, pockets)
         if float(film.H.nodes.min()) < LEAST_GAP:
-            raise NoBalance("the film that would bear it is thinner than a millionth of the clearance")
-    raise NoBalance("the search for the journal's place does not settle")
+            raise NoBalance("the film that would support it is thinner than a millionth of the clearance")
+    raise NoBalance("the search for the journal's position does not converge")
 
 
 def _nearer(

@@ -32,12 +32,9 @@ HOTTEST = 773.15
 _ACCURACY = 1e-13
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Running:
-    """A bearing at work, in SI; arrays that broadcast together.
-
-    Name the arguments. They may stand in a row only because version 2 of oil_film is released like that.
-    """
+    """A bearing at work, in SI; arrays that broadcast together."""
 
     F: Array
     """Load [N]."""
@@ -154,7 +151,10 @@ def asked_for(T_supply: Array, T_ambient: Array, kA: Array) -> Mask:
 
 
 def _balance(point: Running) -> tuple[Array, Array]:
-    """Temperature and residual of points in a row; infinite and NaN where there is none, NaN unknown."""
+    """Return the temperature and residual of points in a row.
+
+    Infinite and NaN where there is none, NaN unknown.
+    """
     coldest = point.coldest()
     most = HOTTEST - coldest
     rise = bracketed_root(point.excess, np.zeros_like(coldest), most, _ACCURACY)

@@ -72,7 +72,7 @@ class Heated:
 
     @property
     def residual(self) -> float:
-        """What is not accounted for, over the dissipation [-]."""
+        """Return what is not accounted for, over the dissipation [-]."""
         away = self.by_side + self.by_drain + self.by_bush + self.by_journal
         return (self.dissipated - away) / self.dissipated
 
@@ -143,13 +143,13 @@ def heated(film: Pressed, heating: Heating, edges: Array) -> Heated:
     Raises
     ------
     RuntimeError
-        If nothing carries the heat off.
+        If nothing removes the heat.
     """
     flow = carried(film)
     system = _System(flow, heating, edges)
     T = splu(system.matrix()).solve(system.right)
     if not np.isfinite(T).all():
-        raise RuntimeError("nothing carries the heat off")
+        raise RuntimeError("nothing removes the heat")
     return system.read(T)
 
 

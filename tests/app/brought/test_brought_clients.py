@@ -6,14 +6,14 @@ import inspect
 import pytest
 from click.testing import CliRunner
 
-from app.cli import main
+from app.cli.main import main
 from app.client import AsyncClient, Client, Problem, model_operations
 from cad.regenerate import regenerate
 
 
 @pytest.fixture(scope="module")
 def washer():
-    return regenerate("thrust_washer", 2, {"inner_diameter": 0.03}).step
+    return regenerate("thrust_washer", 1, {"inner_diameter": 0.03}).step
 
 
 def run(served, *arguments):

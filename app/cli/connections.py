@@ -1,0 +1,68 @@
+"""How commands reach the service: one that runs, or one that is started on a data folder."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import click
+import httpx
+
+from app.cli.demonstration import service
+from app.client import Client, Problem
+from app.client.names import authorization
+from app.settings import Settings
+
+KEY = "CRANKWRIGHT_KEY"
+PATIENCE = 600.0  # for an answer: a busy service plans a study in its turn [s]
+
+url_option = click.option(
+    "--url", default=None, help="of the service; that of CRANKWRIGHT_PORT on this machine if not given"
+)
+data_option = click.option(
+    "--data",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    default=None,
+    help="a data folder that no service uses, instead of a service",
+)
+
+
+@contextmanager
+def connected(url: str | None, data: Path | None) -> Iterator[Client]:
+    """A client of the service that was named, or of one that is started on a data folder."""
+    place = url or f"http://127.0.0.1:{Settings().port}"
+    try:
+        if data is not None:
+            with service(data, err=True, key=key_of_user()) as client:
+                yield client
+        else:
+            with Client(place, timeout=PATIENCE, key=key_of_user()) as client:
+                yield client
+    except Problem as problem:
+        raise click.ClickException(reasons(problem)) from None
+    except httpx.HTTPError as error:
+        where = "the service on the data folder does not answer" if data else f"no service answers at {place}"
+        raise click.ClickException(f"{where}: {error}") from None
+
+
+def key_of_user() -> str | None:
+    """The key in CRANKWRIGHT_KEY, for a service that asks for one.
+
+    Raises
+    ------
+    ClickException
+        If it has not the form of a key.
+    """
+    key = os.environ.get(KEY) or None
+    try:
+        authorization(key)
+    except ValueError as error:
+        raise click.ClickException(f"{KEY}: {error}") from None
+    return key
+
+
+def reasons(problem: Problem) -> str:
+    """A problem, and each of its faults on a line of its own."""
+    return "\n".join([str(problem), *(f"  {fault.name}: {fault.detail}" for fault in problem.errors)])

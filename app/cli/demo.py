@@ -1,0 +1,28 @@
+"""`crankwright demo`: the demonstration of the paper, on this machine or on a whole team of processes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from app.cli.demonstration import demonstrate
+from app.settings import Settings
+
+
+@click.command("demo")
+@click.option("--data", type=click.Path(path_type=Path), default=None, help="that of `serve`, if not given")
+@click.option("--team", is_flag=True, help="on PostgreSQL, S3, Dask and two servers; nothing stays")
+def demo_command(data: Path | None, team: bool) -> None:
+    """The paper's demonstration: SCALE and D drive a ball bearing from 50 mm to 48 mm.
+
+    Its design stays: `crankwright serve` shows it. With --team nothing stays.
+    """
+    if not team:
+        demonstrate(data or Settings().data)
+        return
+    if data is not None:
+        raise click.UsageError("--team keeps nothing, so it takes no --data")
+    from app.cli.team_demonstration import demonstrate_team
+
+    demonstrate_team()

@@ -1,0 +1,103 @@
+"""`crankwright serve`: the service on one address, with the checks that come before it listens."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from app import server
+from app.assembly import NETWORK, SHEETS
+from app.calculations.assembly import PRELOAD
+from app.catalogue.finding import find_templates
+from app.cli.keys import asks_for_keys
+from app.main import create_app
+from app.plain import JsonObject
+from app.settings import Settings
+from app.settings.hosts import is_loopback
+from app.settings.machines import LOCAL
+from app.storage.connecting import require_answer
+from app.storage.errors import StorageError
+from app.storage.folder import DataFolder
+from app.storage.integrity import refuse_damage
+from app.storage.ownership import require_own_store
+from app.workers import ahead
+from app.workers.light import CHECKS
+from app.workers.local import KERNEL
+from cad import on_demand
+from cad.catalogue import models
+
+
+def fork_ahead(settings: Settings) -> None:
+    """Fork what a service with these settings will ask for; call it before there is a thread or a connection.
+
+    Built-in templates and models are imported first: the processes share the pages of all that is imported.
+    That of jobs loads the kernel while the server opens its data; the others are ready at once.
+
+    Raises
+    ------
+    UnusableFile
+        If one of them cannot be used.
+    """
+    find_templates(())
+    models()
+    if settings.engine == LOCAL:
+        ahead.fork(KERNEL, on_demand.load)
+    if settings.template_folders:
+        ahead.fork(CHECKS)
+    ahead.fork((*PRELOAD, *SHEETS, *NETWORK))
+
+
+@click.command("serve")
+@click.option("--host", default=None, help="address to listen on; 127.0.0.1 unless CRANKWRIGHT_HOST is set")
+@click.option(
+    "--port", default=None, type=click.IntRange(0, 65535), help="8000 unless CRANKWRIGHT_PORT is set"
+)
+@click.option("--data", type=click.Path(path_type=Path), default=None, help="folder of designs and artifacts")
+@click.option("--insecure", is_flag=True, help="listen beyond this machine although no key is required")
+def serve_command(host: str | None, port: int | None, data: Path | None, insecure: bool) -> None:
+    """Serve the REST interface; its documentation is at /docs."""
+    given: JsonObject = {"data": data, "host": host, "port": port}
+    settings = Settings(**{name: value for name, value in given.items() if value is not None})
+    fork_ahead(settings)
+    try:
+        require_answer(settings)
+        _check_reach(settings, insecure)
+        folder = DataFolder(settings.data)
+        refuse_damage(settings.database_url or folder.database_url)
+        if settings.artifacts_url is not None:
+            require_own_store(settings, folder)
+        folder.release()
+    except StorageError as error:
+        raise click.ClickException(str(error)) from None
+    except OSError as error:
+        message = f"{settings.data.absolute()} cannot hold the data: {error.strerror}"
+        raise click.ClickException(f"{message}; name another folder with --data") from None
+    place = f"[{settings.host}]" if ":" in settings.host else settings.host
+    click.echo(
+        f"Crankwright at http://{place}:{settings.port}/docs, data in {settings.data.absolute()}", err=True
+    )
+    server.run(create_app(settings), settings)
+
+
+def _check_reach(settings: Settings, insecure: bool) -> None:
+    """Refuse to listen beyond this machine where nothing asks for a key, unless the operator insists.
+
+    Raises
+    ------
+    ClickException
+        If the host is not loopback, there is no key, and `insecure` is not set.
+    """
+    host = settings.host
+    if is_loopback(host.lower()) or asks_for_keys(settings):
+        return
+    danger = "without authentication: whoever reaches this address can read and change every design"
+    remedy = (
+        "Add a key: crankwright keys add NAME --role admin. Or listen on 127.0.0.1, and put a reverse proxy "
+        "with authentication in front"
+    )
+    if not insecure:
+        raise click.ClickException(
+            f"refusing to listen on {host} {danger}. {remedy}; or add --insecure if all of them may."
+        )
+    click.secho(f"WARNING: listening on {host} {danger}. {remedy}.", fg="yellow", err=True)

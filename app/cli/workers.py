@@ -1,0 +1,58 @@
+"""`crankwright worker` and `crankwright scheduler`: the machines of a team, and what knows them."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from typing import NoReturn
+
+import click
+
+from app.settings import Settings
+from app.settings.hosts import is_loopback
+from app.settings.machines import EXAMPLE, FILES, LOCAL, TEAM, is_installed
+
+_BOOT = (
+    "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from app.workers.remote.{} import main; main()"
+)
+
+
+@click.command("worker")
+@click.option("--scheduler", help="its address; CRANKWRIGHT_ENGINE if not given", metavar="URL")
+@click.option("--lanes", help='jobs at the same time: {"geometry": 2, "analysis": 1}', metavar="JSON")
+def worker_command(scheduler: str | None, lanes: str | None) -> None:
+    """Run jobs of the servers that use the same scheduler and the same program.
+
+    Without a scheduler it waits for one, and it connects again when that has gone.
+    """
+    given = {"CRANKWRIGHT_ENGINE": scheduler, "CRANKWRIGHT_LANES": lanes}
+    os.environ.update({name: value for name, value in given.items() if value is not None})
+    settings = Settings()
+    if settings.engine == LOCAL:
+        raise click.ClickException(f"name the scheduler with --scheduler, such as {EXAMPLE}")
+    _become("machine")
+
+
+@click.command("scheduler")
+@click.option("--host", default="127.0.0.1", show_default=True, help="address to listen on")
+@click.option("--port", default=8786, show_default=True, type=click.IntRange(0, 65535))
+def scheduler_command(host: str, port: int) -> None:
+    """Pass jobs from servers to workers; with TLS if CRANKWRIGHT_DASK_CA, _CERT and _KEY are set."""
+    settings = Settings()
+    if not is_installed():
+        raise click.ClickException(TEAM)
+    files = (settings.dask_ca, settings.dask_cert, settings.dask_key)
+    if any(files) and not all(files):
+        raise click.ClickException(f"{FILES} belong together")
+    if not any(files) and not is_loopback(host.lower()):
+        detail = f"whoever reaches it can run code: set {FILES}"
+        raise click.ClickException(f"refusing to listen on {host} without TLS: {detail}")
+    _become("scheduler", host, str(port))
+
+
+def _become(module: str, *args: str) -> NoReturn:
+    """Turn this process into another, which imports nothing but its own modules."""
+    command = [sys.executable, "-c", _BOOT.format(module), json.dumps(sys.path), *args]
+    sys.stdout.flush()
+    os.execv(sys.executable, command)

@@ -1,0 +1,351 @@
+"""Thrust washer: a flat ring or half of one, with radial oil grooves, a hole for a pin, and a locating lug.
+
+What its words mean is said in the class below, which users read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from math import atan2, cos, degrees, hypot, pi, radians, sin, sqrt
+
+import numpy as np
+from cadquery import Edge, Shape, Solid, Vector
+from cadquery.func import cut, extrude, face, segment, wire
+
+from cad.model import BRONZE, Box, CadModel, Part, mm
+from cad.surfaces import Seen, X, Y, Z
+from cad.turned import nearest, sheet_under_arc
+from templates.core.language.template import (
+    Array,
+    Truth,
+    choice,
+    derived,
+    formula,
+    given,
+    require,
+    units,
+)
+
+
+@units("m", returns="1")
+def drawable(length: Array) -> Truth:
+    """Return whether a length [m] is none, or one that the kernel can tell from none."""
+    return (length <= 0) | (length >= 1e-5)
+
+
+@units(None, "1", returns="rad")
+def half_pitch(washer: str, grooves: Array) -> Array:
+    """Half the angle [rad] from groove to groove; of a half washer also that from its joint to the first."""
+    turn = {"full": 2 * pi, "half": pi}[washer]
+    return np.minimum(turn / (2 * np.maximum(grooves, 1)), pi / 2)
+
+
+@units(None, "1", returns="1")
+def is_free_at_crown(washer: str, grooves: Array) -> Truth:
+    """Return whether no groove runs to the crown, where the lug is."""
+    return (np.mod(grooves, 2) == 0) | (washer == "full")
+
+
+@units(None, "m", returns="1")
+def takes_a_pin(washer: str, hole: Array) -> Truth:
+    """Return whether there is no hole for a pin, or a full ring for it."""
+    return (hole <= 0) | (washer == "full")
+
+
+@dataclass(frozen=True)
+class Washer:
+    """What is drawn [mm]: radii, and angles in degrees against +x."""
+
+    bore: float
+    outside: float
+    thickness: float
+    is_half: bool
+    grooves: int
+    half_groove: float
+    groove_depth: float
+    pin: float
+    pin_circle: float
+    half_lug: float
+    lug_height: float
+
+    def groove_angles(self) -> list[float]:
+        """Where grooves run; none runs to the crown of a full ring."""
+        if self.is_half:
+            return [180 * (n + 0.5) / self.grooves for n in range(self.grooves)]
+        return [90 + 360 * (n + 0.5) / self.grooves for n in range(self.grooves)]
+
+    def pin_angle(self) -> float:
+        """Midway between two grooves, or opposite to the crown if there are none."""
+        return 90 + 360 / self.grooves * (self.grooves // 2) if self.grooves else 270.0
+
+    def solid(self) -> Shape:
+        """The face pushed up by its thickness, less what pin and grooves take."""
+        body: Shape = extrude(face(*self._wires()), (0, 0, self.thickness))
+        tools = [self._groove(angle) for angle in self.groove_angles()]
+        if self.pin > 0:
+            a = radians(self.pin_angle())
+            foot = Vector(self.pin_circle * cos(a), self.pin_circle * sin(a), -self.thickness)
+            tools.append(Solid.makeCylinder(self.pin, 3 * self.thickness, foot, Vector(0, 0, 1)))
+        for tool in tools:
+            body = cut(body, tool)
+        return body
+
+    def _groove(self, angle: float) -> Shape:
+        """A box from the axis to beyond the outside, its bottom in the washer."""
+        box = Solid.makeBox(
+            1.5 * self.outside, 2 * self.half_groove, self.thickness,
+            Vector(0, -self.half_groove, self.thickness - self.groove_depth),
+        )  # fmt: skip
+        return box.rotate(Vector(0, 0, 0), Vector(0, 0, 1), angle)
+
+    def _wires(self) -> list[Shape]:
+        """The outline, with the lug at the crown; of a full ring that of the bore too."""
+        arc = self._arc_outside()
+        if self.is_half:
+            inner = Edge.makeThreePointArc(*(Vector(self.bore * x, self.bore * y) for x, y in
+                                             ((-1, 0), (0, 1), (1, 0))))  # fmt: skip
+            ends = (
+                self._line((-self.outside, 0), (-self.bore, 0)),
+                self._line((self.bore, 0), (self.outside, 0)),
+            )
+            return [wire(*arc, *ends, inner)]
+        return [wire(*arc), wire(Edge.makeCircle(self.bore))]
+
+    def _arc_outside(self) -> list[Shape]:
+        """From +x (half) or -y (full) over the crown and back to the other end."""
+        R, a = self.outside, self.half_lug
+        if a == 0:
+            return [self._arc(0.0, 180.0)] if self.is_half else [Edge.makeCircle(R)]
+        foot = sqrt(R * R - a * a)
+        corners = [(a, foot), (a, R + self.lug_height), (-a, R + self.lug_height), (-a, foot)]
+        lug = [self._line(one, other) for one, other in pairwise(corners)]
+        turn = degrees(atan2(foot, a))
+        if self.is_half:
+            return [self._arc(0.0, turn), *lug, self._arc(180 - turn, 180.0)]
+        return [self._arc(180 - turn, 360 + turn), *lug]
+
+    def _arc(self, low: float, high: float) -> Shape:
+        angles = (radians(a) for a in (low, (low + high) / 2, high))
+        return Edge.makeThreePointArc(*(Vector(self.outside * cos(a), self.outside * sin(a)) for a in angles))
+
+    def _line(self, one: tuple[float, float], other: tuple[float, float]) -> Shape:
+        return segment(Vector(*one), Vector(*other))
+
+    def volume(self) -> float:
+        """Ring and lug less pin hole and grooves, which do not meet each other [mm³]."""
+        ring = pi * (self.outside**2 - self.bore**2) / (2 if self.is_half else 1)
+        lug = 2 * self.half_lug * (self.outside + self.lug_height) if self.half_lug > 0 else 0.0
+        lug -= sheet_under_arc(self.outside, self.half_lug)
+        taken = self.grooves * self._under_groove() * self.groove_depth
+        return (ring + lug - pi * self.pin**2) * self.thickness - taken
+
+    def _under_groove(self) -> float:
+        """Area of a groove seen along the shaft [mm²]."""
+        if self.grooves == 0:
+            return 0.0
+        outside, bore = (sheet_under_arc(r, self.half_groove) for r in (self.outside, self.bore))
+        return outside - bore
+
+
+class ThrustWasher(CadModel):
+    """Thrust washer: a full ring, or the half washer beside a main bearing of an engine.
+
+    z is along the shaft; the back lies on z = 0, the running face with its oil grooves on z = thickness. A
+    half washer lies on the side +y, its joint in the plane y = 0. Grooves run from the bore to the outside,
+    with a rectangular section, evenly round; those of a half washer are half a pitch from its joint. The
+    locating lug is at the crown +y and as thick as the washer; the hole for a pin lies between two grooves of
+    a full ring. No grooves, a lug of no width and a hole of no diameter are none.
+
+    Limits
+    ------
+    One solid of copper alloy: a steel back and chamfers are not drawn. Proportions by default are typical
+    ones of makers (outer 1.6 times inner diameter, thickness 8 % of it), not those of a standard. A full ring
+    has the features of ISO 6525, a half washer those of ISO 6526.
+
+    References
+    ----------
+    ISO 6525:1983, Plain bearings, ring type thrust washers made from strip, dimensions and tolerances.
+    ISO 6526:1983, Plain bearings, pressed bimetallic half thrust washers, features and tolerances.
+    """
+
+    example = {
+        "inner_diameter": "42 mm",
+        "outer_diameter": "66 mm",
+        "thickness": "2.5 mm",
+        "oil_grooves": 3,
+        "oil_groove_width": "3 mm",
+        "oil_groove_depth": "0.6 mm",
+        "pin_hole_diameter": "4 mm",
+        "pin_circle_diameter": "54 mm",
+        "lug_width": "10 mm",
+        "lug_height": "4 mm",
+    }
+
+    toleranced = {
+        "inner_diameter": {"of": "washer", "cylinders": "z", "datum": "A"},
+        "outer_diameter": {"of": "washer", "cylinders": "z"},
+        "thickness": {"of": "washer", "planes": "z", "perpendicularity": 1, "to": "A"},
+        "pin_hole_diameter": {"of": "washer", "beside": "z"},
+    }
+
+    d: Array = given("mm", "inner diameter", symbol="d", ge=1, le=2000, also=("bearing diameter", "bore"))
+
+    @derived("mm", "outer diameter", symbol="D", ge=1, le=10000)
+    def D(self) -> Array:
+        return 1.6 * self.d
+
+    @derived("mm", "thickness", symbol="t", ge=0.01, le=1000)
+    def t(self) -> Array:
+        return 0.08 * self.d
+
+    washer: str = choice("full", "half", words="washer", default="full")
+
+    n_g: Array = given("1", "oil grooves", symbol="n_g", default="0", integer=True, ge=0, le=32)
+
+    @derived("mm", "oil groove width", symbol="w_g", ge=0.01, le=500)
+    def w_g(self) -> Array:
+        return 0.06 * self.d
+
+    @derived("mm", "oil groove depth", symbol="t_g", ge=0.001, le=500)
+    def t_g(self) -> Array:
+        return 0.3 * self.t
+
+    @derived("mm", "pin hole diameter", symbol="d_p", ge=0, le=500)
+    def d_p(self) -> Array:
+        """None."""
+        return 0 * self.d
+
+    @derived("mm", "pin circle diameter", symbol="D_p", ge=1, le=10000)
+    def D_p(self) -> Array:
+        return (self.d + self.D) / 2
+
+    @derived("mm", "lug width", symbol="w_l", ge=0, le=1000)
+    def w_l(self) -> Array:
+        """None."""
+        return 0 * self.d
+
+    @derived("mm", "lug height", symbol="h_l", ge=0.01, le=1000)
+    def h_l(self) -> Array:
+        return 0.1 * self.d
+
+    @formula("mm", "chord from groove to groove at the bore", name="groove_chord", symbol="p_g")
+    def p_g(self) -> Array:
+        """Of a half washer also twice the way from its joint to the first groove."""
+        return self.d * np.sin(half_pitch(self.washer, self.n_g))
+
+    @require("outer_diameter", "inner_diameter", remedy="make the outer diameter larger")
+    def has_a_face(self) -> Truth:
+        """The outer diameter is at least 2 % larger than the inner one."""
+        return self.D >= 1.02 * self.d
+
+    @require("oil_groove_depth", "thickness", remedy="make the grooves shallower or the washer thicker")
+    def grooves_have_a_bottom(self) -> Truth:
+        """Oil grooves take at most 80 % of the thickness, and at least 10 µm."""
+        return (self.n_g <= 0) | ((self.t_g <= 0.8 * self.t) & drawable(self.t_g))
+
+    @require("oil_groove_width", "oil_grooves", "inner_diameter", remedy="take fewer or narrower grooves")
+    def grooves_keep_apart(self) -> Truth:
+        """Oil grooves do not meet at the bore, nor the joint: they leave 5 % of the pitch there."""
+        return (self.n_g <= 0) | (self.w_g <= 0.95 * self.p_g)
+
+    @require("pin_hole_diameter", "washer", remedy="take a full ring, or 0 for no hole")
+    def pin_holds_a_full_ring(self) -> Truth:
+        """Only a full ring has a hole for a pin; a half washer is held by its lug."""
+        return takes_a_pin(self.washer, self.d_p)
+
+    @require(
+        "pin_hole_diameter", "pin_circle_diameter", "inner_diameter", "outer_diameter",
+        remedy="make the hole smaller, or move its circle",
+    )  # fmt: skip
+    def pin_keeps_within_the_face(self) -> Truth:
+        """The hole for a pin lies within the face, 1 % of the diameters off its edges."""
+        inside = (self.D_p - self.d_p >= 1.01 * self.d) & (self.D_p + self.d_p <= 0.99 * self.D)
+        return (self.d_p <= 0) | inside
+
+    @require(
+        "pin_hole_diameter", "oil_groove_width", "oil_grooves", "pin_circle_diameter",
+        remedy="make the hole smaller, or take fewer or narrower grooves",
+    )  # fmt: skip
+    def pin_clears_grooves(self) -> Truth:
+        """The hole for a pin keeps off the grooves beside it by 2 %."""
+        clear = self.D_p * np.sin(half_pitch(self.washer, self.n_g)) >= 1.02 * (self.d_p + self.w_g)
+        return (self.d_p <= 0) | (self.n_g <= 0) | clear
+
+    @require("lug_width", "outer_diameter", remedy="make the lug narrower")
+    def lug_is_narrow(self) -> Truth:
+        """The lug is at most 80 % as wide as the washer."""
+        return self.w_l <= 0.8 * self.D
+
+    @require("lug_width", "oil_grooves", "washer", remedy="take an even number of grooves, or no lug")
+    def lug_has_no_groove(self) -> Truth:
+        """No groove of a half washer runs into its lug: their number is even."""
+        return (self.w_l <= 0) | is_free_at_crown(self.washer, self.n_g)
+
+    @require(
+        "lug_width", "oil_groove_width", "oil_grooves", "outer_diameter",
+        remedy="make the lug narrower, or take fewer or narrower grooves",
+    )  # fmt: skip
+    def lug_clears_grooves(self) -> Truth:
+        """The lug keeps off the grooves beside it by 2 % of their width."""
+        foot = np.sqrt(np.maximum(self.D**2 - self.w_l**2, 0 * self.D**2))
+        turn = half_pitch(self.washer, self.n_g)
+        clear = foot * np.sin(turn) - self.w_l * np.cos(turn) >= 1.02 * self.w_g
+        return (self.w_l <= 0) | (self.n_g <= 0) | clear
+
+    @require("pin_hole_diameter", "lug_width", remedy="use 0 for none")
+    def features_are_drawable(self) -> Truth:
+        """Pin hole and lug measure 0, or at least the 10 µm that the kernel draws reliably."""
+        return drawable(self.d_p) & drawable(self.w_l)
+
+    def build(self) -> tuple[Part, ...]:
+        """One washer."""
+        washer = self.drawn()
+        return (Part("washer", washer.solid(), washer.volume(), BRONZE, density=8800, material="CuSn8P"),)
+
+    def drawn(self) -> Washer:
+        """The parameters as radii and halves."""
+        return Washer(
+            bore=mm(self.d) / 2,
+            outside=mm(self.D) / 2,
+            thickness=mm(self.t),
+            is_half=self.washer == "half",
+            grooves=round(float(self.n_g)),
+            half_groove=mm(self.w_g) / 2,
+            groove_depth=mm(self.t_g),
+            pin=mm(self.d_p) / 2,
+            pin_circle=mm(self.D_p) / 2,
+            half_lug=mm(self.w_l) / 2,
+            lug_height=mm(self.h_l),
+        )
+
+    def bounding_box(self) -> Box:
+        """As wide as the outer diameter and as high as the lug; a half washer on the side of its crown."""
+        R, top = mm(self.D) / 2, mm(self.D) / 2 + (mm(self.h_l) if self.w_l > 0 else 0.0)
+        return Box((-R, 0.0 if self.washer == "half" else -R, 0.0), (R, top, mm(self.t)))
+
+    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+        """Every parameter; those of grooves, pin hole and lug only if there are any."""
+        washer, wanted = seen["washer"], self.drawn()
+        about, levels = washer.diameters(Z), washer.levels(Z)
+        pins = [c for c in washer.cylinders if c.along(Z) and not c.about(Z)]
+        sizes = {
+            "inner_diameter": about[0],
+            "outer_diameter": about[-1],
+            "thickness": levels[-1] - levels[0],
+            "oil_grooves": 0.0,
+            "pin_hole_diameter": pins[0].diameter if pins else 0.0,
+        }
+        if len(levels) == 3:
+            floors = [p for p in washer.planes if p.along(Z) and abs(p.point.z - levels[1]) < 1e-6]
+            sides = (2 * abs(p.point.dot(p.direction)) for p in washer.planes if not p.along(Z))
+            sizes["oil_grooves"] = float(len(floors))
+            sizes["oil_groove_width"] = nearest(sides, 2 * wanted.half_groove)
+            sizes["oil_groove_depth"] = levels[2] - levels[1]
+        if pins:
+            sizes["pin_circle_diameter"] = 2 * hypot(pins[0].point.x, pins[0].point.y)
+        if wanted.half_lug > 0:
+            sizes["lug_width"] = nearest((2 * abs(x) for x in washer.levels(X)), 2 * wanted.half_lug)
+            sizes["lug_height"] = washer.levels(Y)[-1] - about[-1] / 2
+        return sizes
