@@ -31,9 +31,9 @@ from app.solids.models import File
 from app.solids.questions import what_can_be_asked
 from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, NotFound
-from cad.brought import brought
 from cad.deflection import plain_kind
 from cad.export import DRAWINGS, MEDIA_TYPES
+from cad.imported_models import brought
 from cad.inspect import MEASURES
 from cad.regenerate import build_key
 from templates.core.errors import Fault, InvalidInputs
