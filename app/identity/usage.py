@@ -102,4 +102,4 @@ def check(limits: Limits, used: Used, name: str) -> None:
         raise LimitReached(f"{name} has used {amounts}", seconds_to_midnight())
     if used.bytes >= limits.storage_mb * MIB:
         amounts = f"{used.bytes / MIB:.0f} MiB of {limits.storage_mb:.0f} MiB of storage"
-        raise LimitReached(f"{name} has used {amounts}, which no waiting and no deletion gives back", None)
+        raise LimitReached(f"{name} has used {amounts}, which neither waiting nor deletion restores", None)

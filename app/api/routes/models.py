@@ -33,7 +33,7 @@ from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, NotFound
 from cad.deflection import plain_kind
 from cad.export import DRAWINGS, MEDIA_TYPES
-from cad.imported_models import brought
+from cad.imported_models import imported_description
 from cad.inspect import MEASURES
 from cad.regenerate import build_key
 from templates.core.errors import Fault, InvalidInputs
@@ -95,7 +95,7 @@ def show_model(id: Id, number: Number, catalogues: TheCatalogues, database: TheD
             "analyses": what_can_be_asked(cls),
             "film_bore": cls.film_bore,
             "picture": f"/api/v1/models/{id}/versions/{number}/picture",
-            **({"origin": origin(database, id, number)} if brought(cls) else {}),
+            **({"origin": origin(database, id, number)} if imported_description(cls) else {}),
         }
     )
 
@@ -152,7 +152,7 @@ async def build_model(
     if unknown:
         offered = ", ".join(MEDIA_TYPES)
         raise InvalidInputs(
-            Fault("artifacts", "unknown_name", f"{k[:40]!r} is none of {offered}") for k in unknown
+            Fault("artifacts", "unknown_name", f"{k[:40]!r} is not one of {offered}") for k in unknown
         )
     shape = catalogues.models.get(id, number).from_quantities(body.parameters)
     kinds = tuple(dict.fromkeys(("step", *body.artifacts)))
@@ -284,6 +284,6 @@ def send_file(
         If there is none: its build was deleted since the file was made.
     """
     if file is None:
-        raise NotFound("the build was deleted a moment ago; ask again, and it is made again")
+        raise NotFound("the build has just been deleted; send the request again to rebuild it")
     sent = {"ETag": f'"{file.sha256}"', **(headers or {})}
     return StoredFile(store, file.sha256, MEDIA_TYPES[plain_kind(file.kind)], sent, name)
