@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import PurePath
 from typing import Literal
 
 from sqlalchemy.orm import Session
@@ -77,7 +78,14 @@ class ModelImports:
         if kind == "assembly":
             read_assembly(content)
         sha = self.store.put(content)
-        payload = {"file": sha, "id": id, "name": file, "kind": kind, "client": once.client}
+        name = PurePath(file.replace("\\", "/")).name or "model"
+        payload = {
+            "file": sha,
+            "id": id,
+            "name": name,
+            "kind": kind,
+            "client": once.client,
+        }
 
         def unit(session: Session) -> str:
             if before := once.begin(session):

@@ -27,7 +27,7 @@ QUICK = (
     [("plain_bearing", 1)] * 3 + [("plain_bearing", 3)] * 3 + [("ball_bearing", 1)] * 3 + [("crank_throw", 1)]
 )
 ALL = [
-    ("plain_bearing", 1), ("ball_bearing", 1), ("flanged_bush", 1), ("thrust_washer", 2), ("crank_throw", 1),
+    ("plain_bearing", 1), ("ball_bearing", 1), ("flanged_bush", 1), ("thrust_washer", 1), ("crank_throw", 1),
     ("crankshaft", 1), ("crankshaft", 2), ("plain_bearing", 2), ("plain_bearing", 3), ("bearing_housing", 1),
     ("bearing_assembly", 1), ("connecting_rod", 1),
 ]  # fmt: skip
