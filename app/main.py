@@ -36,6 +36,7 @@ from app.api.routes.decisions import router as decisions
 from app.api.routes.design_events import router as design_events
 from app.api.routes.design_files import router as design_files
 from app.api.routes.designs import router as designs
+from app.api.routes.designs import saves
 from app.api.routes.evaluations import router as answers
 from app.api.routes.film_pressure import router as film_pressure
 from app.api.routes.impact import router as impact
@@ -81,6 +82,7 @@ problems that name every wrong input at once."""
 
 ROUTERS = (
     calculations,
+    saves,
     worksheets,
     answers,
     spreadsheet_lines,
@@ -117,7 +119,7 @@ ROUTERS = (
     approvals,
     audit,
 )
-"""They are tried one after another; that of `evaluate`, which is called most, is the first.
+"""They are tried one after another; those that are called most are the first: `evaluate`, then saves.
 
 Reports come before variants: `…/variants/report.pdf` is not a variant. Imports of models come before models:
 `/models/import` is not one.

@@ -16,12 +16,13 @@ from sqlalchemy.orm import Session
 from app.calculations.pool import CalculationPool
 from app.catalogue.catalogues import Catalogues
 from app.identity.audit import record
+from app.schemas.worksheets import Sheet
 from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.storage.identity import now
 from app.storage.tables import WorksheetVersionRow as Row
 from app.workers.errors import DeadlineExceeded
-from app.worksheets import repository
+from app.worksheets import repository, views
 from app.worksheets.errors import IdTaken, OtherText, OutOfOrder, OwnReview, StaleWorksheet, TestsFailed
 from app.worksheets.examining import Examined, Tried, examined, tried
 from app.worksheets.importing.record import ImportRecord, require_resolved
@@ -223,6 +224,22 @@ class Worksheets:
             row = repository.newest(session, id)
         _require_match(expected, row)
         return row
+
+    def show(self, row: Row) -> Sheet:
+        """Return a version of a worksheet as the interface answers it."""
+        with self.database.read() as session:
+            versions = repository.versions(session, row.id)
+        return views.sheet(row, versions, self.published.broken)
+
+    def sheet(self, id: str, number: int | None = None) -> Sheet:
+        """Return a version of a worksheet, by default the newest, as the interface answers it.
+
+        Raises
+        ------
+        NotFound
+            If there is none.
+        """
+        return self.show(self.newest(id) if number is None else self.version(id, number))
 
     def version(self, id: str, number: int) -> Row:
         """Return one version of a worksheet.
