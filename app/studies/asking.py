@@ -8,7 +8,7 @@ from math import prod
 
 import numpy as np
 
-from app.designs.net import Net
+from app.designs.engine.net import Net
 from app.designs.slopes import Local
 from app.plain import Raw
 from app.reference import Reference
