@@ -15,18 +15,16 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from app.web import (
     actions,
     approval_page,
-    audit_page,
     beside_page,
     impact_page,
     import_page,
     model_import_page,
-    organising,
+    pasting,
     problems,
     provider_page,
     routes,
     sign_in,
     study_routes,
-    tables,
     upgrade_page,
     variant_forms,
     worksheet_routes,
@@ -84,12 +82,10 @@ def install(app: FastAPI) -> None:
     app.include_router(beside_page.router)
     app.include_router(beside_page.forms)
     app.include_router(routes.router)
-    app.include_router(organising.router)
     app.include_router(actions.router)
     app.include_router(approval_page.router)
-    app.include_router(audit_page.router)
     app.include_router(variant_forms.router)
-    app.include_router(tables.router)
+    app.include_router(pasting.router)
     app.include_router(study_routes.router)
     app.include_router(study_routes.forms)
     app.include_router(import_page.router)  # before the worksheets: `import` is not an id of one

@@ -10,8 +10,7 @@ from fastapi import APIRouter, Depends, Query, Request, Response
 from pydantic import JsonValue
 
 from app.api.gate.roles import needs
-from app.web.actions import forms_only
-from app.web.forms import fields
+from app.web.forms import fields, forms_only
 from app.web.rendering import go
 from app.web.routes import Id, Text
 from app.web.services import PageServices, Refused, ThePageServices
