@@ -19,12 +19,12 @@ from app.presentation.typed import value_of
 from app.reference import Reference
 from app.schemas.designs import Design
 from app.web.blocks import Refusal
-from app.web.declaring import change_of
+from app.web.declarations import change_of
 from app.web.design_page import design_page
 from app.web.forms import Patch, fields, forms_only, inner, kept, patch_of
 from app.web.gallery import GALLERY
 from app.web.new_step import NewStep, address, beside, new_step, step_page, versioned
-from app.web.rendering import go
+from app.web.responses import go
 from app.web.routes import Id, Number
 from app.web.services import PageServices, Refused, ThePageServices
 

@@ -15,16 +15,16 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from app.web import (
     actions,
     approval_page,
-    beside_page,
+    assembly_page,
     impact_page,
     import_page,
     model_import_page,
-    pasting,
     problems,
     provider_page,
     routes,
     sign_in,
     study_routes,
+    table_columns,
     upgrade_page,
     variant_forms,
     worksheet_routes,
@@ -79,13 +79,13 @@ def install(app: FastAPI) -> None:
     """Add the pages; call it after the interface is complete."""
     app.include_router(model_import_page.router)  # before the models: `import` is not one
     app.include_router(model_import_page.forms)
-    app.include_router(beside_page.router)
-    app.include_router(beside_page.forms)
+    app.include_router(assembly_page.router)
+    app.include_router(assembly_page.forms)
     app.include_router(routes.router)
     app.include_router(actions.router)
     app.include_router(approval_page.router)
     app.include_router(variant_forms.router)
-    app.include_router(pasting.router)
+    app.include_router(table_columns.router)
     app.include_router(study_routes.router)
     app.include_router(study_routes.forms)
     app.include_router(import_page.router)  # before the worksheets: `import` is not an id of one

@@ -14,7 +14,7 @@ from app.schemas.approvals import Approvals, CommentList
 from app.schemas.designs import Design, RevisionWorksheet
 from app.schemas.jobs import Job
 from app.schemas.templates import CadModel, Template
-from app.web.rendering import units_of
+from app.web.responses import units_of
 from app.web.services import PageServices
 
 

@@ -44,8 +44,7 @@ from app.web.blocks import (
     with_fields,
     with_result,
 )
-from app.web.chosen_variant import chosen_variant
-from app.web.declaring import analysis_lines, errors_of, iteration_lines, measures
+from app.web.declarations import analysis_lines, errors_of, iteration_lines, measures
 from app.web.design_answers import (
     ON_DESIGN,
     approval_of,
@@ -61,7 +60,7 @@ from app.web.forms import texts
 from app.web.limits import library
 from app.web.model_page import finished_analyses
 from app.web.places import names_json, values_of
-from app.web.rendering import show, units_of
+from app.web.responses import show, units_of
 from app.web.sections import (
     MOST_IN_FULL,
     asked_step,
@@ -74,6 +73,7 @@ from app.web.sections import (
 from app.web.services import PageServices
 from app.web.study_page import studies_of
 from app.web.tolerances_page import toleranced
+from app.web.variant_detail import chosen_variant
 from app.web.variants import RefusedTable, places_of, variants_table
 from app.web.verdict import Banner, banner, opened, with_keys
 from cad.export import MEDIA_TYPES

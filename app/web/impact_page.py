@@ -16,7 +16,7 @@ from app.schemas.answers import Quantity
 from app.schemas.impact import DesignImpact, Impact
 from app.web.answers import stored
 from app.web.forms import fields, forms_only
-from app.web.rendering import go, show, units_of
+from app.web.responses import go, show, units_of
 from app.web.routes import Id, Number, Text
 from app.web.services import PageServices, Refused, ThePageServices
 

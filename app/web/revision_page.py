@@ -17,7 +17,7 @@ from app.schemas.answers import Answer
 from app.schemas.designs import Revision, RevisionWorksheet
 from app.web.blocks import models_of, steps_of
 from app.web.design_answers import approval_of, comments_of, described_models, revision_of, templates_of
-from app.web.rendering import show
+from app.web.responses import show
 from app.web.services import PageServices, Refused
 from cad.export import MEDIA_TYPES
 

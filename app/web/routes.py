@@ -33,7 +33,7 @@ from app.web.design_page import design_page, step_section
 from app.web.gallery import offered
 from app.web.model_page import model_page
 from app.web.new_step import beside, new_step, step_page
-from app.web.rendering import go, show, units_of
+from app.web.responses import go, show, units_of
 from app.web.revision_page import is_unusable, revision_page, stored_page
 from app.web.sensitivities import sensitivity_lines
 from app.web.services import PageServices, Refused, ThePageServices

@@ -11,7 +11,7 @@ from pydantic import JsonValue
 
 from app.api.gate.roles import needs
 from app.web.forms import fields, forms_only
-from app.web.rendering import go
+from app.web.responses import go
 from app.web.routes import Id, Text
 from app.web.services import PageServices, Refused, ThePageServices
 from app.web.worksheet_page import Unsaved, editor_page, list_page, start_page

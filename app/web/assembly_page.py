@@ -19,7 +19,7 @@ from app.schemas.templates import TemplateSummary
 from app.web.design_answers import job_of
 from app.web.forms import fields, forms_only
 from app.web.model_import_page import MISSED, begun_import
-from app.web.rendering import go, show
+from app.web.responses import go, show
 from app.web.routes import Id
 from app.web.services import PageServices, Refused, ThePageServices
 
