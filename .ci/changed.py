@@ -22,10 +22,10 @@ HTTP = ("app/*routes*.py", "app/*schemas*.py", "app/*api/*.py", "app/api/problem
 WEB = ("app/*web/*.py", "app/*presentation/*.py", "app/web/*.js", "app/web/*.css", "app/web/*.html")
 ABOUT = {
     "tests/app/brought/test_freecad.py": (
-        *("app/brought/*.py", "cad/brought.py", "cad/freecad/*.py"),
+        *("app/brought/*.py", "cad/imported_models.py", "cad/freecad/*.py"),
         *("app/api/routes/brought_models.py", "app/*workers/*.py"),
     ),
-    "tests/app/brought/test_assemblies.py": ("app/brought/*.py", "cad/brought.py", "cad/assembl*.py"),
+    "tests/app/brought/test_assemblies.py": ("app/brought/*.py", "cad/imported_models.py", "cad/assembl*.py"),
     "tests/app/brought/test_assembly_page.py": ("app/brought/*.py", *WEB),
     "tests/app/calculations/test_calculations_in_processes.py": (
         "app/*calculations/*.py",

@@ -71,7 +71,7 @@ if TYPE_CHECKING:
     from app.observation.traces import Traces
 
 NETWORK = (
-    "app.designs.net",
+    "app.designs.engine.net",
     "app.impact.process",
     "app.studies.planning",
     "app.studies.searching",

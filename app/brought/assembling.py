@@ -1,4 +1,4 @@
-"""From a manifest to the description of an assembly: every fixed part is found, pinned and packed with it.
+"""Build the description of an assembly from its manifest: find, pin and pack each fixed part.
 
 The package holds the STEP file of every fixed part. So an assembly can be built again whatever happens to the
 models and designs from which the parts came.
@@ -22,9 +22,10 @@ from app.storage.database import Database
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, NotFound
 from app.storage.tables import ArtifactRow, DesignRow, RevisionModelRow
 from cad.assemblies import AssemblyDescription, Component, base_of, described
-from cad.brought import Description, Drawn, description_of
 from cad.errors import GeometryError, UnreadableModel
+from cad.imported_models import Description, Drawn
 from cad.model import CadModel
+from cad.model_classes import description_of
 from templates.core.catalogue.loading import is_outside
 from templates.core.errors import UnknownTemplate
 

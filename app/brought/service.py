@@ -26,8 +26,9 @@ from app.storage.database import Database, after_commit
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.storage.idempotency import Once
 from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
-from cad.brought import Description, class_of
 from cad.errors import GeometryError, ProgramMissing, UnreadableModel, UnreadableStep
+from cad.imported_models import Description
+from cad.model_classes import class_of
 from templates.core.errors import TemplateError
 
 IMPORT = "model_import"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.brought import repository
 from app.schemas.brought import BroughtParameter, ModelOrigin
 from app.storage.database import Database
-from cad.brought import description_of
+from cad.model_classes import description_of
 
 
 def origin(database: Database, id: str, number: int) -> ModelOrigin:
