@@ -9,10 +9,10 @@ def main() -> None:
     """Run the command line, with one thread for the numerical libraries."""
     use_one_thread()
     if sys.argv[1:2] == ["serve"]:
-        from app.beginning import begin_serving
+        from app.cli.start import begin_serving
 
         begin_serving()
-    from app.cli import main as run_command  # commands import NumPy, which reads the environment once
+    from app.cli.main import main as run_command  # commands import NumPy, which reads the environment once
 
     run_command()
 

@@ -37,12 +37,12 @@ from app.identity.sealing import Sealer
 from app.identity.service import Identity
 from app.impact.service import Impacts
 from app.jobs.service import Jobs
-from app.machines import LOCAL
 from app.observation import metrics
 from app.reports.paper import Press
 from app.reports.service import Reports
 from app.retention.service import Retention
 from app.settings import Settings
+from app.settings.machines import LOCAL
 from app.solids.analyses import ANALYSIS, Analyses, ModelAnalysis
 from app.solids.builds import Builds
 from app.solids.finding import Analysing

@@ -61,11 +61,11 @@ from app.api.routes.variants import router as variants
 from app.api.routes.worksheet_imports import router as worksheet_imports
 from app.api.routes.worksheets import router as written_worksheets
 from app.assembly import assemble
-from app.hosts import Hosts
 from app.identity.errors import IdentityError
 from app.jobs.shutdown import on_stop_signal
 from app.schemas.problems import PROBLEM_CONTENT
 from app.settings import Settings
+from app.settings.hosts import Hosts
 from app.storage.errors import DatabaseUnavailable
 from app.web import assembly as pages
 
@@ -195,7 +195,7 @@ def spared_by_collections() -> Iterator[None]:
     if gc.isenabled():
         gc.collect()
     gc.freeze()  # what `serve` has imported without collections holds hardly any garbage
-    gc.enable()  # `app.beginning` has switched it off
+    gc.enable()  # `app.cli.start` has switched it off
     try:
         yield
     finally:

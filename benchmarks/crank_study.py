@@ -23,8 +23,8 @@ import matplotlib as mpl
 import matplotlib.pyplot as plt
 from PIL import Image
 
+from app.cli.demonstration import service
 from app.client import Client
-from app.demo import service
 from app.schemas.designs import Design
 from app.schemas.evaluations import UsedInput
 

@@ -15,8 +15,8 @@ import matplotlib as mpl
 import matplotlib.pyplot as plt
 from PIL import Image, ImageChops
 
+from app.cli.demonstration import service
 from app.client import Client
-from app.demo import service
 from app.designs.schemas import PAPER
 from app.schemas.designs import Design
 from app.schemas.evaluations import Output

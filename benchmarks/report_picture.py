@@ -18,7 +18,7 @@ from statistics import median
 import httpx
 from PIL import Image
 
-from app.demo import service
+from app.cli.demonstration import service
 from app.designs.schemas import PAPER
 
 TARGET = Path(__file__).parents[1] / "docs" / "pictures" / "report_page.png"

@@ -24,7 +24,7 @@ Environment variables, read once when the service starts. The service ignores a 
 table: look at the spelling first. Lists and objects are written as JSON: `["/srv/templates"]`. Options of
 `crankwright serve` come first.
 
-This page is written by `python -m benchmarks.settings_page` from `app/settings.py`.
+This page is written by `python -m benchmarks.settings_page` from `app/settings/__init__.py`.
 
 | variable | type | default | meaning |
 |---|---|---|---|

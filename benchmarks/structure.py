@@ -177,7 +177,7 @@ def single_importers(arrows: Mapping[str, set[str]], root: Path = ROOT) -> dict[
 
 def _may_be_short(name: str) -> bool:
     """Return whether the name says why a module may be short: one of a resource, or a command's."""
-    return bool(RESOURCE & set(name.split("."))) or "commands" in name or name.startswith("app.cli.")
+    return bool(RESOURCE & set(name.split("."))) or name.startswith("app.cli.")
 
 
 def pairs(root: Path = ROOT) -> list[tuple[str, str]]:

@@ -20,7 +20,7 @@ from app.workers import isolated
 
 LAUNCH = isolated.launch  # the real one
 LONG = ("app.calculations.warm", "cad.models")  # what takes seconds to import
-PRELOAD = ("app.cli", "app.serve_command", *LONG, "analysed")
+PRELOAD = ("app.cli.main", "app.cli.serve", *LONG, "analysed")
 
 
 class Forked(origins.Forked):

@@ -27,8 +27,8 @@ from opentelemetry.sdk.trace.export import BatchSpanProcessor
 from opentelemetry.trace import Span, SpanKind, Status, StatusCode, set_span_in_context
 from opentelemetry.trace.propagation.tracecontext import TraceContextTextMapPropagator
 
-from app.machines import Lane
 from app.observation import logs
+from app.settings.machines import Lane
 from app.storage.units import Unit, Writer
 from app.workers.base import GEOMETRY, Batch, BatchWorker, Limits
 from templates.core.progress import Reporter

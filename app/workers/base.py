@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, Protocol, TypeVar, TypeVarTuple
 
-from app.machines import Lane as Lane
+from app.settings.machines import Lane as Lane
 from templates.core.progress import Reporter
 
 T = TypeVar("T")

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 
-from app.machines import LOCAL
 from app.settings import Settings
+from app.settings.machines import LOCAL
 from app.workers.base import BatchWorker, Worker
 from app.workers.light import CHECKS
 from app.workers.local import LocalProcesses

@@ -6,7 +6,7 @@ from components import ON_POSTGRESQL
 from sqlalchemy import text
 from sqlalchemy.exc import DatabaseError
 
-from app.audit_commands import audit_command
+from app.cli.audit import audit_command
 from app.identity import chain
 from app.identity.acting import Principal, acting_as
 from app.identity.audit import record

@@ -7,7 +7,7 @@ import pytest
 from click.testing import CliRunner
 from components import database_of
 
-from app.cli import main
+from app.cli.main import main
 from app.identity.audit import record
 from app.identity.sealing import Sealer
 from app.storage.database import Database

@@ -17,7 +17,7 @@ from click.testing import CliRunner
 from patience import patient
 from serving import API, created, folder_of_models, moody, revision, serving
 
-from app.cli import main
+from app.cli.main import main
 from app.settings import Settings
 from app.storage.artifacts import ArtifactStore
 

@@ -11,7 +11,7 @@ from forked import Forked
 from serving import PATIENCE
 
 from app.calculations.schemas import OIL_FILM
-from app.cli import main
+from app.cli.main import main
 
 INPUTS = [f"{name}={value}" for name, value in OIL_FILM.items()]
 ROOT = Path(__file__).parents[2]
@@ -137,7 +137,7 @@ class TestServe:
     def served_with(self, monkeypatch):
         """The options of each server that would have started."""
         served = []
-        monkeypatch.setattr("app.serve_command.server.run", lambda app, settings: served.append(settings))
+        monkeypatch.setattr("app.cli.serve.server.run", lambda app, settings: served.append(settings))
         return served
 
     @pytest.mark.parametrize("host", ["127.0.0.1", "127.3.2.1", "::1", "localhost"])

@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from app.calculations.schemas import OIL_FILM
-from app.cli import COMMANDS, main
+from app.cli.main import COMMANDS, main
 
 INPUTS = [f"{name}={value}" for name, value in OIL_FILM.items()]
 HEAVY = {"cadquery", "OCP", "ngsolve", "sqlalchemy", "fastapi", "pydantic", "numba", "latex2mathml"}

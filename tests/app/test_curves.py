@@ -8,7 +8,7 @@ from click.testing import CliRunner
 from serving import API
 
 from app.calculations.curves import MOST_FAULTS, MOST_ROWS, read_curves
-from app.cli import main
+from app.cli.main import main
 from templates.bearing_load.bearing_load_v1 import BearingLoad
 from templates.core.errors import InvalidInputs
 

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from components import migrated_file
 from sqlalchemy import select, update
 
-from app.cli import main
+from app.cli.main import main
 from app.maintenance.check import check
 from app.maintenance.errors import CannotRun
 from app.storage.database import Database

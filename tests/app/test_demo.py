@@ -13,7 +13,8 @@ from click.testing import CliRunner
 from patience import patient
 from serving import ServerProcess
 
-from app import cli, demo, demo_command, serve_command
+from app.cli import demo as demo_command
+from app.cli import demonstration, main, serve
 from app.client import Client
 
 ROOT = Path(__file__).parents[2]
@@ -36,8 +37,8 @@ def forked_service(data, **options):
 def by_fork(data):
     """The output of the same command in this process; its service has imported nothing."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(demo, "service", forked_service)
-        done = CliRunner().invoke(cli.main, ["demo", "--data", str(data)])
+        patch.setattr(demonstration, "service", forked_service)
+        done = CliRunner().invoke(main.main, ["demo", "--data", str(data)])
     assert done.exit_code == 0, done.output
     return done.output
 
@@ -97,9 +98,9 @@ def test_its_data_are_where_serve_looks(monkeypatch, folder):
         monkeypatch.setenv("CRANKWRIGHT_DATA", folder)
     shown_in, served_from = [], []
     monkeypatch.setattr(demo_command, "demonstrate", shown_in.append)
-    monkeypatch.setattr(serve_command, "DataFolder", lambda data: served_from.append(data) or stop())
+    monkeypatch.setattr(serve, "DataFolder", lambda data: served_from.append(data) or stop())
     for command in ("demo", "serve"):
-        CliRunner().invoke(cli.main, [command])
+        CliRunner().invoke(main.main, [command])
     assert shown_in == served_from == [Path(folder)]
 
 
@@ -139,29 +140,29 @@ def started(tmp_path):
 @pytest.fixture
 def unhurried(monkeypatch):
     """Every look at the service is worth a remark."""
-    monkeypatch.setattr(demo, "REMARK", 0.0)
+    monkeypatch.setattr(demonstration, "REMARK", 0.0)
 
 
 def test_it_says_what_it_waits_for_as_long_as_the_service_lives(started, unhurried, capsys):
     process, log = started("import time; time.sleep(600)")
-    demo._await(Service(answers_after=2), process, log)
+    demonstration._await(Service(answers_after=2), process, log)
     assert capsys.readouterr().out.count("waiting for the service") == 2
 
 
 def test_a_service_that_ends_without_a_word_is_no_empty_reason(started):
     process, log = started("raise SystemExit(3)")
     with pytest.raises(click.ClickException, match=r"exit code 3 .*wrote nothing to .*service\.log"):
-        demo._await(Service(), process, log)
+        demonstration._await(Service(), process, log)
 
 
 def test_the_end_of_the_log_is_shown(started):
     process, log = started("raise SystemExit('no room\\non the disk')")
     with pytest.raises(click.ClickException, match=r"(?s)exit code 1 .*ends with\n  no room\n  on the disk"):
-        demo._await(Service(), process, log)
+        demonstration._await(Service(), process, log)
 
 
 def test_there_is_a_limit(started, monkeypatch):
-    monkeypatch.setattr(demo, "START", 0.0)
+    monkeypatch.setattr(demonstration, "START", 0.0)
     process, log = started("import time; time.sleep(600)")
     with pytest.raises(click.ClickException, match="does not answer after 0 s; it wrote nothing"):
-        demo._await(Service(), process, log)
+        demonstration._await(Service(), process, log)

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from pypdf import PdfReader
 from serving import API, created, paper, patched, problem, revision
 
-from app.cli import main
+from app.cli.main import main
 from app.client import File
 from app.storage.tables import ArtifactRow, BuildRow, RevisionModelRow
 from cad.part21 import plain

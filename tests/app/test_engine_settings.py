@@ -8,9 +8,8 @@ from forked import Forked
 from pydantic import ValidationError
 from serving import PATIENCE
 
-from app import machines
-from app.cli import main
-from app.settings import Settings
+from app.cli.main import main
+from app.settings import Settings, machines
 
 NAMES = ("CRANKWRIGHT_DASK_CA", "CRANKWRIGHT_DASK_CERT", "CRANKWRIGHT_DASK_KEY")
 
@@ -84,7 +83,7 @@ def test_a_worker_needs_places_of_lanes_that_there_are(lanes, monkeypatch):
 )
 def test_commands_say_what_is_wrong(arguments, environment, said, monkeypatch):
     monkeypatch.setattr(machines, "is_installed", lambda: True)
-    monkeypatch.setattr("app.workers.remote.commands.is_installed", lambda: True)
+    monkeypatch.setattr("app.cli.workers.is_installed", lambda: True)
     for name in ("CRANKWRIGHT_ENGINE", "CRANKWRIGHT_LANES", *NAMES):
         monkeypatch.setenv(name, "")
         monkeypatch.delenv(name)

@@ -48,11 +48,11 @@ IMPORTS = """
 import sys
 from app.workers.threads import use_one_thread
 use_one_thread()
-from app.beginning import begin_serving
+from app.cli.start import begin_serving
 begin_serving()
-import app.forking, app.serve_command
-app.forking.find_templates(()), app.forking.models()
-assert app.forking.ahead._may_fork(), "something has started a thread"
+import app.cli.serve
+app.cli.serve.find_templates(()), app.cli.serve.models()
+assert app.cli.serve.ahead._may_fork(), "something has started a thread"
 print(*sys.modules)
 """
 

@@ -11,9 +11,9 @@ from pydantic import BaseModel, ValidationError
 from app.api import problems
 from app.api.gate import guard
 from app.api.gate.clients import COOKIE, HEADER, TheClient
-from app.hosts import Authority, Hosts, is_loopback, parse
 from app.main import create_app
 from app.settings import Settings
+from app.settings.hosts import Authority, Hosts, is_loopback, parse
 from app.web.api import TheApi
 from app.web.session import keep_session
 

@@ -12,7 +12,7 @@ from sheets import WIDER, edited, place, released, reviewed
 from sheets import step as step_of
 from sqlalchemy import func, select
 
-from app.cli import main
+from app.cli.main import main
 from app.client import AsyncClient
 from app.jobs.service import Job, JobContext
 from app.storage.tables import BuildRow, DesignRow, RevisionRow

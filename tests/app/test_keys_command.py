@@ -4,9 +4,9 @@ import pytest
 from click.testing import CliRunner
 from sqlalchemy import text
 
-from app.cli import main
+from app.cli.keys import opened
+from app.cli.main import main
 from app.identity.acting import Principal, acting_as
-from app.key_commands import opened
 from app.observation.secrets import key_prefix
 from app.storage.database import Database
 
@@ -103,7 +103,7 @@ def test_revoking_a_key_names_those_that_end_with_it_and_the_list_says_who_made_
 
 
 def test_serve_beyond_this_machine_wants_a_key(tmp_path, monkeypatch, run):
-    monkeypatch.setattr("app.serve_command.server.run", lambda app, settings: None)
+    monkeypatch.setattr("app.cli.serve.server.run", lambda app, settings: None)
     serve = ["serve", "--host", "0.0.0.0", "--data", str(tmp_path / "data")]
     refused = CliRunner().invoke(main, serve)
     assert refused.exit_code != 0

@@ -14,7 +14,7 @@ from prometheus_client.parser import text_string_to_metric_families
 from serving import API, PATIENCE, ServerProcess, created, moody, until
 
 from app.api.gate.observing import Observed
-from app.cli import main
+from app.cli.main import main
 from app.observation import logs, metrics
 from app.observation.metrics import REGISTRY
 

@@ -8,7 +8,7 @@ from click.testing import CliRunner
 from serving import API, created
 from sheets import BUSH, FAULTY, WIDER, drafted, edited, fresh, released
 
-from app.cli import main
+from app.cli.main import main
 from app.client import AsyncClient, Client, Problem
 
 OPERATIONS = (

@@ -12,7 +12,7 @@ from sheets import BUSH, WIDER, drafted, edited, place, released, reviewed, step
 
 from app.catalogue.catalogues import Catalogues
 from app.catalogue.finding import find_templates
-from app.cli import main
+from app.cli.main import main
 from app.settings import Settings
 from app.storage.database import Database
 from app.storage.folder import DataFolder

@@ -11,9 +11,9 @@ from openpyxl import Workbook
 from serving import API, faults
 from study_helpers import OUT, TWICE, asked, ended, new_design, rows
 
-from app.cli import main
+from app.cli.main import main
+from app.cli.studies import _varied
 from app.client import AsyncClient, Problem
-from app.study_commands import _varied
 
 LENGTHS = {"length": {"between": ["0 mm", "10 mm"]}}
 

@@ -7,7 +7,7 @@ from patience import until
 from serving import API, problem, serving
 from study_helpers import CLEARANCE, FILM, LOSS, OUT, TWICE, content, done, new_design, rows
 
-from app.cli import main
+from app.cli.main import main
 from app.settings import Settings
 from app.studies import repository
 

@@ -25,7 +25,7 @@ from study_helpers import (
     queried,
 )
 
-from app.cli import main
+from app.cli.main import main
 
 KILLS = int(os.environ.get("CRANKWRIGHT_TEST_KILLS", "10"))
 SEED = int(os.environ.get("CRANKWRIGHT_TEST_SEED", "14"))

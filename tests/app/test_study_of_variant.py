@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from serving import API, faults
 from study_helpers import OUT, asked, content, done, new_design, rows
 
-from app.cli import main
+from app.cli.main import main
 
 DESIGN = {
     "name": "bars",

@@ -15,7 +15,7 @@ from serving import API, DOUBLE, MOODY, created, faults, moody, patched, problem
 from sleeping import ALARM, folder_of_sleeper
 
 from app.catalogue.catalogues import loaded
-from app.cli import main
+from app.cli.main import main
 from app.jobs.service import JobFailed
 from app.settings import Settings
 from app.solids.models import ModelBuild

@@ -17,7 +17,7 @@ import os, sys, types
 from app.__main__ import main
 early = "numpy" in sys.modules
 shown = lambda: print(os.environ["OPENBLAS_NUM_THREADS"], early)
-sys.modules["app.cli"] = types.SimpleNamespace(main=shown)
+sys.modules["app.cli.main"] = types.SimpleNamespace(main=shown)
 main()
 """
 

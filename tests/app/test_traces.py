@@ -10,9 +10,8 @@ from collecting import collecting, spans_in
 from forked import Forked
 from serving import API, PATIENCE, folder_of_models, moody, serving
 
-from app import machines
-from app.cli import main
-from app.settings import Settings
+from app.cli.main import main
+from app.settings import Settings, machines
 
 SECRET = "hunter2"
 CALLER = "00-0af7651916cd43dd8448eb211c80319c-b7ad6b7169203331-01"

@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 from serving import moody
 
-from app.cli import main
+from app.cli.main import main
 from app.client import AsyncClient, Problem
 
 TABLE = {"a": {"model.size": "17 mm"}, "b": {"model.size": {"value": 18, "unit": "mm"}}}

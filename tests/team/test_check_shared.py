@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 from sqlalchemy.orm import Session
 
-from app.cli import main
+from app.cli.main import main
 from app.settings import Settings
 from app.solids import rows
 from app.storage.database import Database

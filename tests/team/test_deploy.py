@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli import COMMANDS
+from app.cli.main import COMMANDS
 from app.settings import Settings
 
 DEPLOY = Path(__file__).parents[2] / "docs" / "deploy"

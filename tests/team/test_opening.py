@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 import app.storage
-from app.cli import main
+from app.cli.main import main
 from app.settings import Settings
 from app.storage.artifacts import ArtifactStore
 from app.storage.errors import StoreRefused

@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from click.testing import CliRunner
 
-from app.cli import main
+from app.cli.main import main
 from app.settings import Settings
 from app.storage.artifacts import OWNER
 from app.storage.database import Database

@@ -7,7 +7,7 @@ import pytest
 from click.testing import CliRunner
 from serving import API, PATIENCE, created, folder_of_models, moody, patched, revision, serving
 
-from app.cli import main
+from app.cli.main import main
 from app.settings import Settings
 from app.storage.folder import DataFolder
 from app.storage.opening import opened_store

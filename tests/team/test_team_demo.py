@@ -12,7 +12,7 @@ from chaos import MARK, marked, nothing_is_marked
 from click.testing import CliRunner
 from patience import patient, until
 
-from app.cli import main
+from app.cli.main import main
 from app.team import parts
 
 ROOT = Path(__file__).parents[2]

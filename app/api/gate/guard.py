@@ -19,7 +19,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.api.gate.clients import is_inside
 from app.api.gate.targets import is_mere_path
 from app.api.reading import HttpError
-from app.hosts import LONGEST, SETTING, Authority, Hosts, parse
+from app.settings.hosts import LONGEST, SETTING, Authority, Hosts, parse
 
 logger = logging.getLogger(__name__)
 

@@ -6,7 +6,7 @@ import inspect
 import pytest
 from click.testing import CliRunner
 
-from app.cli import main
+from app.cli.main import main
 from app.client import AsyncClient, Client, Problem, model_operations
 from cad.regenerate import regenerate
 

@@ -6,7 +6,7 @@ from click.testing import CliRunner
 from freecad_files import imported
 from serving import serving
 
-from app.cli import main
+from app.cli.main import main
 from app.settings import Settings
 from cad.regenerate import regenerate
 

@@ -15,7 +15,7 @@ from test_workers import alive, eventually
 from app.brought.programs import assembled
 from app.calculations.operations import LARGE
 from app.calculations.schemas import EvaluateIn, SolveIn
-from app.cli import main
+from app.cli.main import main
 from app.client import Client, Problem
 from app.jobs import repository
 from app.maintenance.repair import Repair

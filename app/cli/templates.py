@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
-from app import pint_alone  # noqa: F401  # before all that imports Pint
+from app.cli import start  # noqa: F401  # before all that imports Pint
+
+# isort: split
 from app.calculations.arguments import argument
 from app.catalogue.finding import find_templates
 from app.plain import Raw

@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, SecretStr
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
-from app.hosts import check_entry
-from app.machines import Count, Lane, check_certificate, check_collector, check_engine, check_lanes
+from app.settings.hosts import check_entry
+from app.settings.machines import Count, Lane, check_certificate, check_collector, check_engine, check_lanes
 
 Certificate = Annotated[Path | None, AfterValidator(check_certificate), Field(validate_default=True)]
 

@@ -10,9 +10,9 @@ from typing import IO
 
 import click
 
+from app.cli.connections import connected, data_option, url_option
 from app.client import Client
 from app.client.studies import ClientStudy, Kind
-from app.connecting import connected, data_option, url_option
 from app.plain import JsonObject
 from app.schemas.studies import Study
 

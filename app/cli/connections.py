@@ -10,9 +10,9 @@ from pathlib import Path
 import click
 import httpx
 
+from app.cli.demonstration import service
 from app.client import Client, Problem
 from app.client.names import authorization
-from app.demo import service
 from app.settings import Settings
 
 KEY = "CRANKWRIGHT_KEY"

@@ -12,7 +12,7 @@ from urllib.parse import urlsplit
 
 from pydantic import Field, ValidationInfo
 
-from app.hosts import is_loopback
+from app.settings.hosts import is_loopback
 
 LOCAL = "local"
 FILES = "CRANKWRIGHT_DASK_CA, CRANKWRIGHT_DASK_CERT and CRANKWRIGHT_DASK_KEY"

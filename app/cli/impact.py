@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from app.connecting import connected, data_option, url_option
+from app.cli.connections import connected, data_option, url_option
 from app.presentation import numbers
 from app.schemas.impact import DesignImpact, Impact, VerdictMoved
 

@@ -13,8 +13,8 @@ from typing import NoReturn
 
 import click
 
+from app.cli.demonstration import MAPPED, build_of, changed, created, dimensions_of
 from app.client import Client
-from app.demo import MAPPED, build_of, changed, created, dimensions_of
 from app.schemas.designs import Design
 from app.team.errors import DidNotStart, Missing
 from app.team.parts import running

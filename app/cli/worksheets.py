@@ -11,8 +11,8 @@ from pathlib import Path
 
 import click
 
+from app.cli.connections import connected, data_option, url_option
 from app.client import Client
-from app.connecting import connected, data_option, url_option
 from app.schemas.worksheet_imports import ImportedRegion
 from app.schemas.worksheets import Sheet, SheetCheck, SheetSummary
 from templates.core.errors import plain

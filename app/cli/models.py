@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from app.connecting import connected, data_option, url_option
+from app.cli.connections import connected, data_option, url_option
 from app.schemas.brought import BroughtParameter
 from templates.core.errors import plain
 

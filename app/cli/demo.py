@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from app.demo import demonstrate
+from app.cli.demonstration import demonstrate
 from app.settings import Settings
 
 
@@ -23,6 +23,6 @@ def demo_command(data: Path | None, team: bool) -> None:
         return
     if data is not None:
         raise click.UsageError("--team keeps nothing, so it takes no --data")
-    from app.team.demonstration import demonstrate_team
+    from app.cli.team_demonstration import demonstrate_team
 
     demonstrate_team()

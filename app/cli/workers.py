@@ -9,9 +9,9 @@ from typing import NoReturn
 
 import click
 
-from app.hosts import is_loopback
-from app.machines import EXAMPLE, FILES, LOCAL, TEAM, is_installed
 from app.settings import Settings
+from app.settings.hosts import is_loopback
+from app.settings.machines import EXAMPLE, FILES, LOCAL, TEAM, is_installed
 
 _BOOT = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from app.workers.remote.{} import main; main()"

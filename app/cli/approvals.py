@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
+from app.cli.connections import connected, data_option, url_option
 from app.client import Client
-from app.connecting import connected, data_option, url_option
 from app.reports.verification import Line, NotReport, read_block, verify
 from app.schemas.approvals import ORDER, Step
 from app.schemas.signatures import Block

@@ -7,17 +7,45 @@ from pathlib import Path
 import click
 
 from app import server
-from app.forking import fork_ahead
-from app.hosts import is_loopback
-from app.key_commands import asks_for_keys
+from app.assembly import NETWORK, SHEETS
+from app.calculations.assembly import PRELOAD
+from app.catalogue.finding import find_templates
+from app.cli.keys import asks_for_keys
 from app.main import create_app
 from app.plain import JsonObject
 from app.settings import Settings
+from app.settings.hosts import is_loopback
+from app.settings.machines import LOCAL
 from app.storage.connecting import require_answer
 from app.storage.errors import StorageError
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
 from app.storage.ownership import require_own_store
+from app.workers import ahead
+from app.workers.light import CHECKS
+from app.workers.local import KERNEL
+from cad import on_demand
+from cad.catalogue import models
+
+
+def fork_ahead(settings: Settings) -> None:
+    """Fork what a service with these settings will ask for; call it before there is a thread or a connection.
+
+    Built-in templates and models are imported first: the processes share the pages of all that is imported.
+    That of jobs loads the kernel while the server opens its data; the others are ready at once.
+
+    Raises
+    ------
+    UnusableFile
+        If one of them cannot be used.
+    """
+    find_templates(())
+    models()
+    if settings.engine == LOCAL:
+        ahead.fork(KERNEL, on_demand.load)
+    if settings.template_folders:
+        ahead.fork(CHECKS)
+    ahead.fork((*PRELOAD, *SHEETS, *NETWORK))
 
 
 @click.command("serve")

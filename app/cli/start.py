@@ -1,0 +1,38 @@
+"""What a command does before it imports its module, so that it is ready soon and stays small.
+
+- Pint comes without Dask, which it would import for arrays that neither a command nor the server has, and
+  which takes longer than Pint itself. Dask cannot hold the quantities of such a Pint, so a notebook imports
+  Pint as it is; a server of a team hands Dask packed bytes only. Importing this module does it: import it
+  before all that imports Pint.
+- `serve` imports without the garbage collector, which would look through all that is new again and again,
+  HTTPX without its command line, which brings Rich and Pygments, and the kernel postponed: the server reads
+  parameters of models, and processes of their own draw them.
+"""
+
+from __future__ import annotations
+
+import gc
+import sys
+from importlib import import_module
+
+
+def import_alone(package: str, without: str) -> None:
+    """Import a package while another module is not to be found; nothing changes if either is imported."""
+    if {package, without}.isdisjoint(sys.modules):
+        sys.modules[without] = None  # type: ignore[assignment]  # as Python marks what is not to be imported
+        try:
+            import_module(package)
+        finally:
+            del sys.modules[without]
+
+
+import_alone("pint", without="dask")
+
+
+def begin_serving() -> None:
+    """Prepare this process; `app.main.spared_by_collections` switches the collector on."""
+    from cad import on_demand  # the other commands do without it
+
+    gc.disable()
+    on_demand.postpone()
+    import_alone("httpx", without="httpx._main")
