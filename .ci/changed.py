@@ -18,7 +18,7 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-HTTP = ("app/*routes*.py", "app/*schemas*.py", "app/*api/*.py", "app/api/problems.py", "app/*guard.py")
+HTTP = ("app/*routes*.py", "app/*schemas*.py", "app/api/*.py", "app/http/*.py")
 WEB = ("app/*web/*.py", "app/*presentation/*.py", "app/web/*.js", "app/web/*.css", "app/web/*.html")
 ABOUT = {
     "tests/app/brought/test_freecad.py": (
@@ -36,9 +36,13 @@ ABOUT = {
     "tests/app/test_design_files.py": ("app/solids/*.py", "app/api/routes/design_files.py"),
     "tests/app/test_design_revisions.py": ("app/designs/*.py", "app/solids/*.py"),
     "tests/app/test_elastic_bore.py": ("app/solids/*.py", "app/designs/*.py", "cad/analysis/*.py"),
-    "tests/app/test_guard.py": ("app/api/gate/*.py", "app/settings/hosts.py"),
-    "tests/app/test_hosts.py": ("app/settings/hosts.py", "app/api/gate/*.py", "app/settings/__init__.py"),
-    "tests/app/test_linear_input_http.py": ("app/api/reading.py", "app/api/problems.py", "app/designs/*.py"),
+    "tests/app/test_guard.py": ("app/http/*.py", "app/settings/hosts.py"),
+    "tests/app/test_hosts.py": ("app/settings/hosts.py", "app/http/*.py", "app/settings/__init__.py"),
+    "tests/app/test_linear_input_http.py": (
+        "app/http/strict_requests.py",
+        "app/http/problems.py",
+        "app/designs/*.py",
+    ),
     "tests/app/test_models_api.py": ("app/solids/*.py", "app/api/routes/models.py"),
     "tests/app/test_sheet_check.py": ("app/worksheets/*.py", "templates/core/sheets/*.py"),
     "tests/app/test_sign_in_oidc.py": ("app/identity/*.py",),
@@ -63,7 +67,7 @@ ABOUT = {
         *("app/*jobs/*.py", "app/*storage/*.py", "app/*designs/*.py", "app/*workers/*.py"),
         "app/*idempotency*.py",
     ),
-    "tests/app/test_attack.py": ("app/api/gate/*.py", "app/identity/*.py", "app/api/routes/*.py"),
+    "tests/app/test_attack.py": ("app/http/*.py", "app/identity/*.py", "app/api/routes/*.py"),
     "tests/app/test_backup.py": ("app/*maintenance/*.py", "app/*storage/*.py"),
     "tests/app/test_damage.py": ("app/solids/*.py", "app/*storage/*.py"),
     "tests/app/test_damper_study.py": (
@@ -74,7 +78,7 @@ ABOUT = {
         "app/cli/main.py",
         "app/cli/serve.py",
         "app/__main__.py",
-        "app/server.py",
+        "app/http/server.py",
     ),
     "tests/app/test_designs_http.py": ("app/*jobs/*.py", "app/*workers/*.py"),
     "tests/app/test_embedded_start.py": ("app/*.py", "pyproject.toml"),
@@ -83,8 +87,12 @@ ABOUT = {
         *("templates/physics/engine/*.py", "cad/cranks/*.py", "cad/models/crankshaft_v2.py"),
     ),
     "tests/app/test_events_resumed.py": ("app/*event*.py", "app/api/resuming.py"),
-    "tests/app/test_express_hostile.py": ("app/api/express.py", "app/api/reading.py", "app/api/problems.py"),
-    "tests/app/test_linear_input.py": ("app/reports/*.py", "app/api/problems.py", "app/designs/*.py"),
+    "tests/app/test_express_hostile.py": (
+        "app/api/express.py",
+        "app/http/strict_requests.py",
+        "app/http/problems.py",
+    ),
+    "tests/app/test_linear_input.py": ("app/reports/*.py", "app/http/problems.py", "app/designs/*.py"),
     "tests/app/test_list_parameters.py": ("app/designs/*.py", "app/web/*.py", "cad/lists.py"),
     "tests/app/test_orphans.py": ("app/*workers/*.py",),
     "tests/app/test_other_makers.py": ("app/solids/*.py", "app/*storage/*.py"),
@@ -97,7 +105,7 @@ ABOUT = {
         "app/approvals/*.py",
         "app/cli/approvals.py",
     ),
-    "tests/app/test_slow_clients.py": ("app/server.py", "app/api/gate/*.py"),
+    "tests/app/test_slow_clients.py": ("app/http/server.py", "app/http/*.py"),
     "tests/app/test_solve_design.py": ("app/designs/*.py", "templates/core/language/*.py"),
     "tests/app/test_studies.py": ("app/studies/*.py", "app/schemas/*.py"),
     "tests/app/test_study_heals.py": ("app/studies/*.py", "app/*maintenance/*.py"),
@@ -118,8 +126,8 @@ ABOUT = {
     "tests/app/test_sheet_start.py": ("app/worksheets/*.py", "app/*storage/*.py"),
     "tests/app/test_study_resumes.py": ("app/studies/*.py",),
     "tests/app/test_team_templates.py": ("app/catalogue/*.py", "templates/core/checking/*.py"),
-    "tests/app/test_stopping.py": ("app/server.py", "app/*jobs/*.py", "app/*workers/*.py"),
-    "tests/web/test_foreign_pages.py": ("app/*guard.py", "app/api/gate/*.py"),
+    "tests/app/test_stopping.py": ("app/http/server.py", "app/*jobs/*.py", "app/*workers/*.py"),
+    "tests/web/test_foreign_pages.py": ("app/http/*.py",),
     "tests/app/test_contract_all_at_length.py": HTTP,
     "tests/app/test_contract_at_length.py": HTTP,
     "tests/app/test_interface_at_length.py": HTTP,

@@ -5,9 +5,8 @@ from __future__ import annotations
 from contextlib import ExitStack, closing
 from typing import TYPE_CHECKING
 
-from app.api import problems, readiness
+from app.api import readiness
 from app.api.answering import Answering
-from app.api.gate.streams import Streams
 from app.api.services import Services
 from app.api.threads import Threads
 from app.approvals.comments import Comments
@@ -33,6 +32,8 @@ from app.designs.regeneration import Regeneration
 from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
 from app.designs.solved import solved
 from app.designs.variants.detail import VariantDetails
+from app.http import problems
+from app.http.streams import Streams
 from app.identity.sealing import Sealer
 from app.identity.service import Identity
 from app.impact.service import Impacts

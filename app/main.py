@@ -13,16 +13,7 @@ from typing import TYPE_CHECKING
 from fastapi import FastAPI, Response
 from fastapi_offline import FastAPIOffline
 
-from app.api import docs, problems
-from app.api.description import describe_interface, operation_id
 from app.api.express import Express
-from app.api.gate import guard, observing, roles
-from app.api.gate.access import Access
-from app.api.gate.heads import HeadLimit
-from app.api.gate.pacing import Pace
-from app.api.gate.stopping import StoppingAnswer
-from app.api.gate.timeouts import BodyTime
-from app.api.reading import BodyLimit, BodyTooLarge, HeadTooLarge, HttpError
 from app.api.routes import health
 from app.api.routes.analyses import router as analyses
 from app.api.routes.approvals import router as approvals
@@ -61,6 +52,14 @@ from app.api.routes.variants import router as variants
 from app.api.routes.worksheet_imports import router as worksheet_imports
 from app.api.routes.worksheets import router as written_worksheets
 from app.assembly import assemble
+from app.http import guard, openapi, problems, request_log, roles
+from app.http.access import Access
+from app.http.heads import HeadLimit
+from app.http.openapi import describe_interface, operation_id
+from app.http.pace import Pace
+from app.http.problems import StoppingAnswer
+from app.http.strict_requests import BodyLimit, BodyTooLarge, HeadTooLarge, HttpError
+from app.http.timeouts import BodyTime
 from app.identity.errors import IdentityError
 from app.jobs.shutdown import on_stop_signal
 from app.schemas.problems import PROBLEM_CONTENT
@@ -158,7 +157,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.include_router(health.router)
     app.include_router(problems.router)
     problems.install(app)
-    docs.install(app)
+    openapi.install(app)
     app.add_middleware(Express)  # the innermost: all others see its answers
     pages.install(app)
     roles.install(app)
@@ -169,10 +168,10 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.add_middleware(StoppingAnswer)
     guard.install(app, Hosts(chosen.allowed_hosts, chosen.host), _refused)
     if traces is not None:
-        from app.api.gate import tracing
+        from app.http import request_spans
 
-        tracing.install(app, traces)
-    observing.install(app)  # the outermost: it sees what the others refuse
+        request_spans.install(app, traces)
+    request_log.install(app)  # the outermost: it sees what the others refuse
     app.openapi = partial(describe_interface, app)  # type: ignore[method-assign]
     return app
 

@@ -135,8 +135,8 @@ def _profiled(root: Path) -> Iterator[Calls]:
 @contextmanager
 def _server(folder: Path) -> Iterator[httpx.Client]:
     """Run the service in a thread of this process."""
+    from app.http.server import configuration
     from app.main import create_app
-    from app.server import configuration
     from app.settings import Settings
 
     settings = Settings(data=folder / "data")

@@ -11,10 +11,7 @@ from typing import Annotated
 from fastapi import Depends, Header, Query, Request
 
 from app.api.answering import Answering
-from app.api.gate.access import STILL
-from app.api.gate.clients import TheClient
 from app.api.readiness import Readiness
-from app.api.reading import fingerprint
 from app.api.resuming import Still, always
 from app.api.services import Services
 from app.api.threads import Threads
@@ -29,6 +26,9 @@ from app.designs.labels import Labelling
 from app.designs.previewing import Previews
 from app.designs.service import Designs
 from app.designs.variants.detail import VariantDetails
+from app.http.access import STILL
+from app.http.clients import TheClient
+from app.http.strict_requests import fingerprint
 from app.identity.service import Identity
 from app.impact.service import Impacts
 from app.jobs.service import Jobs

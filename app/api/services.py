@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.api.answering import Answering
-from app.api.gate.streams import Streams
 from app.api.readiness import Readiness
 from app.api.threads import Threads
 from app.approvals.comments import Comments
@@ -21,6 +20,7 @@ from app.designs.previewing import Previews
 from app.designs.quick import QuickSaves
 from app.designs.service import Designs
 from app.designs.variants.detail import VariantDetails
+from app.http.streams import Streams
 from app.identity.service import Identity
 from app.impact.service import Impacts
 from app.jobs.service import Jobs

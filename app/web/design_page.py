@@ -9,7 +9,7 @@ from typing import NamedTuple
 from fastapi import Request, Response
 from markupsafe import Markup
 
-from app.api.gate.roles import routes_of
+from app.http.roles import routes_of
 from app.schemas.analyses import Analysis
 from app.schemas.designs import (
     Design,

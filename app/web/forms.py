@@ -17,7 +17,7 @@ from urllib.parse import parse_qsl
 from fastapi import Request
 from pydantic import JsonValue, TypeAdapter
 
-from app.api.reading import BodyTooLarge
+from app.http.strict_requests import BodyTooLarge
 from app.presentation.typed import text_of, value_of
 from app.schemas.designs import Design
 

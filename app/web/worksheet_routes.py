@@ -8,7 +8,7 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Query, Request, Response
 from pydantic import JsonValue
 
-from app.api.gate.roles import needs
+from app.http.roles import needs
 from app.schemas.worksheets import Sheet
 from app.web.actions import forms_only
 from app.web.api import Api, Refused, TheApi

@@ -262,7 +262,7 @@ SIGNALS = """
 import signal, sys, time
 from itertools import count
 import uvicorn
-from app.server import Server
+from app.http.server import Server
 
 server, counted = Server(uvicorn.Config(None), 5.0, lambda: None), count()
 

@@ -8,14 +8,14 @@ from typing import Annotated
 from fastapi import APIRouter, Header, Path, Query, Response
 from starlette.concurrency import run_in_threadpool
 
-from app.api import problems
 from app.api.dependencies import TheAnalyses, TheCatalogues, TheHealing, TheJobs, TheStore, Units
-from app.api.gate.clients import TheClient
-from app.api.reading import StrictRoute
 from app.api.routes.models import FOR_EVER
 from app.api.routes.templates import Number
 from app.api.stored import UNAVAILABLE, UNCHANGED, StoredFile, lost
 from app.api.waiting import accepted, finished, later, written
+from app.http import problems
+from app.http.clients import TheClient
+from app.http.strict_requests import StrictRoute
 from app.presentation.units import System
 from app.schemas.analyses import Analysis, AnalysisList, Surface
 from app.schemas.problems import refusals

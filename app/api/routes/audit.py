@@ -7,9 +7,9 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from app.api.dependencies import TheDatabase
-from app.api.gate.roles import needs
-from app.api.paging import Cursor, Limit, page
-from app.api.reading import StrictRoute
+from app.http.pages import Cursor, Limit, page
+from app.http.roles import needs
+from app.http.strict_requests import StrictRoute
 from app.identity import audit_rows, chain
 from app.identity.audit_rows import AuditFilter
 from app.schemas.audit import AuditEntry, AuditHead, AuditList

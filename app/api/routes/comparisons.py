@@ -7,8 +7,8 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query
 
 from app.api.dependencies import TheDatabase, Units
-from app.api.reading import StrictRoute
 from app.designs.comparing import Pair, compare
+from app.http.strict_requests import StrictRoute
 from app.schemas.comparisons import Comparison
 from app.schemas.problems import refusals
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from fastapi import APIRouter, Request
 from starlette.concurrency import run_in_threadpool
 
-from app.api.gate.roles import needs
-from app.api.reading import NotCsv, StrictRoute
 from app.calculations.curves import read_curves
+from app.http.roles import needs
+from app.http.strict_requests import NotCsv, StrictRoute
 from app.schemas.curves import Curves
 
 router = APIRouter(prefix="/api/v1", tags=["curves"], route_class=StrictRoute)

@@ -6,12 +6,12 @@ from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheDecisions, TheThreads, Units
 from app.api.designs import Id, Prefer
-from app.api.gate.clients import TheClient
-from app.api.gate.roles import needs
-from app.api.reading import StrictRoute
 from app.api.waiting import accepted, later, patience, written
 from app.designs.decisions import LONGEST_BUDGET, Asked, read_budget
 from app.designs.schemas import DecideIn
+from app.http.clients import TheClient
+from app.http.roles import needs
+from app.http.strict_requests import StrictRoute
 from app.schemas.decisions import Decision
 from app.schemas.problems import refusals
 

@@ -10,10 +10,10 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import OneStream, TheDatabase, TheJobs
 from app.api.designs import Id
-from app.api.reading import StrictRoute
 from app.api.resuming import LastEvent, allowed, identity, listening
 from app.api.routes.designs import show_design
 from app.designs.news import Standing, can_resume, standing
+from app.http.strict_requests import StrictRoute
 from app.storage.database import Database
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)

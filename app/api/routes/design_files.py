@@ -11,8 +11,6 @@ from fastapi.responses import FileResponse
 from sqlalchemy.orm import Session
 from starlette.concurrency import run_in_threadpool
 
-from app.api import problems
-from app.api.attachments import MemoryFile, disposition, http_time, is_at_hand, tag, unchanged
 from app.api.dependencies import (
     TheDatabase,
     TheHealing,
@@ -23,14 +21,16 @@ from app.api.dependencies import (
     TheStore,
 )
 from app.api.designs import Id, Number, Prefer
-from app.api.gate.clients import TheClient
-from app.api.query_names import KNOWN_NAMES
-from app.api.reading import StrictRoute
 from app.api.routes.models import PATIENCE, send_file
 from app.api.stored import UNAVAILABLE, UNCHANGED, lost
 from app.api.title_blocks import TheTitleBlock, TitleBlock
 from app.api.waiting import LATER, accepted, accepted_weights, finished
 from app.designs import stamps, views
+from app.http import problems
+from app.http.attachments import MemoryFile, disposition, http_time, is_at_hand, tag, unchanged
+from app.http.clients import TheClient
+from app.http.query_names import KNOWN_NAMES
+from app.http.strict_requests import StrictRoute
 from app.jobs.service import Jobs
 from app.reports.paper import Press
 from app.schemas.problems import RouteOptions, refusals

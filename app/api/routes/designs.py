@@ -20,10 +20,6 @@ from app.api.dependencies import (
     Units,
 )
 from app.api.designs import CHANGED, Id, IfMatch, Prefer, Within, answer_saved, seconds_waited, shown
-from app.api.gate.clients import TheClient
-from app.api.gate.roles import needs
-from app.api.paging import Cursor, Limit, page
-from app.api.reading import StrictRoute
 from app.api.waiting import accepted, later, written
 from app.designs import repository, views
 from app.designs.explained import explained as explanation
@@ -32,6 +28,10 @@ from app.designs.labels import key_of, tags_of
 from app.designs.previewing import Change
 from app.designs.releases import released_of
 from app.designs.schemas import LONGEST_NOTE, PATCH, CopyIn, DesignIn
+from app.http.clients import TheClient
+from app.http.pages import Cursor, Limit, page
+from app.http.roles import needs
+from app.http.strict_requests import StrictRoute
 from app.plain import JsonObject
 from app.schemas.designs import (
     Design,

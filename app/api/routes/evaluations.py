@@ -7,15 +7,15 @@ from typing import Annotated
 from fastapi import APIRouter, Header, Path, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from app.api import problems
 from app.api.dependencies import TheAnswering, TheJobs, TheStore
-from app.api.gate.clients import TheClient
-from app.api.gate.pacing import PiecesResponse
-from app.api.problem_kinds import INTERNAL
 from app.api.stored import UNAVAILABLE, rebuilding
 from app.api.waiting import LATER, accepted, finished
 from app.calculations.array_files import MEDIA_TYPES
 from app.calculations.jobs import ANSWERS, CalculationJobs
+from app.http import problems
+from app.http.clients import TheClient
+from app.http.pace import PiecesResponse
+from app.http.problem_kinds import INTERNAL
 from app.jobs.errors import JobNotFound
 from app.jobs.job import Job
 from app.jobs.service import Jobs

@@ -7,9 +7,9 @@ from pydantic import ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import Units
-from app.api.gate.roles import needs
-from app.api.reading import StrictRoute
 from app.calculations.film_pressure import TYPICAL, solve_film_pressure
+from app.http.roles import needs
+from app.http.strict_requests import StrictRoute
 from app.schemas.bounded import Bounded
 from app.schemas.films import FilmPressure
 from app.schemas.values import GIVEN, Given

@@ -6,11 +6,11 @@ from fastapi import APIRouter, Response
 from fastapi.responses import PlainTextResponse
 from prometheus_client import CONTENT_TYPE_LATEST
 
-from app.api import problems
 from app.api.dependencies import TheDatabase, TheJobs, TheReadiness
-from app.api.gate.roles import needs, public
-from app.api.problem_kinds import NOT_READY
 from app.api.waiting import written
+from app.http import problems
+from app.http.problem_kinds import NOT_READY
+from app.http.roles import needs, public
 from app.observation import metrics
 from app.schemas.health import Health, Ready
 from app.schemas.problems import refusals

@@ -5,16 +5,16 @@ from __future__ import annotations
 from fastapi import APIRouter, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from app.api import problems
 from app.api.dependencies import TheImpacts, TheJobs, TheStore, Units
 from app.api.designs import Prefer
-from app.api.gate.clients import TheClient
-from app.api.gate.pacing import PiecesResponse
-from app.api.problem_kinds import INTERNAL
-from app.api.reading import StrictRoute
 from app.api.routes.evaluations import stored_answer
 from app.api.routes.templates import Id, Number
 from app.api.waiting import LATER, accepted, finished
+from app.http import problems
+from app.http.clients import TheClient
+from app.http.pace import PiecesResponse
+from app.http.problem_kinds import INTERNAL
+from app.http.strict_requests import StrictRoute
 from app.impact.schemas import ImpactIn
 from app.impact.survey import Asked
 from app.schemas.impact import Impact

@@ -7,11 +7,11 @@ from fastapi import APIRouter, Depends
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from app.api.dependencies import OneStream, TheJobs
-from app.api.gate.clients import TheClient
-from app.api.gate.roles import needs
-from app.api.paging import Cursor, Limit, page
-from app.api.reading import StrictRoute
 from app.api.resuming import LastEvent, Whole, as_it_stands, listening
+from app.http.clients import TheClient
+from app.http.pages import Cursor, Limit, page
+from app.http.roles import needs
+from app.http.strict_requests import StrictRoute
 from app.jobs.job import Job
 from app.jobs.service import Jobs
 from app.schemas.jobs import Job as JobAnswer

@@ -7,8 +7,8 @@ from typing import Annotated
 from fastapi import APIRouter, Path
 
 from app.api.dependencies import TheDatabase, TheLabelling
-from app.api.reading import StrictRoute
 from app.designs.labels import LabelsIn, all_tags
+from app.http.strict_requests import StrictRoute
 from app.schemas.labels import Labels, TagList
 from app.schemas.problems import refusals
 

@@ -6,8 +6,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path
 
-from app.api.paging import Cursor, Limit, page_of
-from app.api.reading import StrictRoute
+from app.http.pages import Cursor, Limit, page_of
+from app.http.strict_requests import StrictRoute
 from app.schemas.library import (
     CitedQuantity,
     LibraryColumn,

@@ -10,17 +10,17 @@ from pydantic import ConfigDict, Field, WithJsonSchema
 from pydantic.config import JsonDict
 from starlette.concurrency import run_in_threadpool
 
-from app.api import problems
 from app.api.dependencies import TheCatalogues, TheDatabase, TheHealing, TheJobs, TheModels, TheStore
-from app.api.gate.clients import TheClient
-from app.api.gate.roles import needs
-from app.api.paging import Cursor, Limit
-from app.api.query_names import KNOWN_NAMES
-from app.api.reading import StrictRoute, require_step
 from app.api.routes.templates import Number, listed, versions_of
 from app.api.stored import UNAVAILABLE, UNCHANGED, StoredFile, lost
 from app.api.waiting import LATER, accepted, finished, later, written
 from app.brought.views import origin
+from app.http import problems
+from app.http.clients import TheClient
+from app.http.pages import Cursor, Limit
+from app.http.query_names import KNOWN_NAMES
+from app.http.roles import needs
+from app.http.strict_requests import StrictRoute, require_step
 from app.schemas.bounded import Bounded
 from app.schemas.problems import refusals
 from app.schemas.solids import Build, Verification

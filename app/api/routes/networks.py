@@ -7,9 +7,9 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Response
 
 from app.api.dependencies import TheDesigns
-from app.api.reading import StrictRoute
 from app.designs import repository
 from app.designs.drives import network_json
+from app.http.strict_requests import StrictRoute
 from app.schemas.networks import DesignNetwork
 from app.schemas.problems import refusals
 

@@ -8,9 +8,9 @@ from typing import Annotated
 from fastapi import APIRouter, Path
 
 from app.api.dependencies import TheIdentity
-from app.api.gate.roles import needs
-from app.api.paging import Cursor, Limit, page, page_of
-from app.api.reading import StrictRoute
+from app.http.pages import Cursor, Limit, page, page_of
+from app.http.roles import needs
+from app.http.strict_requests import StrictRoute
 from app.identity import views
 from app.identity.acting import acting
 from app.identity.service import Changes

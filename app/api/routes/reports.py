@@ -11,14 +11,14 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Header, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from app.api.attachments import named
 from app.api.dependencies import ExpensiveSteps, TheJobs, ThePress, TheReports, TheThreads, Units
 from app.api.designs import Id, Number, Prefer, Within
-from app.api.gate.clients import TheClient
-from app.api.gate.guard import PAGE_POLICY
-from app.api.reading import StrictRoute
 from app.api.threads import Threads
 from app.api.waiting import accepted_weights, finished, patience, written
+from app.http.attachments import named
+from app.http.clients import TheClient
+from app.http.guard import PAGE_POLICY
+from app.http.strict_requests import StrictRoute
 from app.jobs.service import Jobs
 from app.presentation.spreadsheets import XLSX
 from app.reports import tables

@@ -16,10 +16,10 @@ from app.api.dependencies import (
     TheThreads,
 )
 from app.api.designs import CHANGED, Id, IfMatch, Number, Prefer, answer_saved, seconds_waited
-from app.api.paging import Limit, page
-from app.api.reading import StrictRoute
 from app.designs import repository, views
 from app.designs.schemas import RestoreIn
+from app.http.pages import Limit, page
+from app.http.strict_requests import StrictRoute
 from app.schemas.designs import Design, Revision, RevisionList
 from app.schemas.problems import refusals
 

@@ -6,13 +6,13 @@ from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheSolving, TheThreads, Units
 from app.api.designs import Id, Prefer
-from app.api.gate.clients import TheClient
-from app.api.gate.roles import needs
-from app.api.reading import StrictRoute
 from app.api.threads import Threads
 from app.api.waiting import LATER, accepted, patience, written
 from app.designs.asking import A, Asked, Asking
 from app.designs.solved import SolveDesignIn
+from app.http.clients import TheClient
+from app.http.roles import needs
+from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
 from app.schemas.solve import DesignSolution
 

@@ -14,7 +14,6 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 from pydantic.config import JsonDict
 from starlette.concurrency import run_in_threadpool
 
-from app.api.attachments import MemoryFile, disposition
 from app.api.dependencies import (
     OneStream,
     TheDesigns,
@@ -26,13 +25,14 @@ from app.api.dependencies import (
     services_of,
 )
 from app.api.designs import CHANGED, IfMatch, Prefer, answer_saved, seconds_waited
-from app.api.gate.clients import TheClient
-from app.api.paging import Cursor, Limit, page
-from app.api.paths import register_id
-from app.api.reading import PreconditionRequired, StrictRoute
 from app.api.resuming import LastEvent, Whole, as_it_stands, listening
 from app.api.waiting import written
 from app.calculations.pool import Calculation, CalculationPool
+from app.http.attachments import MemoryFile, disposition
+from app.http.clients import TheClient
+from app.http.pages import Cursor, Limit, page
+from app.http.paths import register_id
+from app.http.strict_requests import PreconditionRequired, StrictRoute
 from app.plain import Json
 from app.presentation.spreadsheets import XLSX
 from app.schemas.designs import Design

@@ -10,10 +10,10 @@ from weakref import WeakKeyDictionary
 from fastapi import APIRouter, Path
 
 from app.api.dependencies import TheCatalogues
-from app.api.paging import Cursor, Limit, page_of
-from app.api.reading import StrictRoute
 from app.catalogue.catalogues import Catalogues
 from app.catalogue.sheets import Key
+from app.http.pages import Cursor, Limit, page_of
+from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
 from app.schemas.templates import Accuracy, SheetMark, TemplateList, TemplateSummary, TemplateVersions
 from app.schemas.templates import Template as TemplateAnswer

@@ -6,12 +6,12 @@ from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheThreads, TheTolerances, Units
 from app.api.designs import Id, Prefer
-from app.api.gate.clients import TheClient
-from app.api.gate.roles import needs
-from app.api.reading import StrictRoute
 from app.api.routes.solving import answer_asked
 from app.api.waiting import LATER
 from app.designs.asking import Asked
+from app.http.clients import TheClient
+from app.http.roles import needs
+from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
 from app.schemas.tolerances import ToleranceAnalysis
 from app.tolerances.schemas import ToleranceIn

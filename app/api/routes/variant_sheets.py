@@ -7,16 +7,16 @@ from functools import partial
 
 from fastapi import APIRouter, Request, Response
 
-from app.api.attachments import disposition
 from app.api.dependencies import ExpensiveSteps, TheDesigns, TheJobs, TheOnce, TheThreads
 from app.api.designs import Id, IfMatch, Prefer
-from app.api.reading import StrictRoute
 from app.api.routes.variants import answer_table
 from app.api.sheets import ANSWERS, MEDIA, SheetRoute, sheet_kind
 from app.api.waiting import later, patience
 from app.designs.service import Designs
 from app.designs.variant_sheets.service import Kind, save_sheet, write_sheet
 from app.designs.variants.views import variants
+from app.http.attachments import disposition
+from app.http.strict_requests import StrictRoute
 from app.schemas.problems import Responses, refusals
 from app.schemas.variants import VariantsOut
 from cad.naming import name as wide_name

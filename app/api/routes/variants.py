@@ -14,8 +14,6 @@ from pydantic import ConfigDict, Field
 from pydantic.config import JsonDict
 from starlette.concurrency import run_in_threadpool
 
-from app.api.archives import MEDIA_TYPE, archived, distinct
-from app.api.attachments import is_at_hand, named, unchanged
 from app.api.dependencies import (
     ExpensiveSteps,
     TheCatalogues,
@@ -30,8 +28,6 @@ from app.api.dependencies import (
     Units,
 )
 from app.api.designs import Id, IfMatch, Number, Prefer
-from app.api.gate.clients import TheClient
-from app.api.reading import StrictRoute
 from app.api.routes.design_files import FILES, IfNoneMatch, TheFileRequest
 from app.api.sheets import ANSWERS, BODIES
 from app.api.stored import UNAVAILABLE, lost
@@ -44,6 +40,10 @@ from app.designs.variants.detail import WantedVariant
 from app.designs.variants.files import STEP, Entry, entries, variant_model
 from app.designs.variants.names import MOST_VARIANTS
 from app.designs.variants.saving import replace_variants as replaced
+from app.http.archives import MEDIA_TYPE, archived, distinct
+from app.http.attachments import is_at_hand, named, unchanged
+from app.http.clients import TheClient
+from app.http.strict_requests import StrictRoute
 from app.jobs.service import Jobs
 from app.schemas.bounded import Bounded, at_most
 from app.schemas.problems import Responses, refusals

@@ -8,10 +8,10 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Query, Request, Response
 
 from app.api.dependencies import TheImports, TheOnce, TheStore, TheThreads, TheWorksheets
-from app.api.reading import SHEET_TYPES, StrictRoute, require_sheet
 from app.api.routes.worksheets import Id
 from app.api.stored import UNCHANGED, StoredFile
 from app.api.waiting import LATER, accepted
+from app.http.strict_requests import SHEET_TYPES, StrictRoute, require_sheet
 from app.schemas.problems import refusals
 from app.schemas.worksheet_imports import SheetImport
 from app.storage.errors import NotFound

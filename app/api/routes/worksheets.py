@@ -12,12 +12,12 @@ from fastapi.responses import PlainTextResponse
 from pydantic.config import JsonDict
 
 from app.api.dependencies import TheOnce, TheThreads, TheWorksheets
-from app.api.gate.clients import TheClient
-from app.api.gate.roles import needs
-from app.api.paging import Cursor, Limit, page
-from app.api.paths import register_id
-from app.api.reading import StrictRoute
 from app.api.waiting import written
+from app.http.clients import TheClient
+from app.http.pages import Cursor, Limit, page
+from app.http.paths import register_id
+from app.http.roles import needs
+from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
 from app.schemas.worksheets import Sheet, SheetCheck, SheetList
 from app.storage.tables import WorksheetVersionRow

@@ -16,9 +16,9 @@ from collections.abc import Callable, Iterable
 from fastapi import FastAPI, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.gate.clients import is_inside
-from app.api.gate.targets import is_mere_path
-from app.api.reading import HttpError
+from app.http.clients import is_inside
+from app.http.strict_requests import HttpError
+from app.http.targets import is_mere_path
 from app.settings.hosts import LONGEST, SETTING, Authority, Hosts, parse
 
 logger = logging.getLogger(__name__)

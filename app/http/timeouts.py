@@ -7,7 +7,7 @@ import time
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.reading import HttpError
+from app.http.strict_requests import HttpError
 
 WHOLE = "crankwright.whole"
 """Key of an ASGI scope of which all has come already: most have, and to time them costs a twentieth."""

@@ -8,7 +8,7 @@ import time
 from fastapi import FastAPI
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.gate.clients import from_whom, is_inside
+from app.http.clients import from_whom, is_inside
 from app.observation import logs, metrics
 
 logger = logging.getLogger(__name__)

@@ -8,8 +8,8 @@ from fastapi import FastAPI
 from opentelemetry.trace import SpanKind
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.gate.clients import is_inside
-from app.api.gate.observing import method_of, route_of
+from app.http.clients import is_inside
+from app.http.request_log import method_of, route_of
 from app.observation import logs
 from app.observation.traces import Traces
 

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from starlette.types import ASGIApp
 from uvicorn.protocols.http.httptools_impl import STATUS_LINE
 
-from app.api.gate.heads import LONGEST_HEAD
-from app.api.gate.targets import WholeTarget
-from app.api.gate.timeouts import WHOLE
+from app.http.heads import LONGEST_HEAD
+from app.http.targets import WholeTarget
+from app.http.timeouts import WHOLE
 from app.observation import logs, metrics
 from app.plain import JsonObject
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections import Counter
 
-from app.api.reading import HttpError
+from app.http.strict_requests import HttpError
 
 
 class TooManyStreams(HttpError):

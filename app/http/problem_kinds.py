@@ -10,10 +10,13 @@ from dataclasses import dataclass
 from fastapi.exceptions import RequestValidationError
 from starlette.requests import ClientDisconnect
 
-from app.api.gate.guard import BadHost, CrossSite, HostNotAllowed
-from app.api.gate.streams import TooManyStreams
-from app.api.gate.timeouts import BodyTooSlow
-from app.api.reading import (
+from app.approvals import errors as approvals
+from app.brought.errors import ModelIdTaken
+from app.calculations.errors import InvalidBody, NoArray, TooManyValues
+from app.designs import errors as designs
+from app.http.guard import BadHost, CrossSite, HostNotAllowed
+from app.http.streams import TooManyStreams
+from app.http.strict_requests import (
     BodyTooLarge,
     HeadTooLarge,
     NotCsv,
@@ -25,10 +28,7 @@ from app.api.reading import (
     PreconditionRequired,
     TooIntricate,
 )
-from app.approvals import errors as approvals
-from app.brought.errors import ModelIdTaken
-from app.calculations.errors import InvalidBody, NoArray, TooManyValues
-from app.designs import errors as designs
+from app.http.timeouts import BodyTooSlow
 from app.identity import errors as identity
 from app.identity.limits import LimitReached
 from app.identity.oidc import ProviderRefused
@@ -230,7 +230,7 @@ BEFORE_HTTP = (
     CROWDED,
     Kind("not-http", 400, "Not HTTP", "send HTTP/1.1"),
 )
-"""Problems that `app.api.gate.connections` answers before there is a request."""
+"""Problems that `app.http.connections` answers before there is a request."""
 
 
 SLUGS = {

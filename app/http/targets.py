@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from starlette.types import Scope
 
-from app.api.gate.heads import BoundedHead
+from app.http.heads import BoundedHead
 
 _KEY = "crankwright.target"
 

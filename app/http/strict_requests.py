@@ -16,8 +16,8 @@ from fastapi.routing import APIRoute
 from pydantic_core import from_json
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api import nul
-from app.api.gate.pacing import Pace
+from app.http import nul
+from app.http.pace import Pace
 from app.plain import Json
 from app.workers.pieces import PIECE, Pieces
 

@@ -10,7 +10,7 @@ from urllib.parse import unquote_plus
 from fastapi import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.api.gate.clients import PRINCIPAL, is_inside
+from app.http.clients import PRINCIPAL, is_inside
 from app.identity.acting import ANONYMOUS, Principal, acting_as
 from app.identity.door import Door
 from app.identity.errors import IdentityError, KeyInAddress

@@ -26,10 +26,10 @@ import uvicorn
 from fastapi import FastAPI
 from starlette.types import Receive, Scope, Send
 
-from app.api import problems
-from app.api.gate.connections import ConnectionLimits, protocol
-from app.api.gate.observing import Observed, what_is_in_flight
-from app.api.problem_kinds import CROWDED
+from app.http import problems
+from app.http.connections import ConnectionLimits, protocol
+from app.http.problem_kinds import CROWDED
+from app.http.request_log import Observed, what_is_in_flight
 from app.observation import logs
 from app.settings import Settings
 from app.workers import family
