@@ -5,7 +5,6 @@ from __future__ import annotations
 from contextlib import ExitStack, closing
 from typing import TYPE_CHECKING
 
-from app.api import readiness
 from app.api.answering import Answering
 from app.api.services import Services
 from app.api.threads import Threads
@@ -38,7 +37,7 @@ from app.identity.sealing import Sealer
 from app.identity.service import Identity
 from app.impact.service import Impacts
 from app.jobs.service import Jobs
-from app.observation import metrics
+from app.observation import metrics, readiness
 from app.reports.paper import Press
 from app.reports.service import Reports
 from app.retention.service import Retention

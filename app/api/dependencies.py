@@ -11,7 +11,6 @@ from typing import Annotated
 from fastapi import Depends, Header, Query, Request
 
 from app.api.answering import Answering
-from app.api.readiness import Readiness
 from app.api.resuming import Still, always
 from app.api.services import Services
 from app.api.threads import Threads
@@ -32,6 +31,7 @@ from app.http.strict_requests import fingerprint
 from app.identity.service import Identity
 from app.impact.service import Impacts
 from app.jobs.service import Jobs
+from app.observation.readiness import Readiness
 from app.presentation.units import System
 from app.reports.paper import Press
 from app.reports.service import Reports

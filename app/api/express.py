@@ -15,11 +15,11 @@ from pydantic_core import from_json, to_json
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.express_saves import PlainSave, plain_save, saved
-from app.api.routes.calculations import FEW, evaluate_template, router
 from app.api.services import Services
 from app.api.waiting import as_json
 from app.calculations.cost import is_quick
 from app.calculations.prepared import prepared
+from app.calculations.routes.evaluate import FEW, evaluate_template, router
 from app.calculations.schemas import EvaluateIn
 from app.calculations.service import run_evaluate
 from app.calculations.size import points

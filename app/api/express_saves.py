@@ -14,8 +14,8 @@ from fastapi.routing import APIRoute
 from pydantic_core import from_json
 from starlette.types import Scope
 
-from app.api.routes.designs import change_design, create_design, router
 from app.api.services import Services
+from app.designs.routes.designs import change_design, create_design, router
 from app.http.clients import from_whom
 from app.http.roles import AUTHOR
 from app.http.strict_requests import JSON_TYPES, PATCH_TYPES

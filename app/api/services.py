@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.api.answering import Answering
-from app.api.readiness import Readiness
 from app.api.threads import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import Approving
@@ -24,6 +23,7 @@ from app.http.streams import Streams
 from app.identity.service import Identity
 from app.impact.service import Impacts
 from app.jobs.service import Jobs
+from app.observation.readiness import Readiness
 from app.reports.paper import Press
 from app.reports.service import Reports
 from app.schemas.solve import DesignSolution

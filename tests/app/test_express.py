@@ -24,7 +24,7 @@ def _lasting(answer):
 @pytest.fixture
 def served_generally(monkeypatch):
     """Count the requests that FastAPI's router answers."""
-    from app.api.routes.calculations import LargeRoute
+    from app.calculations.routes.evaluate import LargeRoute
 
     seen = []
     shortcut = LargeRoute.shortcut

@@ -19,7 +19,6 @@ from app.api.dependencies import (
     TheThreads,
     Units,
 )
-from app.api.designs import CHANGED, Id, IfMatch, Prefer, Within, answer_saved, seconds_waited, shown
 from app.api.waiting import accepted, later, written
 from app.designs import repository, views
 from app.designs.explained import explained as explanation
@@ -27,6 +26,16 @@ from app.designs.filtering import TEMPLATE, DesignFilter
 from app.designs.labels import key_of, tags_of
 from app.designs.previewing import Change
 from app.designs.releases import released_of
+from app.designs.routes.answers import (
+    CHANGED,
+    Id,
+    IfMatch,
+    Prefer,
+    Within,
+    answer_saved,
+    seconds_waited,
+    shown,
+)
 from app.designs.schemas import LONGEST_NOTE, PATCH, CopyIn, DesignIn
 from app.http.clients import TheClient
 from app.http.pages import Cursor, Limit, page

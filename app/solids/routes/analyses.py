@@ -9,10 +9,9 @@ from fastapi import APIRouter, Header, Path, Query, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheAnalyses, TheCatalogues, TheHealing, TheJobs, TheStore, Units
-from app.api.routes.models import FOR_EVER
-from app.api.routes.templates import Number
 from app.api.stored import UNAVAILABLE, UNCHANGED, StoredFile, lost
 from app.api.waiting import accepted, finished, later, written
+from app.catalogue.routes.templates import Number
 from app.http import problems
 from app.http.clients import TheClient
 from app.http.strict_requests import StrictRoute
@@ -29,6 +28,7 @@ from app.solids.questions import (
     offered,
     question,
 )
+from app.solids.routes.models import FOR_EVER
 from app.solids.schemas import AnalysisIn
 from app.storage.errors import NotFound
 from cad.analysis.kinds import KINDS

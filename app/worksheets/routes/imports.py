@@ -8,7 +8,6 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Query, Request, Response
 
 from app.api.dependencies import TheImports, TheOnce, TheStore, TheThreads, TheWorksheets
-from app.api.routes.worksheets import Id
 from app.api.stored import UNCHANGED, StoredFile
 from app.api.waiting import LATER, accepted
 from app.http.strict_requests import SHEET_TYPES, StrictRoute, require_sheet
@@ -16,6 +15,7 @@ from app.schemas.problems import refusals
 from app.schemas.worksheet_imports import SheetImport
 from app.storage.errors import NotFound
 from app.worksheets.importing.views import imported
+from app.worksheets.routes.worksheets import Id
 from app.worksheets.schemas import ID, NAME
 
 router = APIRouter(prefix="/api/v1/worksheets", tags=["worksheets"], route_class=StrictRoute)

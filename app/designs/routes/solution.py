@@ -5,10 +5,10 @@ from __future__ import annotations
 from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheSolving, TheThreads, Units
-from app.api.designs import Id, Prefer
 from app.api.threads import Threads
 from app.api.waiting import LATER, accepted, patience, written
 from app.designs.asking import A, Asked, Asking
+from app.designs.routes.answers import Id, Prefer
 from app.designs.solved import SolveDesignIn
 from app.http.clients import TheClient
 from app.http.roles import needs

@@ -5,10 +5,10 @@ from __future__ import annotations
 from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheThreads, TheTolerances, Units
-from app.api.designs import Id, Prefer
-from app.api.routes.solving import answer_asked
 from app.api.waiting import LATER
 from app.designs.asking import Asked
+from app.designs.routes.answers import Id, Prefer
+from app.designs.routes.solution import answer_asked
 from app.http.clients import TheClient
 from app.http.roles import needs
 from app.http.strict_requests import StrictRoute

@@ -11,10 +11,10 @@ from pydantic.config import JsonDict
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheCatalogues, TheDatabase, TheHealing, TheJobs, TheModels, TheStore
-from app.api.routes.templates import Number, listed, versions_of
 from app.api.stored import UNAVAILABLE, UNCHANGED, StoredFile, lost
 from app.api.waiting import LATER, accepted, finished, later, written
 from app.brought.views import origin
+from app.catalogue.routes.templates import Number, listed, versions_of
 from app.http import problems
 from app.http.clients import TheClient
 from app.http.pages import Cursor, Limit

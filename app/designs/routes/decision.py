@@ -5,9 +5,9 @@ from __future__ import annotations
 from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheDecisions, TheThreads, Units
-from app.api.designs import Id, Prefer
 from app.api.waiting import accepted, later, patience, written
 from app.designs.decisions import LONGEST_BUDGET, Asked, read_budget
+from app.designs.routes.answers import Id, Prefer
 from app.designs.schemas import DecideIn
 from app.http.clients import TheClient
 from app.http.roles import needs

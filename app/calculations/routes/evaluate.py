@@ -15,7 +15,6 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.answering import to_try
 from app.api.dependencies import TheAnswering, TheCatalogues, Units, services_of
-from app.api.routes.templates import Id, Number
 from app.api.waiting import LATER
 from app.calculations.array_files import NPY, Form, npy
 from app.calculations.cost import EXPENSIVE, estimated_seconds, is_quick, solving_seconds, writing_seconds
@@ -24,6 +23,7 @@ from app.calculations.schemas import EvaluateIn, SolveIn
 from app.calculations.service import evaluated, run_evaluate, run_solve
 from app.calculations.size import points
 from app.calculations.worksheet import run_worksheet
+from app.catalogue.routes.templates import Id, Number
 from app.http.roles import needs
 from app.http.strict_requests import StrictRequest, StrictRoute
 from app.presentation.units import System

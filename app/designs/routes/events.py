@@ -9,10 +9,10 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import OneStream, TheDatabase, TheJobs
-from app.api.designs import Id
 from app.api.resuming import LastEvent, allowed, identity, listening
-from app.api.routes.designs import show_design
 from app.designs.news import Standing, can_resume, standing
+from app.designs.routes.answers import Id
+from app.designs.routes.designs import show_design
 from app.http.strict_requests import StrictRoute
 from app.storage.database import Database
 

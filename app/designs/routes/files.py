@@ -20,12 +20,11 @@ from app.api.dependencies import (
     TheSettings,
     TheStore,
 )
-from app.api.designs import Id, Number, Prefer
-from app.api.routes.models import PATIENCE, send_file
 from app.api.stored import UNAVAILABLE, UNCHANGED, lost
-from app.api.title_blocks import TheTitleBlock, TitleBlock
 from app.api.waiting import LATER, accepted, accepted_weights, finished
 from app.designs import stamps, views
+from app.designs.routes.answers import Id, Number, Prefer
+from app.designs.routes.title_blocks import TheTitleBlock, TitleBlock
 from app.http import problems
 from app.http.attachments import MemoryFile, disposition, http_time, is_at_hand, tag, unchanged
 from app.http.clients import TheClient
@@ -36,6 +35,7 @@ from app.reports.paper import Press
 from app.schemas.problems import RouteOptions, refusals
 from app.solids.healing import Healing
 from app.solids.models import File, Models
+from app.solids.routes.models import PATIENCE, send_file
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import NotFound

@@ -8,15 +8,15 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Query, Request, Response
 
 from app.api.dependencies import TheDatabase, TheModelImports, TheOnce, TheStore, TheThreads
-from app.api.routes.models import Id
-from app.api.routes.templates import Number
 from app.api.stored import UNCHANGED, StoredFile
 from app.api.waiting import LATER, accepted
 from app.brought.programs import SET_CREO
 from app.brought.views import origin
+from app.catalogue.routes.templates import Number
 from app.http.strict_requests import MODEL_TYPES, StrictRoute, require_model
 from app.schemas.brought import DrawingProgram, DrawingPrograms, ModelOrigin
 from app.schemas.problems import refusals
+from app.solids.routes.models import Id
 
 router = APIRouter(prefix="/api/v1/models", tags=["models"], route_class=StrictRoute)
 

@@ -12,9 +12,9 @@ from fastapi import APIRouter, Depends, Header, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import ExpensiveSteps, TheJobs, ThePress, TheReports, TheThreads, Units
-from app.api.designs import Id, Number, Prefer, Within
 from app.api.threads import Threads
 from app.api.waiting import accepted_weights, finished, patience, written
+from app.designs.routes.answers import Id, Number, Prefer, Within
 from app.http.attachments import named
 from app.http.clients import TheClient
 from app.http.guard import PAGE_POLICY

@@ -6,10 +6,10 @@ from fastapi import APIRouter, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheImpacts, TheJobs, TheStore, Units
-from app.api.designs import Prefer
-from app.api.routes.evaluations import stored_answer
-from app.api.routes.templates import Id, Number
 from app.api.waiting import LATER, accepted, finished
+from app.calculations.routes.evaluations import stored_answer
+from app.catalogue.routes.templates import Id, Number
+from app.designs.routes.answers import Prefer
 from app.http import problems
 from app.http.clients import TheClient
 from app.http.pace import PiecesResponse

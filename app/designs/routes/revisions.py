@@ -15,8 +15,8 @@ from app.api.dependencies import (
     TheOnce,
     TheThreads,
 )
-from app.api.designs import CHANGED, Id, IfMatch, Number, Prefer, answer_saved, seconds_waited
 from app.designs import repository, views
+from app.designs.routes.answers import CHANGED, Id, IfMatch, Number, Prefer, answer_saved, seconds_waited
 from app.designs.schemas import RestoreIn
 from app.http.pages import Limit, page
 from app.http.strict_requests import StrictRoute

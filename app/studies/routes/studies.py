@@ -24,10 +24,10 @@ from app.api.dependencies import (
     Units,
     services_of,
 )
-from app.api.designs import CHANGED, IfMatch, Prefer, answer_saved, seconds_waited
 from app.api.resuming import LastEvent, Whole, as_it_stands, listening
 from app.api.waiting import written
 from app.calculations.pool import Calculation, CalculationPool
+from app.designs.routes.answers import CHANGED, IfMatch, Prefer, answer_saved, seconds_waited
 from app.http.attachments import MemoryFile, disposition
 from app.http.clients import TheClient
 from app.http.pages import Cursor, Limit, page

@@ -27,12 +27,12 @@ from app.api.dependencies import (
     TheVariantDetails,
     Units,
 )
-from app.api.designs import Id, IfMatch, Number, Prefer
-from app.api.routes.design_files import FILES, IfNoneMatch, TheFileRequest
-from app.api.sheets import ANSWERS, BODIES
 from app.api.stored import UNAVAILABLE, lost
 from app.api.waiting import LATER, accepted, finished, later, patience, written
 from app.designs.document import Overrides, Word
+from app.designs.routes.answers import Id, IfMatch, Number, Prefer
+from app.designs.routes.files import FILES, IfNoneMatch, TheFileRequest
+from app.designs.routes.sheet_types import ANSWERS, BODIES
 from app.designs.schemas import Note
 from app.designs.service import Designs, Saved
 from app.designs.variants import views

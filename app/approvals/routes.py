@@ -7,10 +7,10 @@ from typing import Annotated
 from fastapi import APIRouter, Header, Path, Response
 
 from app.api.dependencies import TheApproving, TheComments, TheOnce
-from app.api.designs import Id, Number
 from app.api.waiting import written
 from app.approvals.comments import shown
 from app.approvals.schemas import ApprovalIn, CommentIn
+from app.designs.routes.answers import Id, Number
 from app.http.pages import Cursor, Limit, page
 from app.http.strict_requests import PreconditionRequired, StrictRoute
 from app.schemas.approvals import Approvals, Comment, CommentList, Released

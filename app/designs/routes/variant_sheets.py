@@ -8,10 +8,10 @@ from functools import partial
 from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheDesigns, TheJobs, TheOnce, TheThreads
-from app.api.designs import Id, IfMatch, Prefer
-from app.api.routes.variants import answer_table
-from app.api.sheets import ANSWERS, MEDIA, SheetRoute, sheet_kind
 from app.api.waiting import later, patience
+from app.designs.routes.answers import Id, IfMatch, Prefer
+from app.designs.routes.sheet_types import ANSWERS, MEDIA, SheetRoute, sheet_kind
+from app.designs.routes.variants import answer_table
 from app.designs.service import Designs
 from app.designs.variant_sheets.service import Kind, save_sheet, write_sheet
 from app.designs.variants.views import variants

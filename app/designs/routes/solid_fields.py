@@ -9,11 +9,11 @@ from fastapi import APIRouter, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheCatalogues, TheDatabase
-from app.api.designs import Id, Number
-from app.api.routes.design_files import ThePlainFileRequest
 from app.api.stored import UNAVAILABLE, UNCHANGED
 from app.api.waiting import LATER
 from app.designs import views
+from app.designs.routes.answers import Id, Number
+from app.designs.routes.files import ThePlainFileRequest
 from app.designs.solid_fields import SolidField, field_of, fields_of
 from app.http.attachments import MemoryFile, disposition, is_at_hand, tag, unchanged
 from app.http.strict_requests import StrictRoute
