@@ -57,7 +57,7 @@ ABOUT = {
     "tests/app/test_analysis_tables.py": ("app/solids/*.py", "app/designs/*.py", "cad/analysis/*.py"),
     "tests/app/test_analyses.py": ("app/solids/*.py", "app/solids/routes/analyses.py", "cad/analysis/*.py"),
     "tests/app/test_analyses_designs.py": ("app/solids/*.py", "app/designs/*.py", "cad/analysis/*.py"),
-    "tests/app/test_client.py": ("app/*client/*.py", "app/reports/*.py", "app/schemas/*.py"),
+    "tests/app/test_client.py": ("app/*client/*.py", "app/reports/*.py", "app/*schemas*.py"),
     "tests/app/test_conditional_designs_http.py": ("app/designs/*.py", "app/reports/*.py"),
     "tests/app/test_crank_gallery.py": (
         *("app/solids/*.py", "app/studies/*.py", "app/web/gallery*.py", "cad/analysis/*.py"),
@@ -74,7 +74,7 @@ ABOUT = {
         *("app/studies/*.py", "templates/stiffness/forced_torsion_v1.py", "templates/physics/torsion/*.py"),
     ),
     "tests/app/test_demo.py": (
-        "app/demo*.py",
+        "app/cli/demo*.py",
         "app/cli/main.py",
         "app/cli/serve.py",
         "app/__main__.py",
@@ -107,7 +107,7 @@ ABOUT = {
     ),
     "tests/app/test_slow_clients.py": ("app/http/server.py", "app/http/*.py"),
     "tests/app/test_solve_design.py": ("app/designs/*.py", "templates/core/language/*.py"),
-    "tests/app/test_studies.py": ("app/studies/*.py", "app/schemas/*.py"),
+    "tests/app/test_studies.py": ("app/studies/*.py", "app/*schemas*.py"),
     "tests/app/test_study_heals.py": ("app/studies/*.py", "app/*maintenance/*.py"),
     "tests/app/test_study_kills.py": ("app/studies/*.py", "app/*jobs/*.py", "app/*workers/*.py"),
     "tests/app/test_study_parts.py": ("app/studies/*.py",),

@@ -158,7 +158,7 @@ def _once() -> Any:
 
 def document() -> dict[str, Any]:
     """The design that is changed."""
-    from app.designs.schemas import PAPER
+    from app.designs.bodies import PAPER
 
     parameters = {"inner_diameter": "= film.bearing_diameter", "width": "= film.bearing_width"}
     model = {"id": "plain_bearing", "version": 1, "parameters": parameters}

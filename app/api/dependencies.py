@@ -23,6 +23,7 @@ from app.designs.asking import Asking
 from app.designs.decisions import Decisions
 from app.designs.labels import Labelling
 from app.designs.previewing import Previews
+from app.designs.schemas.solution import DesignSolution
 from app.designs.service import Designs
 from app.designs.variants.detail import VariantDetails
 from app.http.access import STILL
@@ -35,8 +36,6 @@ from app.observation.readiness import Readiness
 from app.presentation.units import System
 from app.reports.paper import Press
 from app.reports.service import Reports
-from app.schemas.solve import DesignSolution
-from app.schemas.tolerances import ToleranceAnalysis
 from app.settings import Settings
 from app.solids.analyses import Analyses
 from app.solids.healing import Healing
@@ -45,6 +44,7 @@ from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.studies.service import Studies
+from app.tolerances.schemas import ToleranceAnalysis
 from app.worksheets.importing.service import Imports
 from app.worksheets.service import Worksheets
 

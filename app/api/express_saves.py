@@ -16,10 +16,10 @@ from starlette.types import Scope
 
 from app.api.services import Services
 from app.designs.routes.designs import change_design, create_design, router
+from app.designs.schemas.designs import Design
 from app.http.clients import from_whom
 from app.http.roles import AUTHOR
 from app.http.strict_requests import JSON_TYPES, PATCH_TYPES
-from app.schemas.designs import Design
 from app.storage.database import Unit
 from app.storage.idempotency import Once
 

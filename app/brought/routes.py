@@ -11,10 +11,10 @@ from app.api.dependencies import TheDatabase, TheModelImports, TheOnce, TheStore
 from app.api.stored import UNCHANGED, StoredFile
 from app.api.waiting import LATER, accepted
 from app.brought.programs import SET_CREO
+from app.brought.schemas import DrawingProgram, DrawingPrograms, ModelOrigin
 from app.brought.views import origin
 from app.catalogue.routes.templates import Number
 from app.http.strict_requests import MODEL_TYPES, StrictRoute, require_model
-from app.schemas.brought import DrawingProgram, DrawingPrograms, ModelOrigin
 from app.schemas.problems import refusals
 from app.solids.routes.models import Id
 

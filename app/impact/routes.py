@@ -15,9 +15,9 @@ from app.http.clients import TheClient
 from app.http.pace import PiecesResponse
 from app.http.problem_kinds import INTERNAL
 from app.http.strict_requests import StrictRoute
-from app.impact.schemas import ImpactIn
+from app.impact.bodies import ImpactIn
+from app.impact.schemas import Impact
 from app.impact.survey import Asked
-from app.schemas.impact import Impact
 from app.schemas.problems import refusals
 
 router = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=StrictRoute)

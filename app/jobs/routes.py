@@ -13,9 +13,9 @@ from app.http.pages import Cursor, Limit, page
 from app.http.roles import needs
 from app.http.strict_requests import StrictRoute
 from app.jobs.job import Job
+from app.jobs.schemas import Job as JobAnswer
+from app.jobs.schemas import JobList
 from app.jobs.service import Jobs
-from app.schemas.jobs import Job as JobAnswer
-from app.schemas.jobs import JobList
 from app.schemas.problems import refusals
 
 router = APIRouter(prefix="/api/v1/jobs", tags=["jobs"], route_class=StrictRoute)

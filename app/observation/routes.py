@@ -12,7 +12,7 @@ from app.http import problems
 from app.http.problem_kinds import NOT_READY
 from app.http.roles import needs, public
 from app.observation import metrics
-from app.schemas.health import Health, Ready
+from app.observation.schemas import Health, Ready
 from app.schemas.problems import refusals
 
 router = APIRouter(tags=["health"])

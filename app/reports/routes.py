@@ -15,6 +15,7 @@ from app.api.dependencies import ExpensiveSteps, TheJobs, ThePress, TheReports, 
 from app.api.threads import Threads
 from app.api.waiting import accepted_weights, finished, patience, written
 from app.designs.routes.answers import Id, Number, Prefer, Within
+from app.designs.schemas.designs import RevisionWorksheet
 from app.http.attachments import named
 from app.http.clients import TheClient
 from app.http.guard import PAGE_POLICY
@@ -26,7 +27,6 @@ from app.reports.content import Report
 from app.reports.paper import Press
 from app.reports.screen import page
 from app.reports.service import Reports, tag
-from app.schemas.designs import RevisionWorksheet
 from app.schemas.problems import Responses, RouteOptions, refusals
 from app.storage.errors import NotFound
 

@@ -13,8 +13,8 @@ from app.http.clients import TheClient
 from app.http.roles import needs
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
-from app.schemas.tolerances import ToleranceAnalysis
-from app.tolerances.schemas import ToleranceIn
+from app.tolerances.bodies import ToleranceIn
+from app.tolerances.schemas import ToleranceAnalysis
 
 router = APIRouter(
     prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute, dependencies=[ExpensiveSteps]

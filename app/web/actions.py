@@ -12,11 +12,11 @@ from collections.abc import Mapping
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import JsonValue
 
+from app.designs.schemas.designs import Design, Proposals
 from app.http.access import FORM_TOKEN
 from app.http.strict_requests import FORM_TYPES, NotForm, check_type
 from app.presentation.typed import value_of
 from app.reference import Reference
-from app.schemas.designs import Design, Proposals
 from app.web.api import Api, Refused, TheApi, read
 from app.web.blocks import Refusal
 from app.web.declaring import change_of

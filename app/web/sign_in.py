@@ -17,7 +17,7 @@ from app.http.access import SIGN_IN
 from app.http.roles import needs, public
 from app.identity.errors import NotSignedIn
 from app.identity.keys import key_prefix
-from app.schemas.identity import Key, KeyList, Me, NewKey
+from app.identity.schemas.principals import Key, KeyList, Me, NewKey
 from app.web.actions import forms_only
 from app.web.api import Api, TheApi
 from app.web.forms import fields

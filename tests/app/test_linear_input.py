@@ -7,8 +7,8 @@ from scaling import LIMIT, assert_constant, assert_linear, times
 from starlette.requests import cookie_parser
 
 from app.api.waiting import patience
+from app.calculations.bodies import OIL_FILM, EvaluateIn
 from app.calculations.curves import _NUMBER, LONGEST_LINE, read_curves
-from app.calculations.schemas import OIL_FILM, EvaluateIn
 from app.calculations.size import points
 from app.designs.document import Document, merge
 from app.designs.graph import Catalogues, Graph, build_graph

@@ -27,7 +27,7 @@ from serving import (
     problem,
 )
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 from templates.oil_film.cycle_heat_balance_v2 import CycleHeatBalance
 
 DESIGNS = f"{API}/designs"

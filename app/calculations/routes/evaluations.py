@@ -12,23 +12,23 @@ from app.api.stored import UNAVAILABLE, rebuilding
 from app.api.waiting import LATER, accepted, finished
 from app.calculations.array_files import MEDIA_TYPES
 from app.calculations.jobs import ANSWERS, CalculationJobs
+from app.calculations.schemas.evaluations import AnyCalculation
+from app.designs.schemas.decision import Decision
+from app.designs.schemas.designs import Preview
+from app.designs.schemas.solution import DesignSolution
+from app.designs.schemas.variants import VariantDetail
 from app.http import problems
 from app.http.clients import TheClient
 from app.http.pace import PiecesResponse
 from app.http.problem_kinds import INTERNAL
+from app.impact.schemas import Impact
 from app.jobs.errors import JobNotFound
 from app.jobs.job import Job
 from app.jobs.service import Jobs
-from app.schemas.decisions import Decision
-from app.schemas.designs import Preview
-from app.schemas.evaluations import AnyCalculation
-from app.schemas.impact import Impact
 from app.schemas.problems import refusals
-from app.schemas.solve import DesignSolution
-from app.schemas.tolerances import ToleranceAnalysis
-from app.schemas.variants import VariantDetail
 from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
+from app.tolerances.schemas import ToleranceAnalysis
 from app.workers.pieces import Pieces
 
 router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"])

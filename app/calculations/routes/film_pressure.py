@@ -8,10 +8,10 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import Units
 from app.calculations.film_pressure import TYPICAL, solve_film_pressure
+from app.calculations.schemas.film_pressure import FilmPressure
 from app.http.roles import needs
 from app.http.strict_requests import StrictRoute
 from app.schemas.bounded import Bounded
-from app.schemas.films import FilmPressure
 from app.schemas.values import GIVEN, Given
 
 router = APIRouter(prefix="/api/v1", tags=["templates"], route_class=StrictRoute)

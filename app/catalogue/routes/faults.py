@@ -7,10 +7,10 @@ from dataclasses import asdict
 from fastapi import APIRouter
 
 from app.api.dependencies import TheCatalogues
+from app.catalogue.schemas.faults import FaultList, FaultyFile, FileFault
 from app.catalogue.team import TeamFile
 from app.http.pages import Cursor, Limit, page_of
 from app.http.strict_requests import StrictRoute
-from app.schemas.catalogue import FaultList, FaultyFile, FileFault
 
 router = APIRouter(prefix="/api/v1/catalogue", tags=["templates"], route_class=StrictRoute)
 

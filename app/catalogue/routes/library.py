@@ -6,9 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path
 
-from app.http.pages import Cursor, Limit, page_of
-from app.http.strict_requests import StrictRoute
-from app.schemas.library import (
+from app.catalogue.schemas.library import (
     CitedQuantity,
     LibraryColumn,
     LibraryRow,
@@ -16,6 +14,8 @@ from app.schemas.library import (
     LibraryTables,
     LibraryTableSummary,
 )
+from app.http.pages import Cursor, Limit, page_of
+from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
 from templates.library.reading import Cited, Row
 from templates.library.tables import Column, Table, table, tables

@@ -11,12 +11,18 @@ from fastapi import APIRouter, Path
 
 from app.api.dependencies import TheCatalogues
 from app.catalogue.catalogues import Catalogues
+from app.catalogue.schemas.templates import (
+    Accuracy,
+    SheetMark,
+    TemplateList,
+    TemplateSummary,
+    TemplateVersions,
+)
+from app.catalogue.schemas.templates import Template as TemplateAnswer
 from app.catalogue.sheets import Key
 from app.http.pages import Cursor, Limit, page_of
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
-from app.schemas.templates import Accuracy, SheetMark, TemplateList, TemplateSummary, TemplateVersions
-from app.schemas.templates import Template as TemplateAnswer
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import UnknownTemplate
 from templates.core.language.levels import accuracy

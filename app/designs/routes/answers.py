@@ -11,9 +11,9 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.waiting import LONGEST, finished, later, patience, written
 from app.designs import views
+from app.designs.schemas.designs import Design, MappedDesign, Proposal
 from app.designs.service import Designs, Saved
 from app.jobs.service import Jobs
-from app.schemas.designs import Design, MappedDesign, Proposal
 from app.schemas.problems import refusals
 
 Id = Annotated[str, Path(max_length=64)]

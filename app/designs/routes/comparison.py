@@ -8,8 +8,8 @@ from fastapi import APIRouter, Path, Query
 
 from app.api.dependencies import TheDatabase, Units
 from app.designs.comparing import Pair, compare
+from app.designs.schemas.comparison import Comparison
 from app.http.strict_requests import StrictRoute
-from app.schemas.comparisons import Comparison
 from app.schemas.problems import refusals
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)

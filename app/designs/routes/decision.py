@@ -6,13 +6,13 @@ from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheDecisions, TheThreads, Units
 from app.api.waiting import accepted, later, patience, written
+from app.designs.bodies import DecideIn
 from app.designs.decisions import LONGEST_BUDGET, Asked, read_budget
 from app.designs.routes.answers import Id, Prefer
-from app.designs.schemas import DecideIn
+from app.designs.schemas.decision import Decision
 from app.http.clients import TheClient
 from app.http.roles import needs
 from app.http.strict_requests import StrictRoute
-from app.schemas.decisions import Decision
 from app.schemas.problems import refusals
 
 router = APIRouter(

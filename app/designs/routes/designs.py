@@ -21,6 +21,7 @@ from app.api.dependencies import (
 )
 from app.api.waiting import accepted, later, written
 from app.designs import repository, views
+from app.designs.bodies import LONGEST_NOTE, PATCH, CopyIn, DesignIn
 from app.designs.explained import explained as explanation
 from app.designs.filtering import TEMPLATE, DesignFilter
 from app.designs.labels import key_of, tags_of
@@ -36,13 +37,7 @@ from app.designs.routes.answers import (
     seconds_waited,
     shown,
 )
-from app.designs.schemas import LONGEST_NOTE, PATCH, CopyIn, DesignIn
-from app.http.clients import TheClient
-from app.http.pages import Cursor, Limit, page
-from app.http.roles import needs
-from app.http.strict_requests import StrictRoute
-from app.plain import JsonObject
-from app.schemas.designs import (
+from app.designs.schemas.designs import (
     Design,
     DesignList,
     DesignSummary,
@@ -53,7 +48,12 @@ from app.schemas.designs import (
     Proposals,
     State,
 )
-from app.schemas.labels import MOST_TAGS, Tag
+from app.designs.schemas.labels import MOST_TAGS, Tag
+from app.http.clients import TheClient
+from app.http.pages import Cursor, Limit, page
+from app.http.roles import needs
+from app.http.strict_requests import StrictRoute
+from app.plain import JsonObject
 from app.schemas.problems import refusals
 from app.storage.tables import DesignRow
 from templates.core.errors import Fault, InvalidInputs

@@ -8,8 +8,8 @@ from fastapi import APIRouter, Path
 
 from app.api.dependencies import TheDatabase, TheLabelling
 from app.designs.labels import LabelsIn, all_tags
+from app.designs.schemas.labels import Labels, TagList
 from app.http.strict_requests import StrictRoute
-from app.schemas.labels import Labels, TagList
 from app.schemas.problems import refusals
 
 router = APIRouter(prefix="/api/v1", tags=["designs"], route_class=StrictRoute)

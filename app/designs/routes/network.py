@@ -9,8 +9,8 @@ from fastapi import APIRouter, Path, Response
 from app.api.dependencies import TheDesigns
 from app.designs import repository
 from app.designs.drives import network_json
+from app.designs.schemas.network import DesignNetwork
 from app.http.strict_requests import StrictRoute
-from app.schemas.networks import DesignNetwork
 from app.schemas.problems import refusals
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)

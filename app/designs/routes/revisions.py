@@ -16,11 +16,11 @@ from app.api.dependencies import (
     TheThreads,
 )
 from app.designs import repository, views
+from app.designs.bodies import RestoreIn
 from app.designs.routes.answers import CHANGED, Id, IfMatch, Number, Prefer, answer_saved, seconds_waited
-from app.designs.schemas import RestoreIn
+from app.designs.schemas.designs import Design, Revision, RevisionList
 from app.http.pages import Limit, page
 from app.http.strict_requests import StrictRoute
-from app.schemas.designs import Design, Revision, RevisionList
 from app.schemas.problems import refusals
 
 router = APIRouter(

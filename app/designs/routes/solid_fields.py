@@ -14,10 +14,10 @@ from app.api.waiting import LATER
 from app.designs import views
 from app.designs.routes.answers import Id, Number
 from app.designs.routes.files import ThePlainFileRequest
+from app.designs.schemas import solid_fields as schemas
 from app.designs.solid_fields import SolidField, field_of, fields_of
 from app.http.attachments import MemoryFile, disposition, is_at_hand, tag, unchanged
 from app.http.strict_requests import StrictRoute
-from app.schemas import solid_fields as schemas
 from app.schemas.problems import RouteOptions, refusals
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database

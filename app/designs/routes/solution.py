@@ -9,12 +9,12 @@ from app.api.threads import Threads
 from app.api.waiting import LATER, accepted, patience, written
 from app.designs.asking import A, Asked, Asking
 from app.designs.routes.answers import Id, Prefer
+from app.designs.schemas.solution import DesignSolution
 from app.designs.solved import SolveDesignIn
 from app.http.clients import TheClient
 from app.http.roles import needs
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
-from app.schemas.solve import DesignSolution
 
 router = APIRouter(
     prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute, dependencies=[ExpensiveSteps]

@@ -8,7 +8,7 @@ from unicodedata import normalize
 
 from fastapi import Depends, Query
 
-from app.schemas.approvals import ORDER
+from app.schemas.approval_steps import ORDER
 from cad.export import DRAWINGS
 from cad.stamp import Stamp
 from templates.core.errors import Fault, InvalidInputs

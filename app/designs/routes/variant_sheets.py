@@ -12,13 +12,13 @@ from app.api.waiting import later, patience
 from app.designs.routes.answers import Id, IfMatch, Prefer
 from app.designs.routes.sheet_types import ANSWERS, MEDIA, SheetRoute, sheet_kind
 from app.designs.routes.variants import answer_table
+from app.designs.schemas.variants import VariantsOut
 from app.designs.service import Designs
 from app.designs.variant_sheets.service import Kind, save_sheet, write_sheet
 from app.designs.variants.views import variants
 from app.http.attachments import disposition
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import Responses, refusals
-from app.schemas.variants import VariantsOut
 from cad.naming import name as wide_name
 from cad.naming import plain_name
 

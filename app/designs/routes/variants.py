@@ -29,11 +29,12 @@ from app.api.dependencies import (
 )
 from app.api.stored import UNAVAILABLE, lost
 from app.api.waiting import LATER, accepted, finished, later, patience, written
+from app.designs.bodies import Note
 from app.designs.document import Overrides, Word
 from app.designs.routes.answers import Id, IfMatch, Number, Prefer
 from app.designs.routes.files import FILES, IfNoneMatch, TheFileRequest
 from app.designs.routes.sheet_types import ANSWERS, BODIES
-from app.designs.schemas import Note
+from app.designs.schemas.variants import VariantDetail, VariantsOut
 from app.designs.service import Designs, Saved
 from app.designs.variants import views
 from app.designs.variants.detail import WantedVariant
@@ -47,7 +48,6 @@ from app.http.strict_requests import StrictRoute
 from app.jobs.service import Jobs
 from app.schemas.bounded import Bounded, at_most
 from app.schemas.problems import Responses, refusals
-from app.schemas.variants import VariantDetail, VariantsOut
 from app.storage.artifacts import Artifacts
 from cad.stamp import stamped
 

@@ -12,7 +12,7 @@ from app.http.roles import needs
 from app.http.strict_requests import StrictRoute
 from app.identity import audit_rows, chain
 from app.identity.audit_rows import AuditFilter
-from app.schemas.audit import AuditEntry, AuditHead, AuditList
+from app.identity.schemas.audit import AuditEntry, AuditHead, AuditList
 
 router = APIRouter(
     prefix="/api/v1/audit", tags=["audit"], route_class=StrictRoute, dependencies=[needs("admin")]

@@ -13,8 +13,7 @@ from app.http.roles import needs
 from app.http.strict_requests import StrictRoute
 from app.identity import views
 from app.identity.acting import acting
-from app.identity.service import Changes
-from app.schemas.identity import (
+from app.identity.schemas.principals import (
     Key,
     KeyIn,
     KeyList,
@@ -26,6 +25,7 @@ from app.schemas.identity import (
     PrincipalPatch,
     Usage,
 )
+from app.identity.service import Changes
 from app.schemas.problems import refusals
 
 router = APIRouter(prefix="/api/v1", tags=["principals"], route_class=StrictRoute, dependencies=[needs()])

@@ -16,8 +16,8 @@ from app.http import problems
 from app.http.clients import TheClient
 from app.http.strict_requests import StrictRoute
 from app.presentation.units import System
-from app.schemas.analyses import Analysis, AnalysisList, Surface
 from app.schemas.problems import refusals
+from app.solids.bodies import AnalysisIn
 from app.solids.questions import (
     ON_REQUEST,
     faults,
@@ -29,7 +29,7 @@ from app.solids.questions import (
     question,
 )
 from app.solids.routes.models import FOR_EVER
-from app.solids.schemas import AnalysisIn
+from app.solids.schemas.analyses import Analysis, AnalysisList, Surface
 from app.storage.errors import NotFound
 from cad.analysis.kinds import KINDS
 from cad.model import CadModel

@@ -15,6 +15,7 @@ from app.api.stored import UNAVAILABLE, UNCHANGED, StoredFile, lost
 from app.api.waiting import LATER, accepted, finished, later, written
 from app.brought.views import origin
 from app.catalogue.routes.templates import Number, listed, versions_of
+from app.catalogue.schemas.templates import TemplateList, TemplateVersions
 from app.http import problems
 from app.http.clients import TheClient
 from app.http.pages import Cursor, Limit
@@ -23,12 +24,11 @@ from app.http.roles import needs
 from app.http.strict_requests import StrictRoute, require_step
 from app.schemas.bounded import Bounded
 from app.schemas.problems import refusals
-from app.schemas.solids import Build, Verification
-from app.schemas.templates import CadModel as ModelAnswer
-from app.schemas.templates import TemplateList, TemplateVersions
 from app.schemas.values import Parameters
 from app.solids.models import File
 from app.solids.questions import what_can_be_asked
+from app.solids.schemas.models import Build, Verification
+from app.solids.schemas.models import CadModel as ModelAnswer
 from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, NotFound
 from cad.brought import brought

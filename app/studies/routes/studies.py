@@ -28,6 +28,7 @@ from app.api.resuming import LastEvent, Whole, as_it_stands, listening
 from app.api.waiting import written
 from app.calculations.pool import Calculation, CalculationPool
 from app.designs.routes.answers import CHANGED, IfMatch, Prefer, answer_saved, seconds_waited
+from app.designs.schemas.designs import Design
 from app.http.attachments import MemoryFile, disposition
 from app.http.clients import TheClient
 from app.http.pages import Cursor, Limit, page
@@ -35,15 +36,14 @@ from app.http.paths import register_id
 from app.http.strict_requests import PreconditionRequired, StrictRoute
 from app.plain import Json
 from app.presentation.spreadsheets import XLSX
-from app.schemas.designs import Design
 from app.schemas.problems import Responses, refusals
-from app.schemas.studies import Study, StudyEstimate, StudyList, StudyRows
 from app.storage import event_log
 from app.storage.idempotency import Once
 from app.storage.tables import StudyRow
 from app.studies import exports, repository, views
+from app.studies.bodies import ChooseIn, StudyIn
 from app.studies.planning import Plan, planned
-from app.studies.schemas import ChooseIn, StudyIn
+from app.studies.schemas import Study, StudyEstimate, StudyList, StudyRows
 from app.studies.service import ENDED, Draft, Studies
 from app.studies.stored import Stored
 from app.studies.views import Listing, Wanted, Where

@@ -14,9 +14,9 @@ from app.api.dependencies import TheOnce, TheStudies, services_of
 from app.http.clients import TheClient
 from app.http.strict_requests import StrictRoute
 from app.presentation.spreadsheets import XLSX
-from app.schemas.studies import Study
+from app.studies.bodies import study_of
 from app.studies.routes.studies import answer_begun, calculated_in_pool
-from app.studies.schemas import study_of
+from app.studies.schemas import Study
 from app.studies.uploads import FileKind, read_rows
 from app.workers.pieces import Pieces
 

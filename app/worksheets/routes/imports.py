@@ -12,11 +12,11 @@ from app.api.stored import UNCHANGED, StoredFile
 from app.api.waiting import LATER, accepted
 from app.http.strict_requests import SHEET_TYPES, StrictRoute, require_sheet
 from app.schemas.problems import refusals
-from app.schemas.worksheet_imports import SheetImport
 from app.storage.errors import NotFound
+from app.worksheets.bodies import ID, NAME
 from app.worksheets.importing.views import imported
 from app.worksheets.routes.worksheets import Id
-from app.worksheets.schemas import ID, NAME
+from app.worksheets.schemas.imports import SheetImport
 
 router = APIRouter(prefix="/api/v1/worksheets", tags=["worksheets"], route_class=StrictRoute)
 

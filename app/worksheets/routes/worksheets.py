@@ -19,12 +19,12 @@ from app.http.paths import register_id
 from app.http.roles import needs
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
-from app.schemas.worksheets import Sheet, SheetCheck, SheetList
 from app.storage.tables import WorksheetVersionRow
 from app.worksheets import repository, views
+from app.worksheets.bodies import ReviewIn, SheetCheckIn, SheetIn, SheetPatch, WithdrawIn
 from app.worksheets.checking import checked
 from app.worksheets.naming import RESERVED
-from app.worksheets.schemas import ReviewIn, SheetCheckIn, SheetIn, SheetPatch, WithdrawIn
+from app.worksheets.schemas.worksheets import Sheet, SheetCheck, SheetList
 from app.worksheets.service import Worksheets
 
 register_id("sheet", RESERVED)

@@ -1,7 +1,7 @@
 """Worksheets: templates that an engineer writes as text, and what the service says of a text.
 
-In code a user's text is a sheet. `app.schemas.evaluations.Worksheet` is another thing: the steps of one
-calculation on paper.
+In code a user's text is a sheet. `app.calculations.schemas.evaluations.Worksheet` is another thing: the steps
+of one calculation on paper.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ from typing import Literal
 
 from pydantic import Field
 
+from app.catalogue.schemas.templates import Template
 from app.schemas.answers import Answer, Page, Value
-from app.schemas.templates import Template
-from app.schemas.worksheet_imports import SheetOrigin
+from app.worksheets.schemas.imports import SheetOrigin
 
 State = Literal["draft", "tested", "reviewed", "released", "withdrawn", "broken"]
 """`broken`: the text or the results of a released version are not those of its release."""

@@ -7,7 +7,7 @@ from functools import cached_property, lru_cache
 
 from pydantic import BaseModel, Field, JsonValue, TypeAdapter
 
-from app.schemas.templates import Schema
+from app.catalogue.schemas.templates import Schema
 
 
 class Declared(BaseModel):

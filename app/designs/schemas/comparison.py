@@ -6,9 +6,9 @@ from typing import Self
 
 from pydantic import Field
 
+from app.designs.schemas.designs import State
 from app.presentation.units import System, shown_value
 from app.schemas.answers import Answer, Measured, Quantity, Value
-from app.schemas.designs import State
 
 
 class Side(Answer):

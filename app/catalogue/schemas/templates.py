@@ -7,8 +7,6 @@ from typing import Literal
 from pydantic import ConfigDict, Field, JsonValue
 
 from app.schemas.answers import Answer, Page
-from app.schemas.brought import ModelOrigin
-from app.schemas.solids import Analysable
 
 Schema = dict[str, JsonValue]
 """A JSON Schema. It holds units, symbols and bounds beside each property."""
@@ -115,17 +113,6 @@ class Template(Described):
     inputs: Schema = Field(description="JSON Schema of the object `inputs`")
     latest: bool
     worksheet: SheetMark | None = Field(None, description="absent for a template from a file")
-
-
-class CadModel(Described):
-    """One version of a CAD model."""
-
-    parameters: Schema = Field(description="JSON Schema of the object `parameters`")
-    measures: dict[str, str] = Field(description="what is measured on its solid, with units")
-    analyses: dict[str, Analysable] = Field(description="finite-element analyses by kind")
-    film_bore: str | None = Field(description="the parameter that is the bore with the oil film")
-    picture: str = Field(description="path of a picture of the example")
-    origin: ModelOrigin | None = Field(None, description="of a model that a team brought; absent for others")
 
 
 class Axis(Answer):

@@ -7,15 +7,15 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
-from app.schemas.analyses import AnalysisOutput, ModelAnalysis
+from app.calculations.schemas.evaluations import CalculatedBy, Error, Level, Output, UsedInput, WorkedFormula
+from app.identity.schemas.principals import Author
 from app.schemas.answers import Answer, Page, Quantity, Shown, Version, Warning
-from app.schemas.approvals import ApprovalState
+from app.schemas.approval_steps import ApprovalState
 from app.schemas.criteria import Criterion, Verdict
-from app.schemas.evaluations import CalculatedBy, Error, Level, Output, UsedInput, WorkedFormula
-from app.schemas.identity import Author
 from app.schemas.problems import Problem
-from app.schemas.solids import Measurements
 from app.schemas.values import Given
+from app.solids.schemas.analyses import AnalysisOutput, ModelAnalysis
+from app.solids.schemas.models import Measurements
 from templates.core.language.record import Record
 
 State = Literal["current", "regenerating", "failed"]

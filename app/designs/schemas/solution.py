@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pydantic import Field
 
+from app.calculations.schemas.evaluations import Jump, Root, TracedCurve
 from app.schemas.answers import Answer, Measured, Warning
 from app.schemas.criteria import Word
-from app.schemas.evaluations import Jump, Root, TracedCurve
 
 
 class DesignRoot(Root):

@@ -6,6 +6,8 @@ from typing import Literal
 
 from pydantic import Field
 
+from app.brought.schemas import ModelOrigin
+from app.catalogue.schemas.templates import Described, Schema
 from app.schemas.answers import Answer, Quantity, Shown, Triple, Values, Version
 
 
@@ -126,3 +128,14 @@ class Analysable(Answer):
     boundaries: list[str]
     levels: list[str]
     default_level: str
+
+
+class CadModel(Described):
+    """One version of a CAD model."""
+
+    parameters: Schema = Field(description="JSON Schema of the object `parameters`")
+    measures: dict[str, str] = Field(description="what is measured on its solid, with units")
+    analyses: dict[str, Analysable] = Field(description="finite-element analyses by kind")
+    film_bore: str | None = Field(description="the parameter that is the bore with the oil film")
+    picture: str = Field(description="path of a picture of the example")
+    origin: ModelOrigin | None = Field(None, description="of a model that a team brought; absent for others")

@@ -6,12 +6,12 @@ from typing import Literal
 
 from pydantic import Field
 
+from app.calculations.schemas.evaluations import Output
 from app.schemas.answers import Answer, Shown
 from app.schemas.criteria import Criterion, Verdict, Word
-from app.schemas.evaluations import Output
 from app.schemas.problems import Problem
-from app.schemas.solids import Measurements
 from app.schemas.values import Given
+from app.solids.schemas.models import Measurements
 
 VariantState = Literal["current", "regenerating", "failed"]
 """`failed`: its solid could not be built or measured, see `problem`; the other variants are not touched."""
