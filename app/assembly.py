@@ -5,9 +5,7 @@ from __future__ import annotations
 from contextlib import ExitStack, closing
 from typing import TYPE_CHECKING
 
-from app.api import problems, readiness
 from app.api.answering import Answering
-from app.api.gate.streams import Streams
 from app.api.services import Services
 from app.api.threads import Threads
 from app.approvals.comments import Comments
@@ -33,11 +31,13 @@ from app.designs.regeneration import Regeneration
 from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
 from app.designs.solved import solved
 from app.designs.variants.detail import VariantDetails
+from app.http import problems
+from app.http.streams import Streams
 from app.identity.sealing import Sealer
 from app.identity.service import Identity
 from app.impact.service import Impacts
 from app.jobs.service import Jobs
-from app.observation import metrics
+from app.observation import metrics, readiness
 from app.reports.paper import Press
 from app.reports.service import Reports
 from app.retention.service import Retention

@@ -74,11 +74,11 @@ class Bench:
     """The services that a change passes through, on a database in a folder of its own."""
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
-        from app.api import problems
         from app.catalogue.finding import find_templates
         from app.designs.graph import Catalogues
         from app.designs.regeneration import Regeneration
         from app.designs.service import Designs
+        from app.http import problems
         from app.jobs.service import Jobs
         from app.settings import Settings
         from app.solids.builds import Builds
@@ -158,7 +158,7 @@ def _once() -> Any:
 
 def document() -> dict[str, Any]:
     """The design that is changed."""
-    from app.designs.schemas import PAPER
+    from app.designs.bodies import PAPER
 
     parameters = {"inner_diameter": "= film.bearing_diameter", "width": "= film.bearing_width"}
     model = {"id": "plain_bearing", "version": 1, "parameters": parameters}

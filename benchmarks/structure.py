@@ -37,7 +37,9 @@ def layers() -> tuple[frozenset[str], ...]:
     """The layers of `app` as the import contracts of `pyproject.toml` draw them, from the top down."""
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
     (drawn,) = (one["layers"] for one in contracts if one["name"] == "the layers of app")
-    return tuple(frozenset(name.strip().removeprefix("app.") for name in layer.split("|")) for layer in drawn)
+    parts = [frozenset(name.strip().removeprefix("app.") for name in layer.split("|")) for layer in drawn]
+    place = parts.index(frozenset({"api"}))  # what routes share is right beneath them
+    return (*parts[:place], frozenset({"routes"}), *parts[place:])
 
 
 LAYERS = layers()
@@ -45,8 +47,13 @@ LAYERS = layers()
 
 
 def part_of(module: str) -> str:
-    """The part of `app` to which a module belongs: `app.designs.document` → `designs`."""
-    return module.split(".")[1]
+    """Return the part of `app` to which a module belongs: `app.designs.document` → `designs`.
+
+    The routes of all resources are one part: they stand above every room, though each is in the folder of its
+    resource.
+    """
+    part, *inside = module.split(".")[1:]
+    return "routes" if inside[:1] == ["routes"] and part != "web" else part
 
 
 def imports(path: Path) -> Iterator[str]:

@@ -11,10 +11,6 @@ from typing import Annotated
 from fastapi import Depends, Header, Query, Request
 
 from app.api.answering import Answering
-from app.api.gate.access import STILL
-from app.api.gate.clients import TheClient
-from app.api.readiness import Readiness
-from app.api.reading import fingerprint
 from app.api.resuming import Still, always
 from app.api.services import Services
 from app.api.threads import Threads
@@ -27,16 +23,19 @@ from app.designs.asking import Asking
 from app.designs.decisions import Decisions
 from app.designs.labels import Labelling
 from app.designs.previewing import Previews
+from app.designs.schemas.solution import DesignSolution
 from app.designs.service import Designs
 from app.designs.variants.detail import VariantDetails
+from app.http.access import STILL
+from app.http.clients import TheClient
+from app.http.strict_requests import fingerprint
 from app.identity.service import Identity
 from app.impact.service import Impacts
 from app.jobs.service import Jobs
+from app.observation.readiness import Readiness
 from app.presentation.units import System
 from app.reports.paper import Press
 from app.reports.service import Reports
-from app.schemas.solve import DesignSolution
-from app.schemas.tolerances import ToleranceAnalysis
 from app.settings import Settings
 from app.solids.analyses import Analyses
 from app.solids.healing import Healing
@@ -45,6 +44,7 @@ from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.studies.service import Studies
+from app.tolerances.schemas import ToleranceAnalysis
 from app.worksheets.importing.service import Imports
 from app.worksheets.service import Worksheets
 

@@ -14,19 +14,19 @@ from fastapi.routing import APIRoute
 from pydantic_core import from_json, to_json
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api import nul
 from app.api.express_saves import PlainSave, plain_save, saved
-from app.api.gate.roles import VIEWER
-from app.api.reading import JSON_TYPES, MOST_BRACKETS, MOST_QUOTES
-from app.api.routes.calculations import FEW, evaluate_template, router
 from app.api.services import Services
 from app.api.waiting import as_json
+from app.calculations.bodies import EvaluateIn
 from app.calculations.cost import is_quick
 from app.calculations.prepared import prepared
-from app.calculations.schemas import EvaluateIn
+from app.calculations.routes.evaluate import FEW, evaluate_template, router
 from app.calculations.service import run_evaluate
 from app.calculations.size import points
-from app.schemas.designs import Design
+from app.designs.schemas.designs import Design
+from app.http import nul
+from app.http.roles import VIEWER
+from app.http.strict_requests import JSON_TYPES, MOST_BRACKETS, MOST_QUOTES
 from templates.core.language.template import Template
 
 LONGEST = min(65_536, MOST_BRACKETS, MOST_QUOTES)  # bytes: too short to be intricate

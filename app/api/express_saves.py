@@ -14,12 +14,12 @@ from fastapi.routing import APIRoute
 from pydantic_core import from_json
 from starlette.types import Scope
 
-from app.api.gate.clients import from_whom
-from app.api.gate.roles import AUTHOR
-from app.api.reading import JSON_TYPES, PATCH_TYPES
-from app.api.routes.designs import change_design, create_design, router
 from app.api.services import Services
-from app.schemas.designs import Design
+from app.designs.routes.designs import change_design, create_design, router
+from app.designs.schemas.designs import Design
+from app.http.clients import from_whom
+from app.http.roles import AUTHOR
+from app.http.strict_requests import JSON_TYPES, PATCH_TYPES
 from app.storage.database import Unit
 from app.storage.idempotency import Once
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.api.answering import Answering
-from app.api.gate.streams import Streams
-from app.api.readiness import Readiness
 from app.api.threads import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import Approving
@@ -19,15 +17,16 @@ from app.designs.decisions import Decisions
 from app.designs.labels import Labelling
 from app.designs.previewing import Previews
 from app.designs.quick import QuickSaves
+from app.designs.schemas.solution import DesignSolution
 from app.designs.service import Designs
 from app.designs.variants.detail import VariantDetails
+from app.http.streams import Streams
 from app.identity.service import Identity
 from app.impact.service import Impacts
 from app.jobs.service import Jobs
+from app.observation.readiness import Readiness
 from app.reports.paper import Press
 from app.reports.service import Reports
-from app.schemas.solve import DesignSolution
-from app.schemas.tolerances import ToleranceAnalysis
 from app.settings import Settings
 from app.solids.analyses import Analyses
 from app.solids.healing import Healing
@@ -35,6 +34,7 @@ from app.solids.models import Models
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.studies.service import Studies
+from app.tolerances.schemas import ToleranceAnalysis
 from app.worksheets.importing.service import Imports
 from app.worksheets.service import Worksheets
 

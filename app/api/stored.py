@@ -12,10 +12,10 @@ from fastapi.responses import FileResponse
 from starlette.datastructures import Headers
 from starlette.types import Message, Receive, Scope, Send
 
-from app.api import problems
-from app.api.attachments import is_at_hand, unchanged
-from app.api.problem_kinds import REBUILDING
 from app.api.waiting import finished
+from app.http import problems
+from app.http.attachments import is_at_hand, unchanged
+from app.http.problem_kinds import REBUILDING
 from app.jobs.service import Jobs
 from app.schemas.problems import Responses, refusals
 from app.solids.healing import Healing, other_bytes

@@ -8,7 +8,7 @@ from app.approvals.errors import OutOfOrder, SamePrincipal
 from app.designs.releases import last_of
 from app.identity.acting import Principal, Role
 from app.identity.errors import RoleNeeded
-from app.schemas.approvals import ORDER, ApprovalState, Step
+from app.schemas.approval_steps import ORDER, ApprovalState, Step
 from app.storage.tables import ApprovalRow, RevisionRow
 
 ROLES: dict[Step, Role] = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.brought import repository
-from app.schemas.brought import BroughtParameter, ModelOrigin
+from app.brought.schemas import BroughtParameter, ModelOrigin
 from app.storage.database import Database
 from cad.brought import description_of
 

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import click
 
-from app import server
 from app.assembly import NETWORK, SHEETS
 from app.calculations.assembly import PRELOAD
 from app.catalogue.finding import find_templates
 from app.cli.keys import asks_for_keys
+from app.http import server
 from app.main import create_app
 from app.plain import JsonObject
 from app.settings import Settings

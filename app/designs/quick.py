@@ -14,10 +14,10 @@ from sqlalchemy.orm import Session
 from app.calculations.cost import is_quick as is_quick_template
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, views
+from app.designs.bodies import LONGEST_NOTE
 from app.designs.document import merge
-from app.designs.schemas import LONGEST_NOTE
+from app.designs.schemas.designs import Design
 from app.designs.service import Designs, Draft, matches
-from app.schemas.designs import Design
 from app.storage.database import Unit
 from app.storage.idempotency import Once
 from app.storage.identity import now

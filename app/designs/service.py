@@ -20,6 +20,7 @@ from app.designs.news import note_revision
 from app.designs.reading import read_document, resolved
 from app.designs.recent import Prepared, Recent
 from app.designs.repository import Written
+from app.designs.schemas.designs import Proposal
 from app.designs.starting import starts
 from app.designs.stored_solids import analysed, built
 from app.designs.variants import stored as variants
@@ -29,7 +30,6 @@ from app.designs.variants.together import Available
 from app.jobs.service import Jobs
 from app.plain import JsonObject, Raw
 from app.reference import Reference
-from app.schemas.designs import Proposal
 from app.solids.ages import renew
 from app.storage.database import Database, Unit
 from app.storage.idempotency import Once

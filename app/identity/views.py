@@ -5,8 +5,8 @@ from __future__ import annotations
 from app.identity import usage
 from app.identity.acting import ROLES, Principal
 from app.identity.limits import Limits
+from app.identity.schemas import principals as schemas
 from app.identity.usage import Used
-from app.schemas import identity as schemas
 from app.storage.tables import ApiKeyRow, PrincipalRow
 
 

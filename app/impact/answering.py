@@ -10,8 +10,8 @@ from app.designs.network import LIMITS, limits_of
 from app.impact.comparing import Difference, difference
 from app.impact.outcome import Outcome
 from app.impact.ranking import worst_first
+from app.impact.schemas import DesignImpact, StepUse, UpgradeRefused
 from app.impact.task import Batch, DesignAt
-from app.schemas.impact import DesignImpact, StepUse, UpgradeRefused
 from templates.core.errors import Fault
 from templates.core.language.template import Template
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.impact.outcome import Outcome, is_temperature
+from app.impact.schemas import MarginLost, OutputMoved, ParameterMoved, VerdictMoved
 from app.reference import Reference
 from app.schemas.answers import Quantity
-from app.schemas.impact import MarginLost, OutputMoved, ParameterMoved, VerdictMoved
 from templates.core.arrays import Array
 from templates.core.units.units import Value, compatible, unit
 

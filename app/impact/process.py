@@ -14,11 +14,11 @@ from app.impact.alone import outcome_alone
 from app.impact.answering import impact_of
 from app.impact.forms import Form, Quantities, form_of
 from app.impact.outcome import Outcome
+from app.impact.schemas import DesignImpact
 from app.impact.solids import Solids
 from app.impact.task import Batch, DesignAt, upgraded
 from app.impact.together import Together
 from app.reference import Reference
-from app.schemas.impact import DesignImpact
 from templates.core.arrays import Array
 from templates.core.progress import report
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from app.schemas.impact import DesignImpact, VerdictMoved
+from app.impact.schemas import DesignImpact, VerdictMoved
 
 NO_LONGER_MET, NOT_MET, REFUSED, OPEN, MOVED, UNKNOWN = range(6)
 

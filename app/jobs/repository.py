@@ -17,10 +17,10 @@ from sqlalchemy.orm import Session
 
 from app.identity.acting import ACTING
 from app.jobs.job import Job
+from app.jobs.schemas import State
 from app.jobs.turns import ALL_KINDS, LANES, UNFINISHED, Lane, next_turn
 from app.observation import logs
 from app.plain import JsonObject
-from app.schemas.jobs import State
 from app.storage.clock import operated, present
 from app.storage.identity import new_id, now
 from app.storage.locks import lock

@@ -24,8 +24,8 @@ from app.jobs.events import Events
 from app.jobs.job import FINAL, Job
 from app.jobs.leases import Leases
 from app.jobs.progress import ProgressFollower
+from app.jobs.schemas import State
 from app.plain import JsonObject
-from app.schemas.jobs import State
 from app.settings import Settings
 from app.storage.clock import operated
 from app.storage.database import Database

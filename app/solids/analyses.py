@@ -8,7 +8,6 @@ from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
-from app.schemas.analyses import Analysis
 from app.schemas.answers import Version
 from app.solids import analysis_rows as repository
 from app.solids import rows
@@ -18,6 +17,7 @@ from app.solids.builds import Builds
 from app.solids.finding import Analysing, bore_of, is_stored, shaft_of
 from app.solids.models import FAILURES, File
 from app.solids.questions import Question, under_load
+from app.solids.schemas.analyses import Analysis
 from app.solids.shapes import shape_of
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database

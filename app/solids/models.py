@@ -11,10 +11,10 @@ from sqlalchemy.orm import Session
 from app.catalogue.catalogues import Catalogues
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.schemas.answers import Shown, Version
-from app.schemas.solids import Build, BuildUse, Verification
 from app.solids import measures, rows
 from app.solids.ages import is_fresh, renew
 from app.solids.builds import Builds
+from app.solids.schemas.models import Build, BuildUse, Verification
 from app.solids.stated import statements
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database

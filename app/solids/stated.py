@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.schemas.solids import Stated
+from app.solids.schemas.models import Stated
 from cad.statements import UNITS, Value, compared, read_statements
 
 LONGEST = 200

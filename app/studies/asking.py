@@ -12,11 +12,11 @@ from app.designs.net import Net
 from app.designs.slopes import Local
 from app.plain import Raw
 from app.reference import Reference
+from app.studies.bodies import MOST_ROWS, StudyIn, Vary
 from app.studies.methods.points import Grid, LatinHypercube, Points, Sobol
 from app.studies.methods.search import scanned
 from app.studies.methods.sensitivity import MorrisPoints, SobolPoints
 from app.studies.methods.space import Interval, Space, Values, Variable
-from app.studies.schemas import MOST_ROWS, StudyIn, Vary
 from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.units.quantity import read
 

@@ -8,14 +8,14 @@ import numpy as np
 
 from app.calculations.steps import calling
 from app.designs import repository as designs
-from app.designs.schemas import LONGEST_NOTE
+from app.designs.bodies import LONGEST_NOTE
 from app.designs.service import Designs
 from app.plain import JsonObject
-from app.schemas.studies import StudyResult
 from app.storage.idempotency import Once
+from app.studies.bodies import StudyIn
 from app.studies.of_variant import document_of
 from app.studies.running import Parts, Run
-from app.studies.schemas import StudyIn
+from app.studies.schemas import StudyResult
 from app.studies.setting_aside import words
 from app.studies.stored import PLACE
 from templates.core.units.units import unit

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.schemas.studies import StudyResult, Trade
 from app.studies.archive import AnyArray
 from app.studies.asking import directions
 from app.studies.building import Building
 from app.studies.finding import MOST_CONFIRMED, front, ranked, signed
 from app.studies.optimising import optimised
 from app.studies.running import Run
+from app.studies.schemas import StudyResult, Trade
 from app.studies.sensitivities import Shares, sensitivities
 from app.studies.shown import rows_found
 from app.studies.stored import OUTPUT, PLACE, Stored

@@ -12,7 +12,7 @@ from app.designs.variant_sheets.grid import MOST_FAULTS, refuse
 from app.plain import Raw
 from app.reference import Reference
 from app.studies.asking import single, too_long
-from app.studies.schemas import MOST_ROWS, MOST_VARIED
+from app.studies.bodies import MOST_ROWS, MOST_VARIED
 from templates.core.arrays import Array
 from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.units.quantity import read

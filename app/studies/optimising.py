@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.schemas.studies import Best, StudyResult, Trade
 from app.studies.methods.confirming import Round
 from app.studies.running import Run
+from app.studies.schemas import Best, StudyResult, Trade
 from app.studies.searching import Outcome, Promised, Search, Slice, searched
 from app.studies.shown import quantities, rows_found
 from app.studies.stored import CONFIRM, EXPLORE, PLACE, Stored

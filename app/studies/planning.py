@@ -13,10 +13,10 @@ from app.designs.net import Table
 from app.plain import JsonObject
 from app.reference import Reference
 from app.studies.asking import Asked
+from app.studies.bodies import MOST_BUILT, MOST_ROWS
 from app.studies.chunks import Levels, called, placed
 from app.studies.estimating import estimated
 from app.studies.given import Rows, given_rows
-from app.studies.schemas import MOST_BUILT, MOST_ROWS
 from app.studies.setting_aside import relations_at
 from app.studies.signs import criterion_of
 from app.studies.solids_needed import counted

@@ -21,7 +21,7 @@ from app.designs.row_refusals import refusal_of
 from app.designs.rows_needed import needs, varying
 from app.designs.subjects import subjects
 from app.reference import Reference
-from app.studies.schemas import StudyIn
+from app.studies.bodies import StudyIn
 from cad.model import CadModel
 from cad.regenerate import as_text
 from templates.core.arrays import Array, Mask

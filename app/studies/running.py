@@ -24,7 +24,6 @@ from app.designs import repository as designs
 from app.designs.document import Document
 from app.jobs.service import Completion, Job, JobContext, JobFailed, JobRests, Jobs
 from app.plain import JsonObject
-from app.schemas.studies import StudyResult
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, CannotRebuild
@@ -35,6 +34,7 @@ from app.studies.chunks import Chunk, Lacking, calculated, explored
 from app.studies.finding import MOST_FRONT
 from app.studies.of_variant import document_of
 from app.studies.planning import Plan
+from app.studies.schemas import StudyResult
 from app.studies.solid_making import SolidMaking, StudySolids
 from app.studies.solids_needed import MOST_SOLIDS, NEEDS_SOLIDS
 from app.studies.stored import Stored

@@ -10,19 +10,19 @@ from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository as designs
+from app.designs.bodies import LONGEST_NOTE
 from app.designs.document import Document
 from app.designs.graph import build_graph
-from app.designs.schemas import LONGEST_NOTE
 from app.designs.service import Designs, Saved
 from app.designs.variant_sheets.reading import Units
 from app.designs.variant_sheets.units import units_of
 from app.identity.audit import record
 from app.identity.usage import note_bytes
 from app.jobs.errors import JobFinished, JobNotFound
+from app.jobs.schemas import State
 from app.jobs.service import Jobs
 from app.plain import JsonObject
 from app.reference import Reference
-from app.schemas.jobs import State
 from app.solids.analyses import ANALYSIS
 from app.solids.models import BUILD
 from app.storage.artifacts import Artifacts
@@ -32,12 +32,12 @@ from app.storage.idempotency import Once
 from app.storage.tables import StudyRow
 from app.studies import repository
 from app.studies.archive import packed
+from app.studies.bodies import StudyIn
 from app.studies.given import Rows, columns_named
 from app.studies.measured import measured_in
 from app.studies.of_variant import document_of, within
 from app.studies.planning import Plan
 from app.studies.running import STUDY
-from app.studies.schemas import StudyIn
 from app.studies.setting_aside import relations_at, words
 from app.studies.stored import PLACE, Stored
 from app.studies.task import Task

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from app.schemas.answers import Quantity
-from app.schemas.studies import Best
 from app.studies.running import Run
+from app.studies.schemas import Best
 from app.studies.stored import OUTPUT, PLACE, Stored
 from templates.core.arrays import Integers
 from templates.core.judging.comparison import WORST_FIRST

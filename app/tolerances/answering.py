@@ -8,8 +8,8 @@ from math import ceil, log2
 import numpy as np
 
 from app.reference import Reference
-from app.schemas import tolerances as answers
 from app.schemas.answers import Quantity
+from app.tolerances import schemas as answers
 from app.tolerances import shares as indices
 from app.tolerances.analysis import Analysis, Findings
 from app.tolerances.criteria import Demanded

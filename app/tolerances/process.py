@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from app.designs.tasks import DesignTask
-from app.schemas.tolerances import ToleranceAnalysis
 from app.tolerances.analysis import Analysis
 from app.tolerances.answering import answer
-from app.tolerances.schemas import ToleranceIn
+from app.tolerances.bodies import ToleranceIn
+from app.tolerances.schemas import ToleranceAnalysis
 
 
 def analysed(task: DesignTask, revision: int, body: str) -> ToleranceAnalysis:

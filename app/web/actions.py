@@ -1,7 +1,7 @@
 """Actions of forms: each calls the REST interface, then shows the page with the result.
 
 Without a script in the browser these are all actions there are; with one, `static/design.js` saves by itself.
-`app.api.gate.guard` refuses a form of another site: a browser would send it without asking anyone.
+`app.http.guard` refuses a form of another site: a browser would send it without asking anyone.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from collections.abc import Mapping
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import JsonValue
 
-from app.api.gate.access import FORM_TOKEN
-from app.api.reading import FORM_TYPES, NotForm, check_type
+from app.designs.schemas.designs import Design, Proposals
+from app.http.access import FORM_TOKEN
+from app.http.strict_requests import FORM_TYPES, NotForm, check_type
 from app.presentation.typed import value_of
 from app.reference import Reference
-from app.schemas.designs import Design, Proposals
 from app.web.api import Api, Refused, TheApi, read
 from app.web.blocks import Refusal
 from app.web.declaring import change_of

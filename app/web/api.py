@@ -16,7 +16,7 @@ from fastapi import Depends, FastAPI, Request
 from pydantic import TypeAdapter
 from starlette.types import Message, Scope
 
-from app.api.gate.clients import TheClient, from_inside
+from app.http.clients import TheClient, from_inside
 from app.schemas.problems import Problem
 from app.web.same_answers import Same, same
 

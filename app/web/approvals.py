@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.schemas.approvals import Approvals, CommentList
+from app.approvals.schemas import Approvals, CommentList
 from app.web.api import Api
 
 ON_DESIGN = 10  # comments on the page of a design; that of a revision has all, page by page

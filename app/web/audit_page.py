@@ -7,8 +7,8 @@ from urllib.parse import urlencode
 
 from fastapi import APIRouter, Query, Request, Response
 
-from app.api.gate.roles import needs
-from app.schemas.audit import AuditHead, AuditList
+from app.http.roles import needs
+from app.identity.schemas.audit import AuditHead, AuditList
 from app.web.api import TheApi
 from app.web.rendering import show
 

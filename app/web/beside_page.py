@@ -13,9 +13,10 @@ from collections.abc import Mapping
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import JsonValue, TypeAdapter
 
-from app.schemas.designs import Design, DesignModel
-from app.schemas.jobs import Job
-from app.schemas.templates import CadModel, TemplateList, TemplateSummary
+from app.catalogue.schemas.templates import TemplateList, TemplateSummary
+from app.designs.schemas.designs import Design, DesignModel
+from app.jobs.schemas import Job
+from app.solids.schemas.models import CadModel
 from app.web.actions import AT_ONCE, forms_only
 from app.web.api import Api, Refused, TheApi
 from app.web.forms import fields

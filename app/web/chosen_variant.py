@@ -9,12 +9,12 @@ from urllib.parse import quote
 
 from fastapi import Request
 
+from app.designs.schemas.designs import Design
+from app.designs.schemas.variants import VariantDetail
 from app.presentation.criteria import Line, line
 from app.reports.content import Plot
 from app.reports.plots import drawn
 from app.schemas.answers import Accepted
-from app.schemas.designs import Design
-from app.schemas.variants import VariantDetail
 from app.web.api import Api, Refused, read
 from app.web.blocks import StepBlock
 from app.web.rendering import units_of

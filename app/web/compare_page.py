@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from fastapi import Request, Response
 
-from app.schemas.comparisons import Comparison
-from app.schemas.designs import Design, DesignList
+from app.designs.schemas.comparison import Comparison
+from app.designs.schemas.designs import Design, DesignList
 from app.web.api import Api, Refused, Scalar
 from app.web.rendering import show, units_of
 

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 
 from fastapi import Request
 
-from app.schemas.designs import Design, RevisionWorksheet
-from app.schemas.templates import CadModel, Template
+from app.catalogue.schemas.templates import Template
+from app.designs.schemas.designs import Design, RevisionWorksheet
+from app.solids.schemas.models import CadModel
 from app.web.api import Api, Scalar
 from app.web.rendering import units_of
 from app.web.same_answers import Same

@@ -9,9 +9,8 @@ from typing import NamedTuple
 from fastapi import Request, Response
 from markupsafe import Markup
 
-from app.api.gate.roles import routes_of
-from app.schemas.analyses import Analysis
-from app.schemas.designs import (
+from app.catalogue.schemas.templates import Template, TemplateList, TemplateSummary
+from app.designs.schemas.designs import (
     Design,
     ModelMeasurements,
     Preview,
@@ -20,12 +19,13 @@ from app.schemas.designs import (
     RevisionList,
     RevisionWorksheet,
 )
-from app.schemas.jobs import Job, JobList
-from app.schemas.networks import DesignNetwork
-from app.schemas.solid_fields import SolidField, SolidFieldList
-from app.schemas.templates import CadModel as Model
-from app.schemas.templates import Template, TemplateList, TemplateSummary
-from app.schemas.variants import VariantsOut
+from app.designs.schemas.network import DesignNetwork
+from app.designs.schemas.solid_fields import SolidField, SolidFieldList
+from app.designs.schemas.variants import VariantsOut
+from app.http.roles import routes_of
+from app.jobs.schemas import Job, JobList
+from app.solids.schemas.analyses import Analysis
+from app.solids.schemas.models import CadModel as Model
 from app.web import sheet
 from app.web.api import Api, Scalar
 from app.web.approvals import ON_DESIGN, approval_of, comments_of

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from app.designs.schemas.designs import Revision
 from app.presentation import numbers
 from app.schemas.answers import Answer
-from app.schemas.designs import Revision
 
 
 class Difference(NamedTuple):

@@ -17,9 +17,9 @@ from urllib.parse import parse_qsl
 from fastapi import Request
 from pydantic import JsonValue, TypeAdapter
 
-from app.api.reading import BodyTooLarge
+from app.designs.schemas.designs import Design
+from app.http.strict_requests import BodyTooLarge
 from app.presentation.typed import text_of, value_of
-from app.schemas.designs import Design
 
 OPTIONS = ("level", "tolerance")  # of a step, beside its inputs
 LIMITS = "limits."  # of its criteria: how the rest of their controls' names begins

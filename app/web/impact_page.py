@@ -8,10 +8,10 @@ from urllib.parse import quote, urlencode
 
 from fastapi import APIRouter, Depends, Request, Response
 
+from app.catalogue.schemas.templates import Template
+from app.impact.schemas import DesignImpact, Impact
 from app.presentation import numbers
 from app.schemas.answers import Quantity
-from app.schemas.impact import DesignImpact, Impact
-from app.schemas.templates import Template
 from app.web.actions import forms_only
 from app.web.api import Api, Refused, TheApi, read
 from app.web.forms import fields

@@ -6,13 +6,13 @@ import re
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from app.schemas.jobs import Job
-from app.schemas.worksheet_imports import ImportedRegion, SheetImport
-from app.schemas.worksheets import Sheet
+from app.jobs.schemas import Job
 from app.web.api import Api, Refused, TheApi
 from app.web.multipart import forms_with_files, parts_of
 from app.web.rendering import go, show
 from app.web.routes import Id, Text
+from app.worksheets.schemas.imports import ImportedRegion, SheetImport
+from app.worksheets.schemas.worksheets import Sheet
 
 MISSED = (409, 415, 422, 429)
 """Errors that the form explains, because the user can correct them."""

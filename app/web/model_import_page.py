@@ -6,8 +6,8 @@ import re
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from app.schemas.brought import DrawingPrograms
-from app.schemas.jobs import Job
+from app.brought.schemas import DrawingPrograms
+from app.jobs.schemas import Job
 from app.web.api import Api, Refused, TheApi
 from app.web.multipart import forms_with_files, parts_of
 from app.web.rendering import go, show

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from fastapi import Request, Response
 
 from app.presentation.typed import text_of, value_of
-from app.schemas.analyses import Analysis, AnalysisList, ModelAnalysis
-from app.schemas.solids import Build
-from app.schemas.templates import CadModel as Model
 from app.schemas.values import Given
+from app.solids.schemas.analyses import Analysis, AnalysisList, ModelAnalysis
+from app.solids.schemas.models import Build
+from app.solids.schemas.models import CadModel as Model
 from app.web import sheet
 from app.web.api import Api, Refused
 from app.web.rendering import show, units_of

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 
+from app.designs.schemas.designs import ModelMeasurements, Preview, RevisionWorksheet
+from app.designs.schemas.network import DesignNetwork
 from app.presentation import numbers
-from app.schemas.designs import ModelMeasurements, Preview, RevisionWorksheet
-from app.schemas.networks import DesignNetwork
 
 
 def names_json(network: DesignNetwork, values: Mapping[str, str]) -> str:

@@ -13,9 +13,9 @@ from urllib.parse import quote, urlencode
 from fastapi import Request, Response
 from pydantic import JsonValue
 
+from app.catalogue.schemas.library import LibraryTable
+from app.catalogue.schemas.templates import Template
 from app.presentation.typed import value_of
-from app.schemas.library import LibraryTable
-from app.schemas.templates import Template
 from app.web import sheet
 from app.web.api import Api
 from app.web.blocks import Refusal

@@ -9,7 +9,7 @@ from urllib.parse import urlencode
 from fastapi import Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
-from app.api.gate.guard import PAGE_POLICY
+from app.http.guard import PAGE_POLICY
 from app.identity.acting import acting
 from app.presentation.environment import environment
 from app.presentation.units import System

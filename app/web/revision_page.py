@@ -6,7 +6,7 @@ import asyncio
 
 from fastapi import Request, Response
 
-from app.schemas.designs import Design, RevisionWorksheet
+from app.designs.schemas.designs import Design, RevisionWorksheet
 from app.web.api import Api
 from app.web.approvals import approval_of, comments_of
 from app.web.blocks import models_of, steps_of

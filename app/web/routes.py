@@ -9,11 +9,11 @@ from urllib.parse import quote, urlencode
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
+from app.catalogue.schemas.faults import FaultList
+from app.catalogue.schemas.templates import TemplateList, TemplateVersions
+from app.designs.schemas.designs import Design, DesignList, Explanation, ModelMeasurements, State
+from app.designs.schemas.labels import TagList
 from app.presentation.criteria import line
-from app.schemas.catalogue import FaultList
-from app.schemas.designs import Design, DesignList, Explanation, ModelMeasurements, State
-from app.schemas.labels import TagList
-from app.schemas.templates import TemplateList, TemplateVersions
 from app.web import plotly
 from app.web.api import Api, Refused, TheApi
 from app.web.compare_page import Asked, compare_page

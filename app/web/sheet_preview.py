@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from pydantic import JsonValue
 
+from app.designs.schemas.designs import Design, DesignList, DesignSummary, Preview
 from app.presentation import numbers
-from app.schemas.designs import Design, DesignList, DesignSummary, Preview
-from app.schemas.worksheets import Sheet, SheetCheck
 from app.web.api import Api, Refused, read
+from app.worksheets.schemas.worksheets import Sheet, SheetCheck
 
 OFFERED = 50  # designs, newest first
 AT_ONCE = {"Prefer": "wait=5"}

@@ -13,11 +13,11 @@ from fastapi import APIRouter, Depends, Path, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheIdentity, services_of
-from app.api.gate.access import SIGN_IN
-from app.api.gate.roles import needs, public
+from app.http.access import SIGN_IN
+from app.http.roles import needs, public
 from app.identity.errors import NotSignedIn
 from app.identity.keys import key_prefix
-from app.schemas.identity import Key, KeyList, Me, NewKey
+from app.identity.schemas.principals import Key, KeyList, Me, NewKey
 from app.web.actions import forms_only
 from app.web.api import Api, TheApi
 from app.web.forms import fields

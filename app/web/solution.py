@@ -8,11 +8,11 @@ from urllib.parse import quote
 
 import httpx
 
+from app.calculations.schemas.evaluations import Jump, Root, TracedCurve
 from app.presentation import numbers
 from app.presentation.units import System
 from app.reference import Reference
 from app.reports.charts import Chart, Series, svg
-from app.schemas.evaluations import Jump, Root, TracedCurve
 from app.web.api import Api, Refused
 
 PATIENT = {"Prefer": "wait=5"}  # the page shows how a longer calculation goes on

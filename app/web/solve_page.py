@@ -9,12 +9,12 @@ from urllib.parse import urlencode
 
 from fastapi import Request, Response
 
+from app.designs.schemas.designs import Design
+from app.designs.schemas.network import DesignNetwork
+from app.designs.schemas.solution import DesignRoot, DesignSolution
 from app.presentation import numbers
 from app.presentation.typed import value_of
 from app.schemas.answers import Accepted
-from app.schemas.designs import Design
-from app.schemas.networks import DesignNetwork
-from app.schemas.solve import DesignRoot, DesignSolution
 from app.web.api import Api, read
 from app.web.places import PlaceOption, outputs, related, suggested, times, varied
 from app.web.rendering import go, show, units_of

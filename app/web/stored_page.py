@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fastapi import Request, Response
 
-from app.schemas.designs import Design, Revision
+from app.designs.schemas.designs import Design, Revision
 from app.web.api import Api, Refused
 from app.web.rendering import show
 from cad.export import MEDIA_TYPES

@@ -8,14 +8,14 @@ from dataclasses import dataclass, field, replace
 from fastapi import Request, Response
 from pydantic import JsonValue
 
+from app.designs.schemas.designs import Design, Preview, RevisionWorksheet
+from app.designs.schemas.network import DesignNetwork, NetworkName
+from app.designs.schemas.variants import VariantsOut
 from app.designs.variants.names import BASE, natural
 from app.presentation.typed import text_of, value_of
 from app.reference import Reference
 from app.schemas.criteria import Criterion
-from app.schemas.designs import Design, Preview, RevisionWorksheet
-from app.schemas.networks import DesignNetwork, NetworkName
-from app.schemas.studies import StudyEstimate
-from app.schemas.variants import VariantsOut
+from app.studies.schemas import StudyEstimate
 from app.web.api import Api, Refused
 from app.web.places import outputs, present, set_aside, suggested, varied
 from app.web.rendering import show

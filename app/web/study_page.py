@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 from fastapi import Request, Response
 
+from app.designs.schemas.designs import Design, RevisionWorksheet
 from app.presentation import numbers
 from app.reference import Reference
 from app.schemas.criteria import Criterion
-from app.schemas.designs import Design, RevisionWorksheet
-from app.schemas.studies import Best, Index, Study, StudyList, StudyRows
+from app.studies.schemas import Best, Index, Study, StudyList, StudyRows
 from app.web.api import Api, Scalar
 from app.web.rendering import show, units_of
 

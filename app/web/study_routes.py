@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from app.schemas.studies import Study, StudyEstimate
+from app.studies.schemas import Study, StudyEstimate
 from app.web.actions import AT_ONCE, forms_only, tag_of
 from app.web.api import Api, Refused, TheApi, read
 from app.web.forms import fields

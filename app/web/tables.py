@@ -5,8 +5,8 @@ from __future__ import annotations
 from fastapi import APIRouter
 from starlette.concurrency import run_in_threadpool
 
-from app.api.gate.roles import needs
-from app.api.reading import StrictRoute
+from app.http.roles import needs
+from app.http.strict_requests import StrictRoute
 from app.schemas.tables import PastedTable, ReadTable
 from app.web.pasting import paste, refused
 from templates.core.errors import InvalidInputs

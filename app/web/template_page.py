@@ -7,19 +7,19 @@ from collections.abc import Mapping
 from fastapi import Request, Response
 from pydantic import JsonValue
 
+from app.calculations.schemas.evaluations import CalculatedBy, Output, Worksheet
+from app.catalogue.schemas.declarations import properties
+from app.catalogue.schemas.templates import Accuracy, Template, TemplateVersions
 from app.presentation.criteria import line
 from app.presentation.typed import value_of
 from app.reports.pictures import pictures
-from app.schemas.declared import properties
-from app.schemas.evaluations import CalculatedBy, Output, Worksheet
-from app.schemas.templates import Accuracy, Template, TemplateVersions
-from app.schemas.worksheets import Sheet
 from app.web import sheet
 from app.web.accuracy import table
 from app.web.api import Api, Refused, read
 from app.web.forms import OPTIONS, option_of
 from app.web.limits import is_limit, library, limit_fields, limits_of, with_rows
 from app.web.rendering import show, units_of
+from app.worksheets.schemas.worksheets import Sheet
 
 ABOUT = {"units"}  # of the address, beside the inputs
 AT_ONCE = {"Prefer": "wait=2"}  # the page shows how the rest goes on

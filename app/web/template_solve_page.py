@@ -10,11 +10,11 @@ import numpy as np
 from fastapi import Request, Response
 from pydantic import JsonValue
 
+from app.calculations.schemas.evaluations import Solution
+from app.catalogue.schemas.declarations import Declared, properties
+from app.catalogue.schemas.templates import Template
 from app.presentation.typed import text_of, value_of
 from app.schemas.answers import Accepted
-from app.schemas.declared import Declared, properties
-from app.schemas.evaluations import Solution
-from app.schemas.templates import Template
 from app.web.api import Api, read
 from app.web.places import PlaceOption, suggested
 from app.web.rendering import go, show, units_of

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from fastapi import Request, Response
 
+from app.designs.schemas.designs import Design
 from app.presentation import bars
 from app.schemas.answers import Quantity
-from app.schemas.designs import Design
-from app.schemas.tolerances import OutputScatter, ToleranceAnalysis, Yield
+from app.tolerances.schemas import OutputScatter, ToleranceAnalysis, Yield
 from app.web.api import Api, Refused, read
 from app.web.rendering import show, units_of
 from templates.core.units.tolerance import is_toleranced

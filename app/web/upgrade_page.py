@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 from fastapi import APIRouter, Depends, Request, Response
 
+from app.calculations.schemas.evaluations import Output
+from app.catalogue.schemas.templates import Template
+from app.designs.schemas.designs import Design, Preview, Revision
 from app.presentation import numbers
 from app.presentation.criteria import line
-from app.schemas.analyses import AnalysisOutput
 from app.schemas.answers import Quantity
-from app.schemas.designs import Design, Preview, Revision
-from app.schemas.evaluations import Output
-from app.schemas.templates import Template
+from app.solids.schemas.analyses import AnalysisOutput
 from app.web.actions import AT_ONCE, forms_only, tag_of
 from app.web.api import Api, Refused, TheApi
 from app.web.forms import Patch, fields

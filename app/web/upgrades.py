@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from app.schemas.templates import Template, TemplateVersions
+from app.catalogue.schemas.templates import Template, TemplateVersions
 from app.web.api import Api
 
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 from fastapi import APIRouter, Depends, Request, Response
 from starlette.concurrency import run_in_threadpool
 
+from app.designs.schemas.designs import Design
+from app.designs.schemas.network import DesignNetwork
 from app.designs.variant_sheets.grid import Grid
 from app.designs.variant_sheets.service import Kind, read_sheet
 from app.presentation.spreadsheets import XLSX
-from app.schemas.designs import Design
-from app.schemas.networks import DesignNetwork
 from app.schemas.problems import Fault
 from app.web.api import Api, Refused, TheApi
 from app.web.design_page import design_page

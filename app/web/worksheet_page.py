@@ -8,12 +8,19 @@ from dataclasses import dataclass
 
 from fastapi import Request, Response
 
-from app.schemas.templates import TemplateList
-from app.schemas.worksheets import Sheet, SheetCheck, SheetFault, SheetLine, SheetList, SheetSummary
+from app.catalogue.schemas.templates import TemplateList
 from app.web.api import Api, read
 from app.web.rendering import show
 from app.web.sheet_preview import offered, tried_in
 from app.web.stages import begins_next, newest_released, stages
+from app.worksheets.schemas.worksheets import (
+    Sheet,
+    SheetCheck,
+    SheetFault,
+    SheetLine,
+    SheetList,
+    SheetSummary,
+)
 from templates.examples.listing import examples
 
 EQUALS = "<mo>&#x0003D;</mo>"  # in MathML

@@ -8,14 +8,14 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Query, Request, Response
 from pydantic import JsonValue
 
-from app.api.gate.roles import needs
-from app.schemas.worksheets import Sheet
+from app.http.roles import needs
 from app.web.actions import forms_only
 from app.web.api import Api, Refused, TheApi
 from app.web.forms import fields
 from app.web.rendering import go
 from app.web.routes import Id, Text
 from app.web.worksheet_page import Unsaved, editor_page, list_page, start_page
+from app.worksheets.schemas.worksheets import Sheet
 from templates.examples.listing import examples
 
 router = APIRouter(include_in_schema=False)

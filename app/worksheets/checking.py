@@ -9,10 +9,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
 
 from app.calculations import rendering
+from app.catalogue.schemas.templates import Template as TemplateAnswer
 from app.presentation.prose import html_of
-from app.schemas.templates import Template as TemplateAnswer
-from app.schemas.worksheets import SheetCheck, SheetFault, SheetLine, SheetName, SheetTest
 from app.worksheets.examining import LONGEST_TITLE, title_of
+from app.worksheets.schemas.worksheets import SheetCheck, SheetFault, SheetLine, SheetName, SheetTest
 from templates.core.errors import Fault, InvalidInputs, TemplateError
 from templates.core.judging.judgement import Judgement, sentence
 from templates.core.language.evaluate import Evaluation, evaluate

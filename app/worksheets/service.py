@@ -22,13 +22,13 @@ from app.storage.identity import now
 from app.storage.tables import WorksheetVersionRow as Row
 from app.workers.errors import DeadlineExceeded
 from app.worksheets import repository
+from app.worksheets.bodies import ReviewIn, SheetIn, SheetPatch, WithdrawIn
 from app.worksheets.errors import IdTaken, OtherText, OutOfOrder, OwnReview, StaleWorksheet, TestsFailed
 from app.worksheets.examining import Examined, Tried, examined, tried
 from app.worksheets.importing.record import ImportRecord, require_resolved
 from app.worksheets.naming import is_same_person, require_free, signed
 from app.worksheets.published import Published
 from app.worksheets.repository import RELEASED
-from app.worksheets.schemas import ReviewIn, SheetIn, SheetPatch, WithdrawIn
 
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")

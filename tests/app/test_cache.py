@@ -12,8 +12,8 @@ from app.catalogue.finding import find_templates
 from app.designs import memory as designs
 from app.designs.graph import Block
 from app.designs.memory import Memory
+from app.designs.schemas.designs import RevisionStep
 from app.designs.worksheet import _evaluated
-from app.schemas.designs import RevisionStep
 from templates.core.language.evaluate import evaluate
 
 MIB = 2**20

@@ -3,7 +3,7 @@
 import pytest
 from serving import API
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 
 EVALUATE = f"{API}/templates/oil_film/versions/1/evaluate"
 GENERAL = {"units": "si"}
@@ -24,7 +24,7 @@ def _lasting(answer):
 @pytest.fixture
 def served_generally(monkeypatch):
     """Count the requests that FastAPI's router answers."""
-    from app.api.routes.calculations import LargeRoute
+    from app.calculations.routes.evaluate import LargeRoute
 
     seen = []
     shortcut = LargeRoute.shortcut

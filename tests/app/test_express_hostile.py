@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from serving import API, HANG
 
 from app.api import express
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 
 PLAIN, AS_JSON = f"{API}/templates/oil_film/versions/1/evaluate", {"Content-Type": "application/json"}
 CHANGING = {"date", "x-request-id", "content-length"}

@@ -4,7 +4,7 @@ import pytest
 from components import ON_POSTGRESQL
 from serving import API, moody
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 
 DESIGNS = f"{API}/designs"
 GENERAL = {"Cookie": "theme=dark"}

@@ -6,7 +6,7 @@ import pytest
 from pydantic import BaseModel
 from serving import API, created, patched
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 from app.designs import drives, stored_results
 from app.web import same_answers, sections
 from app.web.same_answers import KEPT, same

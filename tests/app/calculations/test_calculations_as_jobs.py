@@ -13,8 +13,8 @@ from test_damage import delete, flip, truncate
 from test_workers import alive, eventually
 
 from app.brought.programs import assembled
+from app.calculations.bodies import EvaluateIn, SolveIn
 from app.calculations.operations import LARGE
-from app.calculations.schemas import EvaluateIn, SolveIn
 from app.cli.main import main
 from app.client import Client, Problem
 from app.jobs import repository

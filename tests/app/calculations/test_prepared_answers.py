@@ -5,9 +5,9 @@ import re
 import pytest
 from pydantic_core import to_json
 
+from app.calculations.bodies import OIL_FILM, EvaluateIn
 from app.calculations.cost import is_quick
 from app.calculations.prepared import prepared
-from app.calculations.schemas import OIL_FILM, EvaluateIn
 from app.calculations.service import run_evaluate
 from app.catalogue.finding import find_templates
 from templates.core.errors import InvalidInputs
