@@ -16,7 +16,6 @@ from fastapi_offline import FastAPIOffline
 from app.api.express import Express
 from app.approvals.routes import router as approvals
 from app.assembly import assemble
-from app.brought.routes import router as brought_models
 from app.calculations.routes.curves import router as curves
 from app.calculations.routes.evaluate import router as calculations
 from app.calculations.routes.evaluate import worksheets
@@ -45,14 +44,15 @@ from app.http.heads import HeadLimit
 from app.http.openapi import describe_interface, operation_id
 from app.http.pace import Pace
 from app.http.problems import StoppingAnswer
+from app.http.server import on_stop_signal
 from app.http.strict_requests import BodyLimit, BodyTooLarge, HeadTooLarge, HttpError
 from app.http.timeouts import BodyTime
 from app.identity.errors import IdentityError
 from app.identity.routes.audit import router as audit
 from app.identity.routes.principals import router as principals
 from app.impact.routes import router as impact
+from app.imported_models.routes import router as brought_models
 from app.jobs.routes import router as jobs
-from app.jobs.shutdown import on_stop_signal
 from app.observation.routes import router as health
 from app.reports.routes import router as reports
 from app.schemas.problems import PROBLEM_CONTENT

@@ -16,7 +16,6 @@ from app.api.services import Services
 from app.api.threads import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import Approving
-from app.brought.service import ModelImports
 from app.calculations.steps import Caller, call_as
 from app.catalogue.catalogues import Catalogues
 from app.designs.asking import Asking
@@ -31,6 +30,7 @@ from app.http.clients import TheClient
 from app.http.strict_requests import fingerprint
 from app.identity.service import Identity
 from app.impact.service import Impacts
+from app.imported_models.service import ModelImports
 from app.jobs.service import Jobs
 from app.observation.readiness import Readiness
 from app.presentation.units import System
@@ -38,8 +38,8 @@ from app.reports.paper import Press
 from app.reports.service import Reports
 from app.settings import Settings
 from app.solids.analyses import Analyses
-from app.solids.healing import Healing
 from app.solids.models import Models
+from app.solids.repair import Healing
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.idempotency import Once

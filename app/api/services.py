@@ -8,7 +8,6 @@ from app.api.answering import Answering
 from app.api.threads import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import Approving
-from app.brought.service import ModelImports
 from app.calculations.pool import CalculationPool
 from app.calculations.steps import Steps
 from app.catalogue.catalogues import Catalogues
@@ -23,14 +22,15 @@ from app.designs.variants.detail import VariantDetails
 from app.http.streams import Streams
 from app.identity.service import Identity
 from app.impact.service import Impacts
+from app.imported_models.service import ModelImports
 from app.jobs.service import Jobs
 from app.observation.readiness import Readiness
 from app.reports.paper import Press
 from app.reports.service import Reports
 from app.settings import Settings
 from app.solids.analyses import Analyses
-from app.solids.healing import Healing
 from app.solids.models import Models
+from app.solids.repair import Healing
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.studies.service import Studies

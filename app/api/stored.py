@@ -18,10 +18,10 @@ from app.http.attachments import is_at_hand, unchanged
 from app.http.problem_kinds import REBUILDING
 from app.jobs.service import Jobs
 from app.schemas.problems import Responses, refusals
-from app.solids.healing import Healing, other_bytes
+from app.solids.repair import Healing, other_bytes
 from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
-from app.storage.verified import Opened, stamp_of
+from app.storage.verification import Opened, stamp_of
 
 RETRY_AFTER = 2  # s
 GONE = 410

@@ -8,7 +8,7 @@ from typing import Annotated, Self
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, model_validator
 
 from app.schemas.approval_steps import Step
-from app.schemas.bounded import Bounded
+from app.schemas.bounds import Bounded
 from app.schemas.texts import BLANK
 
 LONGEST_TEXT = 4000  # letters of a comment or a reason

@@ -11,8 +11,8 @@ from sqlalchemy.orm import Session
 from app.approvals.bodies import CommentIn
 from app.approvals.schemas import Comment
 from app.designs import repository
-from app.identity.acting import acting
 from app.identity.audit import record
+from app.identity.principal import acting
 from app.storage.database import Database
 from app.storage.errors import NotFound
 from app.storage.idempotency import Once

@@ -11,9 +11,9 @@ from app.approvals.rules import next_step, require_principal, require_turn, stat
 from app.approvals.schemas import Approvals, Present, Released, Signed
 from app.designs import repository
 from app.designs.releases import NEWEST_RELEASED, newest_released
-from app.identity.acting import acting
 from app.identity.audit import record
 from app.identity.errors import RoleNeeded
+from app.identity.principal import acting
 from app.schemas.approval_steps import Step
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import ConfigDict, Field, StringConstraints
 
 from app.plain import JsonObject
-from app.schemas.bounded import Bounded, at_most
+from app.schemas.bounds import Bounded, at_most
 from app.schemas.values import Given, Limits
 
 Text = Annotated[str, StringConstraints(max_length=100)]

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
-from app.brought.schemas import BroughtParameter
 from app.cli.connections import connected, data_option, url_option
+from app.imported_models.schemas import BroughtParameter
 from templates.core.errors import plain
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import uuid
 
-from app.brought.schemas import DrawingProgram, DrawingPrograms, ModelOrigin
 from app.client.exchange import BASE, Exchange, Progress, Request, answered, done, get, job_of
 from app.client.files import File
 from app.client.problem import checked
+from app.imported_models.schemas import DrawingProgram, DrawingPrograms, ModelOrigin
 from app.solids.schemas.models import CadModel
 
 _PATH = "/models"

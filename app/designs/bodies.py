@@ -22,7 +22,7 @@ from app.designs.document import (
     WrittenCriterion,
 )
 from app.designs.variants.names import MOST_VARIANTS, PLACE
-from app.schemas.bounded import Bounded
+from app.schemas.bounds import Bounded
 from app.schemas.values import FORMS, GIVEN, Given
 
 PAPER: JsonDict = {

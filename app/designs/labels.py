@@ -20,7 +20,7 @@ from app.designs.schemas.labels import MOST_TAGS, Labels, Tag, TagUse
 from app.designs.service import Designs, Saved
 from app.identity.audit import record
 from app.plain import JsonObject, Raw
-from app.schemas.bounded import Bounded
+from app.schemas.bounds import Bounded
 from app.storage.idempotency import Once
 from app.storage.identity import now
 from app.storage.tables import DesignRow, DesignTagRow, RevisionRow

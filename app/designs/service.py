@@ -13,12 +13,12 @@ from app.catalogue.catalogues import Catalogues
 from app.designs import repository
 from app.designs.automap import proposals
 from app.designs.calculate import Calculation, calculate
+from app.designs.calculation_cache import CalculationCache, Prepared
 from app.designs.document import Document, merge
 from app.designs.errors import StaleRevision
 from app.designs.graph import Graph, build_graph, raise_if
 from app.designs.news import note_revision
 from app.designs.reading import read_document, resolved
-from app.designs.recent import Prepared, Recent
 from app.designs.repository import Written
 from app.designs.schemas.designs import Proposal
 from app.designs.starting import starts
@@ -67,10 +67,14 @@ class Designs:
     """All changes of designs."""
 
     def __init__(
-        self, database: Database, jobs: Jobs, catalogues: Catalogues, recent: Recent | None = None
+        self,
+        database: Database,
+        jobs: Jobs,
+        catalogues: Catalogues,
+        calculation_cache: CalculationCache | None = None,
     ) -> None:
         self.database, self.jobs, self.catalogues = database, jobs, catalogues
-        self.recent = recent or Recent()
+        self.calculation_cache = calculation_cache or CalculationCache()
 
     def create(
         self, raw: Mapping[str, Raw], note: str | None, once: Once, action: str = "design.create"
@@ -204,7 +208,7 @@ class Designs:
             bool(outcomes) and any(outcome.is_deferred for outcome in outcomes)
         )
         if pending and not calculation.deferred:
-            self.recent.keep(plain, Prepared(document, calculation))
+            self.calculation_cache.keep(plain, Prepared(document, calculation))
         written = Written(plain, stored, variants.models(calculation, outcomes), state, note, action)
         return Draft(written, _kind(calculation.graph, is_deferred), is_deferred, begun_steps())
 

@@ -22,7 +22,7 @@ from app.designs.tasks import DesignTask
 from app.designs.variants.table import applied
 from app.reference import Reference
 from app.schemas.answers import Quantity, Shown, Values, Warning
-from app.schemas.bounded import Bounded, at_most
+from app.schemas.bounds import Bounded, at_most
 from app.schemas.criteria import Word
 from app.schemas.values import Given
 from templates.core.errors import Fault, FaultyText, InvalidInputs

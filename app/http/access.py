@@ -11,10 +11,10 @@ from fastapi import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.http.clients import PRINCIPAL, is_inside
-from app.identity.acting import ANONYMOUS, Principal, acting_as
 from app.identity.door import Door
 from app.identity.errors import IdentityError, KeyInAddress
 from app.identity.limits import LimitReached
+from app.identity.principal import ANONYMOUS, Principal, acting_as
 from app.identity.rows import Guest
 from app.observation.secrets import LENGTH, MARK, holds_key
 from app.storage.errors import DatabaseUnavailable

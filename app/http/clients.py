@@ -13,7 +13,7 @@ from fastapi import Depends, Request
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.identity.acting import client_of
+from app.identity.principal import client_of
 from templates.core.errors import Fault, InvalidInputs
 
 HEADER, COOKIE = "Crankwright-Client", "crankwright_session"

@@ -11,7 +11,6 @@ from fastapi.exceptions import RequestValidationError
 from starlette.requests import ClientDisconnect
 
 from app.approvals import errors as approvals
-from app.brought.errors import ModelIdTaken
 from app.calculations.errors import InvalidBody, NoArray, TooManyValues
 from app.designs import errors as designs
 from app.http.guard import BadHost, CrossSite, HostNotAllowed
@@ -32,6 +31,7 @@ from app.http.timeouts import BodyTooSlow
 from app.identity import errors as identity
 from app.identity.limits import LimitReached
 from app.identity.oidc import ProviderRefused
+from app.imported_models.errors import ModelIdTaken
 from app.jobs import errors as jobs
 from app.reports.errors import Unprintable
 from app.storage import errors as storage

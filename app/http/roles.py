@@ -12,8 +12,8 @@ from fastapi import FastAPI, params
 from starlette.routing import BaseRoute, Mount, Route
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.identity.acting import ANONYMOUS, Role, acting
 from app.identity.errors import NotSignedIn, RoleNeeded
+from app.identity.principal import ANONYMOUS, Role, acting
 
 READING = frozenset({"GET", "HEAD", "OPTIONS"})
 OPEN_FOLDERS = frozenset({"/static", "/static-offline-docs"})

@@ -9,14 +9,17 @@ run the destructors of the geometry kernel.
 
 from __future__ import annotations
 
+import asyncio
 import faulthandler
 import logging
 import os
+import signal
 import socket
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from types import FrameType
@@ -33,7 +36,7 @@ from app.http.request_log import Observed, what_is_in_flight
 from app.observation import logs
 from app.settings import Settings
 from app.workers import family
-from app.workers.scheduling import answer_promptly
+from app.workers.priority import answer_promptly
 
 logger = logging.getLogger(__name__)
 
@@ -148,3 +151,28 @@ def _busy_threads() -> list[str]:
         if file.name not in _IDLE:
             busy.append(f"thread {thread.name} in {file.name}:{frame.f_lineno}")
     return busy
+
+
+@contextmanager
+def on_stop_signal(act: Callable[[], None]) -> Iterator[None]:
+    """Act at SIGINT and SIGTERM, then do what the server does; for use within its lifespan."""
+    if threading.current_thread() is not threading.main_thread():  # a server in a thread gets no signals
+        yield
+        return
+    loop = asyncio.get_running_loop()
+    previous = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+
+    def close(number: int, frame: FrameType | None) -> None:
+        loop.call_soon_threadsafe(act)  # not here: a handler may interrupt who holds the lock
+        handler = previous[signal.Signals(number)]
+        if callable(handler):
+            handler(number, frame)
+
+    for number, handler in previous.items():
+        if callable(handler):
+            signal.signal(number, close)
+    try:
+        yield
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)

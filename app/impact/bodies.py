@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import ConfigDict, Field, StringConstraints
 
 from app.designs.schemas.labels import MOST_TAGS, Tag
-from app.schemas.bounded import Bounded
+from app.schemas.bounds import Bounded
 
 MOST_SHOWN = 1000
 PRINTABLE = r"^[^\x00-\x1f\x7f]*$"

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 from sqlalchemy.orm import Session
 
 from app.identity import usage
-from app.identity.acting import BUILT_IN, acting
 from app.identity.audit import record
 from app.identity.errors import NotOwn
 from app.identity.limits import Limits as PrincipalLimits
+from app.identity.principal import BUILT_IN, acting
 from app.jobs import repository, turns
 from app.jobs.admission import admit
 from app.jobs.context import JobContext, note
@@ -102,7 +102,7 @@ class Jobs:
         if self._database.is_shared:
             self._leases.start()
         else:
-            self._dispatcher.give_back_all()
+            self._dispatcher.requeue_all()
         self._dispatcher.start(lanes or {})
         if self._database.is_shared:
             self._join_others()

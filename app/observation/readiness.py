@@ -20,7 +20,7 @@ from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import ArtifactsUnreachable
 from app.storage.tables import CounterRow
-from app.workers.started import why_silent_here
+from app.workers.choice import why_silent_here
 
 KEPT = 1.0  # for how long an answer is given again [s]
 PATIENCE = 2.0  # with the writer [s]

@@ -9,8 +9,8 @@ from functools import lru_cache
 from app.calculations.schemas.evaluations import Output, UsedInput
 from app.plain import Raw
 from app.presentation import numbers
+from app.presentation.input_text import text_of
 from app.presentation.numbers import in_line
-from app.presentation.typed import text_of
 from app.schemas.answers import Quantity, Shown, Values
 from app.solids.schemas.analyses import AnalysisOutput
 from templates.core.units.units import compatible, unit

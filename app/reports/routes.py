@@ -6,9 +6,11 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
+from pathlib import Path
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Header, Query, Request, Response
+from markupsafe import Markup
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import ExpensiveSteps, TheJobs, ThePress, TheReports, TheThreads, Units
@@ -21,11 +23,11 @@ from app.http.clients import TheClient
 from app.http.guard import PAGE_POLICY
 from app.http.strict_requests import StrictRoute
 from app.jobs.service import Jobs
+from app.presentation.environment import environment
 from app.presentation.spreadsheets import XLSX
 from app.reports import tables
 from app.reports.content import Report
 from app.reports.paper import Press
-from app.reports.screen import page
 from app.reports.service import Reports, tag
 from app.schemas.problems import Responses, RouteOptions, refusals
 from app.storage.errors import NotFound
@@ -233,3 +235,20 @@ def _wanted(what: str, kind: str | None, accept: str | None, kinds: Mapping[str,
         return kind
     weights = accepted_weights(accept)
     return max(kinds, key=lambda name: weights.get(kinds[name], 0.0))
+
+
+def display(formula: str) -> Markup:
+    """Return a formula of the report, which is MathML, set as in a line of its own."""
+    return Markup(formula.replace('display="inline"', 'display="block"', 1))
+
+
+jinja = environment(Path(__file__).with_name("pages"))
+jinja.filters["display"] = display
+
+
+def page(report: Report) -> str:
+    """Return a report as HTML."""
+    base = f"/api/v1/designs/{report.design}/revisions/{report.revision}"
+    return jinja.get_template("report.html").render(
+        report=report, units=report.units, path=f"{base}/report", base=base
+    )

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from app.approvals.schemas import Approval, Block, BlockStep
-from app.identity.acting import LOCAL
+from app.identity.principal import LOCAL
 from app.identity.schemas.principals import Author
 from app.presentation.units import System
 from app.reports.cells import clean

@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, cast
 from app.calculations.schemas.evaluations import Output, UsedInput
 from app.designs.schemas.designs import RevisionModel, RevisionStep, RevisionWorksheet
 from app.plain import Raw
+from app.presentation.input_text import text_of
 from app.presentation.spreadsheets import Value, harmless, put, without_illegal
-from app.presentation.typed import text_of
 from app.schemas.answers import Shown
 from app.solids.schemas.analyses import AnalysisOutput
 from templates.core.errors import FaultyText

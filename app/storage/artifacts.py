@@ -18,10 +18,9 @@ from io import BufferedReader
 from pathlib import Path
 from typing import Protocol
 
-from app.storage.durable import TEMPORARY, sync_folder, write_whole
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, ArtifactsUnreachable
-from app.storage.file_locks import OwnLock, SharedLock
-from app.storage.verified import Opened, Stamp, Verified, stamp_of
+from app.storage.files import TEMPORARY, OwnLock, SharedLock, sync_folder, write_whole
+from app.storage.verification import Opened, Stamp, Verified, stamp_of
 
 QUARANTINE = "quarantine"
 SHA256 = re.compile(r"[0-9a-f]{64}")
@@ -286,8 +285,7 @@ class ArtifactStore:
             os.replace(target, aside)
 
     def _unreadable(self, sha: str, file: BufferedReader, error: OSError) -> Exception:
-        """Return ArtifactDamaged if the disk cannot read the bytes back; any other error as it is.
-        """
+        """Return ArtifactDamaged if the disk cannot read the bytes back; any other error as it is."""
         if error.errno not in _FAILING_DISK:
             return error
         return self._set_aside(sha, stamp_of(file), f"the disk cannot read it ({error.strerror})")

@@ -11,7 +11,7 @@ from app.calculations.errors import InvalidBody
 from app.designs.bodies import LONGEST_NOTE
 from app.designs.document import CriterionName
 from app.plain import JsonObject
-from app.schemas.bounded import Bounded, at_most
+from app.schemas.bounds import Bounded, at_most
 from app.schemas.values import Given
 from app.studies.schemas import Method
 

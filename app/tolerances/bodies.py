@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import BeforeValidator, ConfigDict, Field, StringConstraints
 
 from app.designs.document import CriterionName, Word
-from app.schemas.bounded import Bounded, at_most
+from app.schemas.bounds import Bounded, at_most
 from app.tolerances.analysis import LEAST_POINTS, MOST_OUTPUTS, MOST_POINTS
 from app.tolerances.question import Question
 

@@ -15,7 +15,7 @@ from pydantic import JsonValue
 from app.designs.schemas.designs import Design, Proposals
 from app.http.access import FORM_TOKEN
 from app.http.strict_requests import FORM_TYPES, NotForm, check_type
-from app.presentation.typed import value_of
+from app.presentation.input_text import value_of
 from app.reference import Reference
 from app.web.api import Api, Refused, TheApi, read
 from app.web.blocks import Refusal

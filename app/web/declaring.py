@@ -9,7 +9,7 @@ from typing import TypeVar
 from pydantic import JsonValue
 
 from app.designs.schemas.designs import Design, DesignIteration
-from app.presentation.typed import text_of, value_of
+from app.presentation.input_text import text_of, value_of
 from app.solids.schemas.models import Analysable
 from app.web.blocks import ModelBlock, Refusal
 from app.web.forms import option_of

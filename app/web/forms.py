@@ -19,7 +19,7 @@ from pydantic import JsonValue, TypeAdapter
 
 from app.designs.schemas.designs import Design
 from app.http.strict_requests import BodyTooLarge
-from app.presentation.typed import text_of, value_of
+from app.presentation.input_text import text_of, value_of
 
 OPTIONS = ("level", "tolerance")  # of a step, beside its inputs
 LIMITS = "limits."  # of its criteria: how the rest of their controls' names begins

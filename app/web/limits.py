@@ -10,7 +10,7 @@ from pydantic import JsonValue
 from app.catalogue.schemas.declarations import Declared, properties
 from app.catalogue.schemas.library import LibraryRow, LibraryTable, LibraryTables
 from app.catalogue.schemas.templates import Template
-from app.presentation.typed import text_of, value_of
+from app.presentation.input_text import text_of, value_of
 from app.reference import Reference
 from app.schemas.values import Given
 from app.web.api import Api

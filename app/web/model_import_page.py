@@ -6,7 +6,7 @@ import re
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from app.brought.schemas import DrawingPrograms
+from app.imported_models.schemas import DrawingPrograms
 from app.jobs.schemas import Job
 from app.web.api import Api, Refused, TheApi
 from app.web.multipart import forms_with_files, parts_of

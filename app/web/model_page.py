@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from fastapi import Request, Response
 
-from app.presentation.typed import text_of, value_of
+from app.presentation.input_text import text_of, value_of
 from app.schemas.values import Given
 from app.solids.schemas.analyses import Analysis, AnalysisList, ModelAnalysis
 from app.solids.schemas.models import Build

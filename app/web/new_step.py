@@ -15,7 +15,7 @@ from pydantic import JsonValue
 
 from app.catalogue.schemas.library import LibraryTable
 from app.catalogue.schemas.templates import Template
-from app.presentation.typed import value_of
+from app.presentation.input_text import value_of
 from app.web import sheet
 from app.web.api import Api
 from app.web.blocks import Refusal

@@ -9,7 +9,7 @@ from math import inf
 from app.designs.schemas.designs import Design, Preview, RevisionWorksheet
 from app.designs.schemas.network import DesignNetwork, NetworkName
 from app.presentation import numbers
-from app.presentation.typed import text_of
+from app.presentation.input_text import text_of
 from app.reference import Reference
 
 

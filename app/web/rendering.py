@@ -10,7 +10,7 @@ from fastapi import Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from app.http.guard import PAGE_POLICY
-from app.identity.acting import acting
+from app.identity.principal import acting
 from app.presentation.environment import environment
 from app.presentation.units import System
 from app.reports.pictures import axis_of

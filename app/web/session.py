@@ -15,7 +15,7 @@ from fastapi import Request, Response
 from app.http.access import FORM_TOKEN, SIGN_IN
 from app.http.clients import COOKIE, PRINCIPAL, is_session
 from app.http.guard import CrossSite
-from app.identity.acting import ANONYMOUS
+from app.identity.principal import ANONYMOUS
 
 BYTES = 16  # 128 random bits
 FIELD = "form_token"

@@ -13,7 +13,7 @@ from app.designs.schemas.designs import Design
 from app.designs.schemas.network import DesignNetwork
 from app.designs.schemas.solution import DesignRoot, DesignSolution
 from app.presentation import numbers
-from app.presentation.typed import value_of
+from app.presentation.input_text import value_of
 from app.schemas.answers import Accepted
 from app.web.api import Api, read
 from app.web.places import PlaceOption, outputs, related, suggested, times, varied

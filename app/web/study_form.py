@@ -12,7 +12,7 @@ from app.designs.schemas.designs import Design, Preview, RevisionWorksheet
 from app.designs.schemas.network import DesignNetwork, NetworkName
 from app.designs.schemas.variants import VariantsOut
 from app.designs.variants.names import BASE, natural
-from app.presentation.typed import text_of, value_of
+from app.presentation.input_text import text_of, value_of
 from app.reference import Reference
 from app.schemas.criteria import Criterion
 from app.studies.schemas import StudyEstimate

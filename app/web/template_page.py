@@ -11,7 +11,7 @@ from app.calculations.schemas.evaluations import CalculatedBy, Output, Worksheet
 from app.catalogue.schemas.declarations import properties
 from app.catalogue.schemas.templates import Accuracy, Template, TemplateVersions
 from app.presentation.criteria import line
-from app.presentation.typed import value_of
+from app.presentation.input_text import value_of
 from app.reports.pictures import pictures
 from app.web import sheet
 from app.web.accuracy import table

@@ -13,7 +13,7 @@ from pydantic import JsonValue
 from app.calculations.schemas.evaluations import Solution
 from app.catalogue.schemas.declarations import Declared, properties
 from app.catalogue.schemas.templates import Template
-from app.presentation.typed import text_of, value_of
+from app.presentation.input_text import text_of, value_of
 from app.schemas.answers import Accepted
 from app.web.api import Api, read
 from app.web.places import PlaceOption, suggested

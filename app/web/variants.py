@@ -13,7 +13,7 @@ from app.designs.variant_sheets.reading import RELATION, RESULTS
 from app.designs.variant_sheets.writing import page_columns, rows_of
 from app.designs.variants.names import BASE
 from app.presentation.criteria import Line, line
-from app.presentation.typed import text_of
+from app.presentation.input_text import text_of
 from app.reference import Reference
 from app.web.variant_cells import CONTROL, FIRST_VARIANT
 from templates.core.errors import FaultyText

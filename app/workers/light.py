@@ -1,3 +1,3 @@
 """What the processes import that check files of a team, named where nothing is imported for it."""
 
-CHECKS = ("cad.model", "app.catalogue.checking")
+CHECKS = ("cad.model", "app.catalogue.check")

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import AfterValidator, ConfigDict, Field
 from pydantic.config import JsonValue
 
-from app.schemas.bounded import Bounded
+from app.schemas.bounds import Bounded
 
 LONGEST_TEXT = 65_536  # bytes in UTF-8 of a worksheet
 MOST_CHECKED = 2**20  # characters that `check` takes: it says of a text that is too long how long it may be

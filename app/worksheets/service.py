@@ -24,10 +24,10 @@ from app.workers.errors import DeadlineExceeded
 from app.worksheets import repository
 from app.worksheets.bodies import ReviewIn, SheetIn, SheetPatch, WithdrawIn
 from app.worksheets.errors import IdTaken, OtherText, OutOfOrder, OwnReview, StaleWorksheet, TestsFailed
-from app.worksheets.examining import Examined, Tried, examined, tried
+from app.worksheets.examination import Examined, Tried, examined, tried
 from app.worksheets.importing.record import ImportRecord, require_resolved
-from app.worksheets.naming import is_same_person, require_free, signed
-from app.worksheets.published import Published
+from app.worksheets.names import is_same_person, require_free, signed
+from app.worksheets.publication import Published
 from app.worksheets.repository import RELEASED
 
 T = TypeVar("T")

@@ -8,7 +8,7 @@ import pytest
 from app.calculations import rendering
 from app.calculations.cache import Cache
 from app.calculations.sizes import size_of
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
 from app.designs import memory as designs
 from app.designs.graph import Block
 from app.designs.memory import Memory

@@ -11,11 +11,12 @@ import pytest
 from patience import patient
 from test_workers import alive, eventually
 
-from app.workers import ahead, isolated
+from app.workers import prefork, processes
 
 FORKS = """
 import os, sys, threading
-from app.workers import ahead, pool
+from app.workers import pool
+from app.workers import prefork
 sys.path.insert(0, {tests!r})
 import victims
 
@@ -86,8 +87,8 @@ def test_a_process_with_threads_forks_none():
     thread = threading.Thread(target=end.wait)
     thread.start()
     try:
-        ahead.fork(("json",))
-        assert not ahead.is_forked(("json",))
+        prefork.fork(("json",))
+        assert not prefork.is_forked(("json",))
     finally:
         end.set()
         thread.join()
@@ -96,7 +97,7 @@ def test_a_process_with_threads_forks_none():
 def test_what_is_forked_waits_as_long_as_it_may():
     if not (pid := os.fork()):
         os.execv(sys.executable, [sys.executable, "-c", "import time; time.sleep(60)"])
-    process: isolated.Process = ahead.Forked(pid)
+    process: processes.Process = prefork.Forked(pid)
     assert process.poll() is None
     with pytest.raises(subprocess.TimeoutExpired):
         process.wait(0.01)

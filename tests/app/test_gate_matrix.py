@@ -12,7 +12,7 @@ from fastapi.routing import iter_route_contexts
 from starlette.routing import Mount
 
 from app.http.roles import needs_of, routes_of
-from app.identity.acting import INCLUDED, ROLES
+from app.identity.principal import INCLUDED, ROLES
 
 PUBLIC = {
     "GET /healthz",

@@ -18,7 +18,7 @@ from app.http import problems
 from app.http.heads import _plain_cookies
 from app.http.pages import page_of
 from app.presentation import numbers
-from app.presentation.typed import text_of, value_of
+from app.presentation.input_text import text_of, value_of
 from app.reports.cells import clean
 from app.reports.routes import REPORTS, _wanted
 from app.solids.routes.models import BuildIn

@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
 from app.designs.calculate import calculate, resume
 from app.designs.document import Document
 from app.designs.graph import Catalogues, build_graph

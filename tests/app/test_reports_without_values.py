@@ -19,7 +19,7 @@ from app.designs.schemas.designs import Revision
 from app.designs.service import resolved
 from app.designs.worksheet import worksheet
 from app.reports.content import Report
-from app.reports.screen import page
+from app.reports.routes import page
 from app.reports.signatures import signatures_of
 from app.reports.steps import step_of
 from app.reports.verdict import judged

@@ -4,7 +4,7 @@ import pytest
 from pydantic import ValidationError
 
 from app.worksheets.bodies import ReviewIn
-from app.worksheets.naming import is_same_person
+from app.worksheets.names import is_same_person
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from app.calculations.film_pressure import TYPICAL, solve_film_pressure
 from app.calculations.schemas.film_pressure import FilmPressure
 from app.http.roles import needs
 from app.http.strict_requests import StrictRoute
-from app.schemas.bounded import Bounded
+from app.schemas.bounds import Bounded
 from app.schemas.values import GIVEN, Given
 
 router = APIRouter(prefix="/api/v1", tags=["templates"], route_class=StrictRoute)

@@ -33,8 +33,8 @@ from app.http.strict_requests import StrictRoute
 from app.jobs.service import Jobs
 from app.reports.paper import Press
 from app.schemas.problems import RouteOptions, refusals
-from app.solids.healing import Healing
 from app.solids.models import File, Models
+from app.solids.repair import Healing
 from app.solids.routes.models import PATIENCE, send_file
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database

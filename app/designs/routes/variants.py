@@ -46,7 +46,7 @@ from app.http.attachments import is_at_hand, named, unchanged
 from app.http.clients import TheClient
 from app.http.strict_requests import StrictRoute
 from app.jobs.service import Jobs
-from app.schemas.bounded import Bounded, at_most
+from app.schemas.bounds import Bounded, at_most
 from app.schemas.problems import Responses, refusals
 from app.storage.artifacts import Artifacts
 from cad.stamp import stamped

@@ -12,7 +12,7 @@ from app.http.pages import Cursor, Limit, page, page_of
 from app.http.roles import needs
 from app.http.strict_requests import StrictRoute
 from app.identity import views
-from app.identity.acting import acting
+from app.identity.principal import acting
 from app.identity.schemas.principals import (
     Key,
     KeyIn,

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from app.schemas.answers import Answer, Page
-from app.schemas.bounded import Bounded
+from app.schemas.bounds import Bounded
 from app.schemas.texts import LINE
 
 Role = Literal["viewer", "author", "checker", "admin"]

@@ -13,7 +13,6 @@ from starlette.concurrency import run_in_threadpool
 from app.api.dependencies import TheCatalogues, TheDatabase, TheHealing, TheJobs, TheModels, TheStore
 from app.api.stored import UNAVAILABLE, UNCHANGED, StoredFile, lost
 from app.api.waiting import LATER, accepted, finished, later, written
-from app.brought.views import origin
 from app.catalogue.routes.templates import Number, listed, versions_of
 from app.catalogue.schemas.templates import TemplateList, TemplateVersions
 from app.http import problems
@@ -22,7 +21,8 @@ from app.http.pages import Cursor, Limit
 from app.http.query_names import KNOWN_NAMES
 from app.http.roles import needs
 from app.http.strict_requests import StrictRoute, require_step
-from app.schemas.bounded import Bounded
+from app.imported_models.views import origin
+from app.schemas.bounds import Bounded
 from app.schemas.problems import refusals
 from app.schemas.values import Parameters
 from app.solids.models import File

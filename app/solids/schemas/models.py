@@ -6,8 +6,8 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.brought.schemas import ModelOrigin
 from app.catalogue.schemas.templates import Described, Schema
+from app.imported_models.schemas import ModelOrigin
 from app.schemas.answers import Answer, Quantity, Shown, Triple, Values, Version
 
 

@@ -42,10 +42,10 @@ from app.storage.idempotency import Once
 from app.storage.tables import StudyRow
 from app.studies import exports, repository, views
 from app.studies.bodies import ChooseIn, StudyIn
-from app.studies.planning import Plan, planned
+from app.studies.plan import Plan, planned
+from app.studies.row_columns import Stored
 from app.studies.schemas import Study, StudyEstimate, StudyList, StudyRows
 from app.studies.service import ENDED, Draft, Studies
-from app.studies.stored import Stored
 from app.studies.views import Listing, Wanted, Where
 from templates.core.arrays import Array
 

@@ -19,7 +19,7 @@ from app.worksheets.errors import IdTaken, WorksheetError
 from app.worksheets.importing.errors import SheetNotRead
 from app.worksheets.importing.job import imported
 from app.worksheets.importing.record import ImportRecord
-from app.worksheets.naming import require_free
+from app.worksheets.names import require_free
 from app.worksheets.service import Worksheets
 from templates.core.errors import TemplateError
 

@@ -22,8 +22,8 @@ from app.schemas.problems import refusals
 from app.storage.tables import WorksheetVersionRow
 from app.worksheets import repository, views
 from app.worksheets.bodies import ReviewIn, SheetCheckIn, SheetIn, SheetPatch, WithdrawIn
-from app.worksheets.checking import checked
-from app.worksheets.naming import RESERVED
+from app.worksheets.check import checked
+from app.worksheets.names import RESERVED
 from app.worksheets.schemas.worksheets import Sheet, SheetCheck, SheetList
 from app.worksheets.service import Worksheets
 

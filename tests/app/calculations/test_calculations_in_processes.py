@@ -14,7 +14,7 @@ from test_workers import alive, eventually
 from app.calculations.bodies import EvaluateIn, SolveIn
 from app.calculations.service import run_evaluate, run_solve
 from app.calculations.worksheet import run_worksheet
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
 from app.settings import Settings
 
 

@@ -9,7 +9,7 @@ from app.calculations.bodies import OIL_FILM, EvaluateIn
 from app.calculations.cost import is_quick
 from app.calculations.prepared import prepared
 from app.calculations.service import run_evaluate
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
 from templates.core.errors import InvalidInputs
 from templates.oil_film.oil_film_v1 import OilFilm
 
