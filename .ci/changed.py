@@ -74,7 +74,7 @@ ABOUT = {
         *("app/studies/*.py", "templates/stiffness/forced_torsion_v1.py", "templates/physics/torsion/*.py"),
     ),
     "tests/app/test_demo.py": (
-        "app/demo*.py",
+        "app/cli/demo*.py",
         "app/cli/main.py",
         "app/cli/serve.py",
         "app/__main__.py",
