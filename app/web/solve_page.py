@@ -13,7 +13,6 @@ from app.presentation import numbers
 from app.presentation.typed import value_of
 from app.schemas.answers import Accepted
 from app.schemas.designs import Design
-from app.schemas.networks import DesignNetwork
 from app.schemas.solve import DesignRoot, DesignSolution
 from app.web.api import Api, read
 from app.web.places import PlaceOption, outputs, related, suggested, times, varied
@@ -79,8 +78,8 @@ class Asked:
 
 async def solve_page(request: Request, api: Api, id: str) -> Response:
     """The form, and the answer once the form is filled in."""
-    design = await api.get(f"/designs/{id}", Design)
-    network = await api.get(f"/designs/{id}/network", DesignNetwork)
+    design = await api.run(api.designs.show, id)
+    network = await api.run(api.designs.network, id)
     places = varied(design, network)
     question, job = _with_bounds(Asked.of(request), places), request.query_params.get("job", "")
     reply = Reply(None)
