@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class Reference:
+class Reference(NamedTuple):  # millions are hashed
     """A value of a design: a parameter, or an input, output or measure of a block, or of an analysis of it.
 
     A parameter stands for itself, so its name is the `block`, and there is no `output`.

@@ -22,7 +22,10 @@ WRITTEN = rf"^[^{_CONTROL}]*[^{_CONTROL}{BLANK}][^{_CONTROL}]*$"
 
 
 def _written(text: object) -> object:
-    """Whatever it is, unless it is a text without a letter or with control characters; raises ValueError."""
+    """Return whatever it is, unless it is a text without a letter or with control characters.
+
+    Raises ValueError.
+    """
     if isinstance(text, str) and not re.search(WRITTEN, text):
         plain = re.search(PLAIN, text)
         raise ValueError("write at least one letter" if plain else "leave out the control characters")

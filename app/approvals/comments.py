@@ -28,7 +28,7 @@ class Comments:
         self.database = database
 
     def page(self, id: str, number: int | None, limit: int, before: str | None) -> list[CommentRow]:
-        """One page of the comments on a revision, or on all of a design, and one more if there are more.
+        """Return a page of the comments on a revision or a whole design, and one more if there are more.
 
         They are in the order of their age, newest first.
 
@@ -50,7 +50,7 @@ class Comments:
             return list(session.scalars(query.order_by(CommentRow.id.desc()).limit(limit + 1)))
 
     def add(self, id: str, number: int, body: CommentIn, once: Once) -> Comment:
-        """A comment of the acting principal.
+        """Return a comment of the acting principal.
 
         Raises
         ------
@@ -93,7 +93,7 @@ class Comments:
 
 
 def shown(row: CommentRow) -> Comment:
-    """A comment as the interface shows it."""
+    """Return a comment as the interface shows it."""
     return Comment(
         id=row.id,
         design=row.design_id,
@@ -151,7 +151,7 @@ def _require_name(row: RevisionRow, subject: str) -> None:
 
 
 def _names(row: RevisionRow) -> Iterator[str]:
-    """Parameters, blocks, their values, criteria and variants of a revision."""
+    """Yield parameters, blocks, their values, criteria and variants of a revision."""
     document, results = row.document, row.results or {}
     yield from document["parameters"]
     for name, step in document["steps"].items():

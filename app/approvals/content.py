@@ -18,12 +18,12 @@ STEP = "step"
 
 
 def digest(value: object) -> str:
-    """SHA-256 of a JSON value in its canonical form."""
+    """Return the SHA-256 of a JSON value in its canonical form."""
     return hashlib.sha256(canonical_json(value).encode()).hexdigest()
 
 
 def present(session: Session, row: RevisionRow) -> Present:
-    """The hashes of what a revision holds now."""
+    """Return the hashes of what a revision holds now."""
     builds = {m.name: m.build_key for m in (*row.models, *row.variant_models) if m.build_key}
     files = rows.artifacts_of(session, set(builds.values()))
     return Present(
@@ -34,7 +34,7 @@ def present(session: Session, row: RevisionRow) -> Present:
 
 
 def to_sign(row: RevisionRow, now: Present, previous: str | None) -> str:
-    """Digest of what a signer looks at: the same until a step is taken.
+    """Return the digest of what a signer looks at: the same until a step is taken.
 
     Of the files it has the STEP files alone: others follow from these, and are made when somebody asks.
     """
@@ -52,7 +52,7 @@ def to_sign(row: RevisionRow, now: Present, previous: str | None) -> str:
 
 
 def require_files(row: RevisionRow, now: Present) -> Files:
-    """The files of a revision that is calculated and has a solid of every model.
+    """Return the files of a revision that is calculated and has a solid of every model.
 
     Raises
     ------
@@ -70,14 +70,14 @@ def require_files(row: RevisionRow, now: Present) -> Files:
 
 
 def steps_taken(session: Session, row: RevisionRow) -> list[ApprovalRow]:
-    """The steps of the approval of a revision that were taken, in their order."""
+    """Return the steps of the approval of a revision that were taken, in their order."""
     of_revision = ApprovalRow.design_id == row.design_id, ApprovalRow.revision == row.number
     rows = {row.step: row for row in session.scalars(select(ApprovalRow).where(*of_revision))}
     return [rows[step] for step in ORDER if step in rows]
 
 
 def shown(row: ApprovalRow) -> Approval:
-    """A step as the interface shows it."""
+    """Return a step as the interface shows it."""
     return Approval.model_validate(
         {
             "step": row.step,
@@ -91,5 +91,5 @@ def shown(row: ApprovalRow) -> Approval:
 
 
 def hashed(content: Signed) -> str:
-    """The digest of what was signed."""
+    """Return the digest of what was signed."""
     return digest(content.plain())

@@ -20,12 +20,12 @@ ROLES: dict[Step, Role] = {
 
 
 def state_of(taken: Sequence[ApprovalRow]) -> ApprovalState:
-    """The last step that was taken."""
+    """Return the last step that was taken."""
     return last_of({row.step for row in taken}) or "unsigned"
 
 
 def next_step(taken: Sequence[ApprovalRow]) -> Step | None:
-    """The step that comes next on the way to a release; None behind that."""
+    """Return the step that comes next on the way to a release; None behind that."""
     steps = {row.step for row in taken}
     return next((step for step in ORDER[:3] if step not in steps), None)
 

@@ -29,7 +29,7 @@ class Approving:
         self.database, self.store = database, store
 
     def show(self, id: str, number: int) -> Approvals:
-        """The approval of a revision, as whoever asks sees it.
+        """Return the approval of a revision, as whoever asks sees it.
 
         Raises
         ------
@@ -65,7 +65,7 @@ class Approving:
         return self.database.write(unit)
 
     def released(self, id: str) -> Released:
-        """The newest released revision of a design.
+        """Return the newest released revision of a design.
 
         Raises
         ------
@@ -172,7 +172,7 @@ def _shown(session: Session, row: RevisionRow) -> Approvals:
 
 
 def _obstacle(row: RevisionRow, taken: list[ApprovalRow], held: Present) -> str | None:
-    """Why the acting principal cannot take the next step now."""
+    """Return why the acting principal cannot take the next step now."""
     following = next_step(taken)
     if following is None:
         return None

@@ -45,7 +45,7 @@ class _Source:
 def described_assembly(
     content: bytes, id: str, file_name: str, database: Database, store: Artifacts, catalogues: Catalogues
 ) -> AssemblyDescription:
-    """The description of an assembly; stores the package of its fixed parts.
+    """Return the description of an assembly; stores the package of its fixed parts.
 
     Raises
     ------
@@ -84,7 +84,7 @@ class AssemblyFiles:
         self._store = store
 
     def draw(self, described: Description, values: Mapping[str, float], cancelled: object) -> Drawn:
-        """The files, by hash; see `Drawing.draw`."""
+        """Return the files, by hash; see `Drawing.draw`."""
         try:
             packed = self._store.read(described.file)
         except (ArtifactMissing, ArtifactDamaged):
@@ -97,7 +97,7 @@ class AssemblyFiles:
 
 
 def _packed(files: Mapping[str, bytes]) -> bytes:
-    """Files by hash in one: equal files make equal bytes."""
+    """Return files by hash in one: equal files make equal bytes."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as package:
         for sha in sorted(files):
@@ -106,7 +106,7 @@ def _packed(files: Mapping[str, bytes]) -> bytes:
 
 
 def _base(base: Base | None, catalogues: Catalogues) -> type[CadModel] | None:
-    """The class of the model that an assembly stands on."""
+    """Return the class of the model that an assembly stands on."""
     if base is None:
         return None
     try:
@@ -125,7 +125,7 @@ def _base(base: Base | None, catalogues: Catalogues) -> type[CadModel] | None:
 
 
 def _source(session: Session, fixed: Fixed) -> _Source:
-    """The file of a fixed part.
+    """Return the file of a fixed part.
 
     Raises
     ------
@@ -154,7 +154,7 @@ def _of_model(session: Session, fixed: Fixed) -> _Source:
 
 
 def _of_design(session: Session, fixed: Fixed) -> _Source:
-    """The STEP file of a model of a design: of one revision, or of the newest that has one."""
+    """Return the STEP file of a model of a design: of one revision, or of the newest that has one."""
     design, row = fixed.design or "", RevisionModelRow
     there = session.get(DesignRow, design)
     if there is None or there.deleted:
@@ -185,7 +185,7 @@ def _of_design(session: Session, fixed: Fixed) -> _Source:
 
 
 def _held(session: Session, id: str, number: int) -> tuple[str, ...]:
-    """The ids of the models of which an assembly is made; none of other models."""
+    """Return the ids of the models of which an assembly is made; none of other models."""
     try:
         about = description_of(repository.version(session, id, number).description)
     except NotFound:

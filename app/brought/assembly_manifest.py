@@ -79,7 +79,7 @@ class Fixed(Bounded):
         return self
 
     def place(self) -> dict[str, float]:
-        """Its shifts [mm] and turns [deg], by parameter.
+        """Return its shifts [mm] and turns [deg], by parameter.
 
         Raises
         ------
@@ -90,7 +90,7 @@ class Fixed(Bounded):
         return shifts | {name: _number(name, getattr(self, name), "deg", 360.0) for name in TURNS}
 
     def density_si(self) -> float:
-        """Its density [kg/m³].
+        """Return its density [kg/m³].
 
         Raises
         ------
@@ -142,7 +142,7 @@ def is_assembly(content: bytes) -> bool:
 
 
 def read(content: bytes) -> AssemblyManifest:
-    """A manifest from its JSON.
+    """Return a manifest from its JSON.
 
     Raises
     ------
@@ -161,7 +161,7 @@ def read(content: bytes) -> AssemblyManifest:
 
 
 def _number(name: str, text: str, wanted: str, most: float) -> float:
-    """A text as one number in a unit.
+    """Return a text as one number in a unit.
 
     Raises
     ------

@@ -30,7 +30,7 @@ class Deadline:
         self._limits, self._end = limits, time.monotonic() + limits.deadline
 
     def left(self) -> float:
-        """The time that is left [s].
+        """Return the time that is left [s].
 
         Raises
         ------
@@ -43,7 +43,7 @@ class Deadline:
 
     @property
     def limits(self) -> Limits:
-        """The limits of a function that runs in what is left; raises as `left` does."""
+        """Return the limits of a function that runs in what is left; raises as `left` does."""
         return Limits(self.left(), self._limits.memory_mb)
 
     @contextmanager
@@ -65,7 +65,7 @@ _BOUNDS: Mapping[str, float] = {"mm": 1e5, "deg": 360.0, "1": 1e6}
 def described_freecad(
     content: bytes, file_name: str, store: Artifacts, programs: Programs, context: JobContext
 ) -> Description:
-    """The description of a `.FCStd` file; stores the file as FreeCAD shall open it.
+    """Return the description of a `.FCStd` file; stores the file as FreeCAD shall open it.
 
     Raises
     ------
@@ -95,7 +95,7 @@ def described_freecad(
 def described_creo(
     content: bytes, file_name: str, store: Artifacts, programs: Programs, context: JobContext
 ) -> Description:
-    """The description that a manifest gives of a model in Creo, after Creo has drawn it once as it is stored.
+    """Return the description of a model in Creo by a manifest, after Creo has drawn it once as stored.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def described_creo(
 
 
 def described_step(content: bytes, file_name: str, store: Artifacts, context: JobContext) -> Description:
-    """The description of a STEP file as a fixed part.
+    """Return the description of a STEP file as a fixed part.
 
     Raises
     ------
@@ -175,5 +175,5 @@ def _trials(
 
 
 def _stem(file_name: str) -> str:
-    """The name of a file without its ending, as the title of a model."""
+    """Return the name of a file without its ending, as the title of a model."""
     return (file_name.rpartition(".")[0] or file_name)[:100].rstrip(". ") or "model"

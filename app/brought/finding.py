@@ -29,13 +29,13 @@ class FreeCad:
 
 
 def missing(reason: str) -> ProgramMissing:
-    """The refusal where FreeCAD cannot be used, with what to do."""
+    """Return the refusal where FreeCAD cannot be used, with what to do."""
     return ProgramMissing("program_missing", f"{reason}: {INSTALL}")
 
 
 @cache
 def find(folder: Path | None = None, python: str = "/usr/bin/python3") -> FreeCad:
-    """FreeCAD in a folder, or where Linux distributions install it.
+    """Return FreeCAD in a folder, or where Linux distributions install it.
 
     Raises
     ------

@@ -40,7 +40,7 @@ def require_free(id: str, catalogues: Catalogues) -> None:
 
 
 def parameter_name(key: str, thing: str, taken: Iterable[str]) -> str:
-    """An API name for a parameter: `boreDiameter` → `bore_diameter`; its object before it if taken."""
+    """Return an API name for a parameter: `boreDiameter` → `bore_diameter`; its object before it if taken."""
     name = snake(key) or "parameter"
     if name in taken:
         name = f"{snake(thing) or 'object'}_{name}"[:LONGEST].strip("_")
@@ -51,7 +51,10 @@ def parameter_name(key: str, thing: str, taken: Iterable[str]) -> str:
 
 
 def snake(text: str) -> str:
-    """A text in small ASCII letters, digits and single underscores, beginning with a letter; maybe empty."""
+    """Return a text in small ASCII letters, digits and single underscores, beginning with a letter.
+
+    Maybe empty.
+    """
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
     parted = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", plain).lower()
     name = re.sub(r"[^a-z0-9]+", "_", parted).strip("_")[:LONGEST].strip("_")

@@ -27,7 +27,7 @@ class Drawing(Protocol):
     """A program that draws."""
 
     def draw(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
-        """The solids of a model for some values.
+        """Return the solids of a model for some values.
 
         Raises
         ------
@@ -46,7 +46,7 @@ class StepFiles:
         self._store = store
 
     def draw(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
-        """The STEP file; there are no values."""
+        """Return the STEP file; there are no values."""
         return Drawn(step=self._store.read(described.file))
 
 
@@ -57,7 +57,7 @@ class CreoModels:
         self._store, self.drawing = store, drawing
 
     def draw(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
-        """The STEP file that Creo exports; see `Drawing.draw`."""
+        """Return the STEP file that Creo exports; see `Drawing.draw`."""
         try:
             manifest = read(self._store.read(described.file))
         except UnreadableModel as error:  # an older program took it
@@ -72,7 +72,7 @@ class FreeCadDrawing:
         self._store, self.warm = store, WarmProcesses(find, limits)
 
     def draw(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
-        """The solids that FreeCAD draws; see `Drawing.draw`."""
+        """Return the solids that FreeCAD draws; see `Drawing.draw`."""
         given = [given_to_freecad(one, values[one.name]) for one in _changed(described, values)]
         return self.warm.ask(
             described.file, lambda: self._store.read(described.file), "draw", given, cancelled
@@ -80,12 +80,12 @@ class FreeCadDrawing:
 
 
 def _changed(described: Description, values: Values) -> list[Parameter]:
-    """The parameters that are not as in the file; to set others again would change last digits."""
+    """Return the parameters that are not as in the file; to set others again would change last digits."""
     return [one for one in described.parameters if values.get(one.name, one.value) != one.value]
 
 
 def given_to_freecad(one: Parameter, value: float) -> list[str | float]:
-    """A value as the process of FreeCAD takes it: object, kind, key, value, unit."""
+    """Return a value as the process of FreeCAD takes it: object, kind, key, value, unit."""
     thing, kind, key = one.source.split(".", 2)
     return [thing, kind, key, value, one.unit]
 
@@ -104,13 +104,13 @@ class Programs:
     by_name: dict[Program, Drawing]
 
     def draw(self, shape: BroughtModel, context: Runner) -> Drawn:
-        """The drawing of a model for its parameters; raises as `Drawing.draw` does."""
+        """Return the drawing of a model for its parameters; raises as `Drawing.draw` does."""
         cancelled = context.cancelled if isinstance(context, JobContext) else threading.Event()
         values = {} if shape.brought.program == "assembly" else values_of(shape)  # it has words and lists too
         return self.drawn(shape.brought, values, cancelled)
 
     def drawn(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
-        """The drawing of a program for some values; raises as `Drawing.draw` does."""
+        """Return the drawing of a program for some values; raises as `Drawing.draw` does."""
         program = self.by_name.get(described.program)
         if program is None:
             raise ProgramMissing("program_missing", f"this service drives no Creo: {SET_CREO}")
@@ -122,7 +122,7 @@ class Programs:
 
 
 def values_of(shape: BroughtModel) -> Values:
-    """The parameters of a model in their declared units, to the twelve digits that its key is made of."""
+    """Return a model's parameters in their declared units, to the twelve digits that its key uses."""
     return {
         name: float(f"{shape.inputs[name].meaning.scale.from_si(float(si)):.12g}")
         for name, si in shape.inputs_si().items()
@@ -130,7 +130,7 @@ def values_of(shape: BroughtModel) -> Values:
 
 
 def assembled(settings: Settings, store: Artifacts) -> Programs:
-    """The programs that the settings name."""
+    """Return the programs that the settings name."""
     limits = Limits(settings.job_deadline, settings.job_memory_mb)
     freecad = FreeCadDrawing(store, lambda: find(settings.freecad, settings.freecad_python), limits)
     by_name: dict[Program, Drawing] = {"freecad": freecad, "step": StepFiles(store)}

@@ -14,7 +14,7 @@ from cad.brought import Description
 
 
 def all_rows(session: Session) -> list[Row]:
-    """Every version of every brought model."""
+    """Return every version of every brought model."""
     return list(session.scalars(select(Row).order_by(Row.id, Row.number)))
 
 
@@ -24,7 +24,7 @@ def count(session: Session) -> int:
 
 
 def version(session: Session, id: str, number: int) -> Row:
-    """One version of a brought model.
+    """Return one version of a brought model.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def version(session: Session, id: str, number: int) -> Row:
 
 
 def numbers(session: Session, id: str) -> list[int]:
-    """The versions of a brought model, ascending."""
+    """Return the versions of a brought model, ascending."""
     return list(session.scalars(select(Row.number).where(Row.id == id).order_by(Row.number)))
 
 

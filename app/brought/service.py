@@ -117,7 +117,7 @@ class ModelImports:
         """Do nothing: a failed import leaves nothing behind, and retention takes its file."""
 
     def available(self) -> tuple[str | None, str | None]:
-        """The reason why FreeCAD cannot draw here, or None; and the folder in which it is."""
+        """Return the reason why FreeCAD cannot draw here, or None; and the folder in which it is."""
         try:
             return None, self.programs.freecad.warm.find().modules
         except ProgramMissing as error:
@@ -134,7 +134,7 @@ class ModelImports:
 
 
 def kind_of(content: bytes) -> Kind:
-    """The kind of a file, by its first bytes.
+    """Return the kind of a file, by its first bytes.
 
     Raises
     ------

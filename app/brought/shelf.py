@@ -20,7 +20,7 @@ EVERY = 1.0
 
 
 def _classes(rows: Iterable[BroughtModelRow]) -> Iterator[tuple[Key, type[BroughtModel]]]:
-    """The classes of rows; one that this program cannot read harms no other."""
+    """Yield the classes of rows; one that this program cannot read harms no other."""
     for row in rows:
         try:
             yield (row.id, row.number), class_of(row.description, row.id, row.number)

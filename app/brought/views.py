@@ -9,7 +9,7 @@ from cad.brought import description_of
 
 
 def origin(database: Database, id: str, number: int) -> ModelOrigin:
-    """The origin of a brought model.
+    """Return the origin of a brought model.
 
     Raises
     ------

@@ -48,12 +48,12 @@ class Catalogues:
 
     @property
     def templates(self) -> Catalogue[Template]:
-        """The templates."""
+        """Return the templates."""
         return self.snapshot.templates
 
     @property
     def models(self) -> Catalogue[CadModel]:
-        """The CAD models."""
+        """Return the CAD models."""
         return self.snapshot.models
 
     def publish(self, sheets: Sheets, drafts: Drafts) -> None:
@@ -72,7 +72,7 @@ class Catalogues:
         self.snapshot = with_models(joined(self.files, self._sheets), self._brought)
 
     def to_try(self, id: str, version: int) -> type[Template]:
-        """A version, or the draft of a worksheet as it is now: for what is calculated and not kept.
+        """Return a version, or the draft of a worksheet as it is now: for what is calculated and not kept.
 
         Raises
         ------
@@ -84,7 +84,10 @@ class Catalogues:
         return self._drafts(id, version)
 
     def with_drafts(self, wanted: Iterable[Key]) -> Catalogues:
-        """The same, and the drafts of worksheets that are wanted; one with faults cannot be used still."""
+        """Return the same, and the drafts of worksheets that are wanted.
+
+        One with faults cannot be used still.
+        """
         drafts: dict[Key, type[Template]] = {}
         faulty: dict[Key, str] = {}
         for key in self.templates.unreleased.keys() & set(wanted):
@@ -177,7 +180,10 @@ async def _ended(future: Future[None], seconds: float) -> None:
 
 
 def loaded(folders: Sequence[Path]) -> Snapshot:
-    """Everything in this process, for a command: without the checks, and without what cannot be imported."""
+    """Return everything in this process, for a command.
+
+    Without the checks, and without what cannot be imported.
+    """
     team = TeamFiles(folders, lambda path, content: [])
     team.examine()
     return merged(find_templates(()), find_models(), team.files)

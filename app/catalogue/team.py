@@ -36,22 +36,22 @@ class TeamFile:
 
     @property
     def key(self) -> Key | None:
-        """Id and version, from the name of the file."""
+        """Return the id and version, from the name of the file."""
         match = VERSIONED.match(self.path.stem)
         return (match[1], int(match[2])) if match else None
 
     @property
     def name(self) -> str:
-        """The file within its folder, as the pages name it: no address of this machine."""
+        """Return the file within its folder, as the pages name it: no address of this machine."""
         return str(Path(self.folder.name) / self.path.relative_to(self.folder))
 
     @property
     def is_quarantined(self) -> bool:
-        """Whether the file cannot be used."""
+        """Return whether the file cannot be used."""
         return self.cls is None
 
     def refused(self, fault: FileFault) -> TeamFile:
-        """The same file with one more fault, which quarantines it."""
+        """Return the same file with one more fault, which quarantines it."""
         return replace(self, cls=None, faults=(*self.faults, fault))
 
 
@@ -86,16 +86,16 @@ class TeamFiles:
 
     @classmethod
     def of_file(cls, path: Path, check: Check) -> TeamFile:
-        """One file, examined by itself."""
+        """Return one file, examined by itself."""
         return cls((), check)._current(path.parent, _signature(path), path)
 
     @property
     def files(self) -> list[TeamFile]:
-        """Every file, in the order of the folders and of their names."""
+        """Return every file, in the order of the folders and of their names."""
         return list(self._files.values())
 
     def _current(self, folder: Path, signature: Signature, path: Path) -> TeamFile:
-        """The stored result for a file if its content is unchanged; else check and load it."""
+        """Return the stored result for a file if its content is unchanged; else check and load it."""
         cached = self._files.get(path)
         if cached is not None and cached.signature == signature:
             return cached
@@ -128,7 +128,7 @@ class TeamFiles:
 
 
 def _scanned(folders: Iterable[Path]) -> Iterator[tuple[Path, tuple[Path, Signature]]]:
-    """Every file that is, or looks meant as, a version, with its signature; a missing folder itself."""
+    """Yield every file that is, or looks meant as, a version, with its signature; a missing folder itself."""
     for folder in folders:
         if not folder.is_dir():
             yield folder, (folder.parent, (None,))
@@ -143,7 +143,10 @@ def _signature(path: Path) -> Signature:
 
 
 def _beside(path: Path) -> tuple[Path, ...]:
-    """The files beside a template that say more of it: measured errors, digests of its release, results."""
+    """Return the files beside a template that say more of it.
+
+    Measured errors, digests of its release, results.
+    """
     named = (path.with_name(f"{path.stem}.{kind}.json") for kind in ("accuracy", "release"))
     return (*named, *records(path))
 
@@ -157,7 +160,7 @@ def _state(path: Path) -> tuple[int, int, int] | None:
 
 
 def _digest(path: Path, content: bytes) -> str:
-    """SHA-256 over a file and those beside it."""
+    """Return the SHA-256 over a file and those beside it."""
     digest = hashlib.sha256(content)
     for file in _beside(path):
         if file.is_file():
@@ -168,7 +171,7 @@ def _digest(path: Path, content: bytes) -> str:
 def merged(
     templates: Catalogue[Template], models: Catalogue[CadModel], files: Iterable[TeamFile]
 ) -> Snapshot:
-    """The built-in versions and those of a team; a version that is taken already is quarantined."""
+    """Return the built-in versions and those of a team; a version that is taken already is quarantined."""
     own_templates, own_models = dict(templates.versions), dict(models.versions)
     owners: dict[tuple[bool, Key], TeamFile] = {}
     settled: list[TeamFile] = []
@@ -195,7 +198,7 @@ def merged(
 
 
 def joined(files: Snapshot, sheets: Sheets) -> Snapshot:
-    """The versions of files and those of worksheets.
+    """Return the versions of files and those of worksheets.
 
     A released worksheet keeps its name: a file that comes with the same one later would change the numbers of
     the designs that use it. Nor does a file stand in for a broken worksheet.
@@ -213,7 +216,10 @@ def joined(files: Snapshot, sheets: Sheets) -> Snapshot:
 
 
 def with_models(files: Snapshot, brought: Mapping[Key, type[CadModel]]) -> Snapshot:
-    """The models of files, and those that a team has brought; a file does not stand in for one of these."""
+    """Return the models of files, and those that a team has brought.
+
+    A file does not stand in for one of these.
+    """
     if not brought:
         return files
     versions = dict(sorted({**files.models.versions, **brought}.items()))
@@ -237,7 +243,7 @@ def _taken(key: Key, by: TeamFile | None) -> FileFault:
 
 
 def _reason(file: TeamFile) -> str:
-    """Why a file cannot be used, in one sentence."""
+    """Return why a file cannot be used, in one sentence."""
     first = next(fault for fault in file.faults if fault.quarantines)
     more = len(file.faults) - 1
     others = f", and {more} more" if more else ""

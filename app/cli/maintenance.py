@@ -114,7 +114,7 @@ def _repair(settings: Settings) -> None:
 
 
 def _team_url(settings: Settings) -> str | None:
-    """The URL of a database that servers share; None if it is SQLite."""
+    """Return the URL of a database that servers share; None if it is SQLite."""
     url = settings.database_url
     return url if url and sqlite_file(url) is None else None
 

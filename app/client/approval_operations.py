@@ -9,7 +9,7 @@ from app.schemas.approval_steps import Step
 
 
 def approvals(id: str, revision: int) -> Exchange[Approvals]:
-    """The principals that calculated, checked and released a revision, and the digest to sign."""
+    """Return the principals that calculated, checked and released a revision, and the digest to sign."""
     return answered(Approvals, get(f"/designs/{id}/revisions/{revision}/approvals"))
 
 
@@ -23,12 +23,12 @@ def approve(
 
 
 def released(id: str) -> Exchange[Released]:
-    """The newest released revision of a design, with links to its files."""
+    """Return the newest released revision of a design, with links to its files."""
     return answered(Released, get(f"/designs/{id}/released"))
 
 
 def comments(id: str, revision: int) -> Exchange[list[Comment]]:
-    """The comments on a revision, newest first."""
+    """Return the comments on a revision, newest first."""
     return listed(CommentList, f"/designs/{id}/revisions/{revision}/comments")
 
 

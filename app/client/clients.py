@@ -45,7 +45,7 @@ class Client(BlockingConnection):
         return ClientStudy(self, self.run(exchanges.begin(design, body, key)))
 
     def open_study(self, id: str) -> ClientStudy:
-        """A study that was begun before."""
+        """Return a study that was begun before."""
         return ClientStudy(self, self.run(exchanges.find(id)))
 
     studies = Method(exchanges.find_all)
@@ -140,7 +140,7 @@ class AsyncClient(AwaitedConnection):
         return AsyncClientStudy(self, await self.run(exchanges.begin(design, body, key)))
 
     async def open_study(self, id: str) -> AsyncClientStudy:
-        """A study that was begun before."""
+        """Return a study that was begun before."""
         return AsyncClientStudy(self, await self.run(exchanges.find(id)))
 
     studies = AsyncMethod(exchanges.find_all)

@@ -50,7 +50,7 @@ class _Connection:
 
 
 def message(request: Request) -> _Message:
-    """A request as httpx takes it."""
+    """Return a request as httpx takes it."""
     return {
         "method": request.method,
         "url": request.path,

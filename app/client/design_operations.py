@@ -55,12 +55,12 @@ class Wanted(TypedDict, total=False):
 
 
 def designs(**wanted: Unpack[Wanted]) -> Exchange[list[DesignSummary]]:
-    """Designs that are not archived, newest first; those that fit every filter given."""
+    """Return designs that are not archived, newest first; those that fit every filter given."""
     return listed(DesignList, "/designs", [*_filters(wanted)])
 
 
 def design(id: str) -> Exchange[Design]:
-    """A design as of its newest revision."""
+    """Return a design as of its newest revision."""
     return answered(Design, get(f"/designs/{id}"))
 
 
@@ -113,7 +113,7 @@ def delete(id: str) -> Exchange[None]:
 
 
 def labels(id: str) -> Exchange[Labels]:
-    """The tags of a design, and whether it is archived."""
+    """Return the tags of a design, and whether it is archived."""
     return answered(Labels, get(f"/designs/{id}/labels"))
 
 
@@ -126,14 +126,14 @@ def label(
 
 
 def tags() -> Exchange[list[TagUse]]:
-    """The tags of designs that are not archived, the most used first."""
+    """Return the tags of designs that are not archived, the most used first."""
     return (yield from answered(TagList, get("/tags"))).items
 
 
 def compare(
     id: str, revision: int | None = None, other: int | None = None, *, design: str | None = None
 ) -> Exchange[Comparison]:
-    """The differences between two revisions, of the same design or of two designs.
+    """Return the differences between two revisions, of the same design or of two designs.
 
     Without numbers: the newest revision with the one before, or the newest ones of both designs.
     """
@@ -143,7 +143,10 @@ def compare(
 
 
 def preview(id: str, patch: Mapping[str, object], *, worksheet: bool = False) -> Exchange[Preview]:
-    """The effect of a change; nothing is saved. `worksheet` adds every step with its formulas written out."""
+    """Return the effect of a change.
+
+    Nothing is saved. `worksheet` adds every step with its formulas written out.
+    """
     asked = "?worksheet=true" if worksheet else ""
     return calculated(Preview, post(f"/designs/{id}/preview{asked}", patch))
 
@@ -165,7 +168,7 @@ def decide(
 
 
 def auto_map(id: str) -> Exchange[list[Proposal]]:
-    """Proposals for model parameters that are not set."""
+    """Return proposals for model parameters that are not set."""
     request = Request("POST", f"{BASE}/designs/{id}/auto-map")
     return (yield from answered(Proposals, request)).proposals
 
@@ -179,33 +182,33 @@ def explain(id: str, name: str, *, units: System = "si") -> Exchange[Explanation
 
 
 def network(id: str) -> Exchange[DesignNetwork]:
-    """The dependencies in a design, and the names that its relations may use."""
+    """Return the dependencies in a design, and the names that its relations may use."""
     return answered(DesignNetwork, get(f"/designs/{id}/network"))
 
 
 def revision(id: str, number: int) -> Exchange[Revision]:
-    """A revision with its results."""
+    """Return a revision with its results."""
     return answered(Revision, get(f"/designs/{id}/revisions/{number}"))
 
 
 def revisions(id: str) -> Exchange[list[Revision]]:
-    """All revisions, newest first."""
+    """Return all revisions, newest first."""
     return listed(RevisionList, f"/designs/{id}/revisions")
 
 
 def measurements(id: str) -> Exchange[dict[str, ModelMeasurements]]:
-    """Measurements of the newest good models, by the name of the model."""
+    """Return measurements of the newest good models, by the name of the model."""
     return answered(dict[str, ModelMeasurements], get(f"/designs/{id}/measurements"))
 
 
 def design_worksheet(id: str, number: int | None = None) -> Exchange[RevisionWorksheet]:
-    """A revision, the newest if none is named, with every formula of its steps written out."""
+    """Return a revision, the newest if none is named, with every formula of its steps written out."""
     revision = f"/revisions/{number}" if number else ""
     return answered(RevisionWorksheet, get(f"/designs/{id}{revision}/worksheet.json"))
 
 
 def saved(request: Request, on_progress: Progress | None) -> Exchange[Design]:
-    """The design once its job has ended; a failed regeneration is its `state`."""
+    """Return the design once its job has ended; a failed regeneration is its `state`."""
     response = yield request
     answer = read(Design, response)
     if job := job_of(response):
@@ -215,7 +218,7 @@ def saved(request: Request, on_progress: Progress | None) -> Exchange[Design]:
 
 
 def _filters(wanted: Wanted) -> Iterator[tuple[str, str]]:
-    """The filters as a query, in which a tag may stand several times."""
+    """Yield the filters as a query, in which a tag may stand several times."""
     for name, value in wanted.items():
         texts = [value] if isinstance(value, str) else value
         assert isinstance(texts, Sequence), "filters are texts"
@@ -228,5 +231,5 @@ def _match(design: Design) -> dict[str, str]:
 
 
 def once(key: str | None) -> dict[str, str]:
-    """A key that makes a repeated request harmless."""
+    """Return a key that makes a repeated request harmless."""
     return {"Idempotency-Key": key or uuid.uuid4().hex}

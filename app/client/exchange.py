@@ -62,7 +62,7 @@ def post(path: str, body: object, headers: Mapping[str, str] | None = None) -> R
 
 
 def written(body: object) -> bytes:
-    """A body as JSON; models of answers, such as a quantity, may be part of it.
+    """Return a body as JSON; models of answers, such as a quantity, may be part of it.
 
     Raises
     ------
@@ -79,17 +79,17 @@ def _plain(value: object) -> JsonObject:
 
 
 def read(model: type[Model], response: httpx.Response) -> Model:
-    """The answer as a model. A field that a newer service adds is not an error."""
+    """Return the answer as a model. A field that a newer service adds is not an error."""
     return TypeAdapter(model).validate_json(checked(response).content, extra="allow")
 
 
 def answered(model: type[Model], request: Request) -> Exchange[Model]:
-    """The answer to one request."""
+    """Return the answer to one request."""
     return read(model, (yield request))
 
 
 def listed(page: type[Page[Item]], path: str, query: Sequence[tuple[str, str]] = ()) -> Exchange[list[Item]]:
-    """The items of all pages."""
+    """Return the items of all pages."""
     items: list[Item] = []
     cursor: str | None = ""
     while cursor is not None:
@@ -100,7 +100,7 @@ def listed(page: type[Page[Item]], path: str, query: Sequence[tuple[str, str]] =
 
 
 def awaited(request: Request, on_progress: Progress | None = None) -> Exchange[httpx.Response]:
-    """The answer to a request that is sent again once its job has ended, as for a file that must be made.
+    """Send a request again once its job has ended, as for a file that must be made; return its answer.
 
     Raises
     ------
@@ -115,12 +115,12 @@ def awaited(request: Request, on_progress: Progress | None = None) -> Exchange[h
 
 
 def calculated(model: type[Model], request: Request, on_progress: Progress | None = None) -> Exchange[Model]:
-    """The answer of a calculation, from where its job leaves it if it became one."""
+    """Return the answer of a calculation, from where its job leaves it if it became one."""
     return read(model, (yield from calculation(request, on_progress)))
 
 
 def calculation(request: Request, on_progress: Progress | None = None) -> Exchange[httpx.Response]:
-    """The response of a calculation, from where its job leaves it if it became one."""
+    """Return the response of a calculation, from where its job leaves it if it became one."""
     response = yield request
     if job := job_of(response):
         yield from done(job, on_progress)
@@ -129,14 +129,14 @@ def calculation(request: Request, on_progress: Progress | None = None) -> Exchan
 
 
 def job_of(response: httpx.Response) -> str | None:
-    """The job that an answer waits for: of a 202, or of a 503 while a lost file is made again."""
+    """Return the job that an answer waits for: of a 202, or of a 503 while a lost file is made again."""
     place = response.headers.get("Location", "")
     waits = response.status_code in (202, 503) and place.startswith(_JOB)
     return place.removeprefix(_JOB) if waits else None
 
 
 def done(job: str, on_progress: Progress | None = None) -> Exchange[Job]:
-    """A job that has done its work.
+    """Return a job that has done its work.
 
     Raises
     ------
@@ -150,7 +150,7 @@ def done(job: str, on_progress: Progress | None = None) -> Exchange[Job]:
 
 
 def followed(job: str, on_progress: Progress | None = None) -> Exchange[Job]:
-    """A job once it has ended, however it did."""
+    """Return a job once it has ended, however it did."""
 
     def listen(line: str) -> None:
         event = json.loads(line.removeprefix("data:")) if line.startswith("data:") else {}

@@ -23,7 +23,7 @@ class File:
 
     @classmethod
     def of(cls, response: httpx.Response) -> File:
-        """The file in an answer; one that the service does not name is called as the path ends."""
+        """Return the file in an answer; one that the service does not name is called as the path ends."""
         said = response.headers.get("Content-Disposition", "")
         if wide := _WIDE.search(said):
             name = unquote(wide[1])

@@ -11,39 +11,39 @@ _PATH = "/principals"
 
 
 def me() -> Exchange[Me]:
-    """The principal of this client, with roles, limits and usage."""
+    """Return the principal of this client, with roles, limits and usage."""
     return answered(Me, get("/me"))
 
 
 def principals() -> Exchange[list[Principal]]:
-    """Everybody who may use the service."""
+    """Return everybody who may use the service."""
     return listed(PrincipalList, _PATH)
 
 
 def add_principal(name: str, roles: Sequence[Role], kind: str = "person") -> Exchange[Principal]:
-    """A new principal."""
+    """Return a new principal."""
     return answered(Principal, post(_PATH, {"name": name, "roles": list(roles), "kind": kind}))
 
 
 def change_principal(id: str, **changes: object) -> Exchange[Principal]:
-    """Another `name`, other `roles` or `limits`; `disabled` or not."""
+    """Return another `name`, other `roles` or `limits`; `disabled` or not."""
     return answered(Principal, post(f"{_PATH}/{id}", changes))
 
 
 def usage(id: str) -> Exchange[Usage]:
-    """The usage and limits of a principal."""
+    """Return the usage and limits of a principal."""
     return answered(Usage, get(f"{_PATH}/{id}/usage"))
 
 
 def keys(principal: str) -> Exchange[list[Key]]:
-    """The keys of a principal."""
+    """Return the keys of a principal."""
     return listed(KeyList, f"{_PATH}/{principal}/keys")
 
 
 def add_key(
     principal: str, *, name: str = "", scopes: Sequence[Role] = (), expires_days: float | None = None
 ) -> Exchange[NewKey]:
-    """A new key, which only this answer has."""
+    """Return a new key, which only this answer has."""
     body = {"name": name, "scopes": list(scopes), "expires_days": expires_days}
     return answered(NewKey, post(f"{_PATH}/{principal}/keys", body))
 

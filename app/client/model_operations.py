@@ -14,14 +14,16 @@ _PATH = "/models"
 
 
 def drawing_programs() -> Exchange[list[DrawingProgram]]:
-    """The programs that draw brought models; of one that is missing how to install it."""
+    """Return the programs that draw brought models; of one that is missing how to install it."""
     return (yield from answered(DrawingPrograms, get(f"{_PATH}/import"))).items
 
 
 def import_model(
     id: str, content: bytes, file: str, *, key: str | None = None, on_progress: Progress | None = None
 ) -> Exchange[CadModel]:
-    """The version that a file becomes once the service has examined it: .FCStd, STEP, or a manifest for Creo.
+    """Return the version that a file becomes once the service has examined it.
+
+    .FCStd, STEP, or a manifest for Creo.
 
     Two requests under one key make one. A file that is there under this id already keeps its version.
 
@@ -38,15 +40,15 @@ def import_model(
 
 
 def model_version(id: str, version: int) -> Exchange[CadModel]:
-    """One version of a CAD model with its parameters, and its origin if it was brought."""
+    """Return one version of a CAD model with its parameters, and its origin if it was brought."""
     return answered(CadModel, get(f"{_PATH}/{id}/versions/{version}"))
 
 
 def model_origin(id: str, version: int) -> Exchange[ModelOrigin]:
-    """The file from which a model was imported, its parameters there, and how far to trust its solids."""
+    """Return the file from which a model was imported, its parameters, and how far to trust its solids."""
     return answered(ModelOrigin, get(f"{_PATH}/{id}/versions/{version}/origin"))
 
 
 def original_model(id: str, version: int) -> Exchange[File]:
-    """The file that a model was imported from, as it was sent, under its name."""
+    """Return the file that a model was imported from, as it was sent, under its name."""
     return File.of(checked((yield get(f"{_PATH}/{id}/versions/{version}/original"))))

@@ -12,7 +12,7 @@ _KEY = re.compile("cw_[a-z0-9]{10}_[A-Za-z0-9_-]{43}")
 
 
 def user_at_host() -> str:
-    """The user and the machine, in printable ASCII: the same whenever this user calls from here."""
+    """Return the user and the machine, in printable ASCII: the same whenever this user calls from here."""
     try:
         user = getpass.getuser()
     except (KeyError, OSError):  # a container may run under a number that has no name
@@ -21,7 +21,7 @@ def user_at_host() -> str:
 
 
 def checked_name(name: str | None) -> str:
-    """The name as it is; `user@host` if none is given.
+    """Return the name as it is; `user@host` if none is given.
 
     Raises
     ------
@@ -38,7 +38,7 @@ def checked_name(name: str | None) -> str:
 
 
 def authorization(key: str | None) -> dict[str, str]:
-    """The header that carries a key; none without one.
+    """Return the header that carries a key; none without one.
 
     Raises
     ------

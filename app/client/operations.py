@@ -94,27 +94,27 @@ class AnalysisOptions(TypedDict, total=False):
 
 
 def templates() -> Exchange[list[TemplateSummary]]:
-    """Every version of every template."""
+    """Return every version of every template."""
     return listed(TemplateList, "/templates")
 
 
 def faults() -> Exchange[list[FaultyFile]]:
-    """Every file of a team's templates and models that has faults."""
+    """Return every file of a team's templates and models that has faults."""
     return listed(FaultList, "/catalogue/faults")
 
 
 def template(id: str, version: int) -> Exchange[Template]:
-    """One version with its inputs, outputs, formulas, limits and errata."""
+    """Return one version with its inputs, outputs, formulas, limits and errata."""
     return answered(Template, get(f"/templates/{id}/versions/{version}"))
 
 
 def library() -> Exchange[list[LibraryTableSummary]]:
-    """Every table of the library: bearing materials, oils, surface finishes."""
+    """Return every table of the library: bearing materials, oils, surface finishes."""
     return listed(LibraryTables, "/library")
 
 
 def library_table(id: str) -> Exchange[LibraryTable]:
-    """One table of the library, with a source for each value."""
+    """Return one table of the library, with a source for each value."""
     return answered(LibraryTable, get(f"/library/{id}"))
 
 
@@ -188,17 +188,17 @@ def analyse(
 
 
 def surface(analysis: str) -> Exchange[Surface]:
-    """The surface that an analysis computed; its `outputs` must have named it."""
+    """Return the surface that an analysis computed; its `outputs` must have named it."""
     return read(Surface, (yield from awaited(get(f"/analyses/{analysis}/surface"))))
 
 
 def build(key: str) -> Exchange[Build]:
-    """A build: its files and what was measured on it."""
+    """Return a build: its files and what was measured on it."""
     return answered(Build, get(f"/builds/{key}"))
 
 
 def model(id: str, kind: str = "step", *, on_progress: Progress | None = None) -> Exchange[bytes]:
-    """A file of the design's newest good model.
+    """Return a file of the design's newest good model.
 
     It is step, validated.step, glb, stl, svg, png, drawing.svg, drawing.pdf or dxf.
     """
@@ -213,7 +213,7 @@ def download(
     revision: int | None = None,
     on_progress: Progress | None = None,
 ) -> Exchange[File]:
-    """A file of a design under its name, `{design}_{model}_r{revision}.{kind}`.
+    """Return a file of a design under its name, `{design}_{model}_r{revision}.{kind}`.
 
     Of the newest good model if no revision is named; `model` says which one, if the design has several.
     """
@@ -231,7 +231,9 @@ def report(
     variants: bool = False,
     on_progress: Progress | None = None,
 ) -> Exchange[bytes]:
-    """The calculation report of a revision, the newest if none is named, with all its pictures: pdf or html.
+    """Return the calculation report of a revision, the newest if none is named, with all its pictures.
+
+    Pdf or html.
 
     `variants`: the report of all its variants. The quantities are in `units`, "si" or "us".
     """
@@ -240,18 +242,18 @@ def report(
 
 
 def picture(id: str, version: int, *, on_progress: Progress | None = None) -> Exchange[bytes]:
-    """A picture (PNG) of a CAD model's example."""
+    """Return a picture (PNG) of a CAD model's example."""
     return _file(f"/models/{id}/versions/{version}/picture", on_progress)
 
 
 def verify(step: bytes) -> Exchange[Verification]:
-    """From which build a STEP file is, and which revisions use it."""
+    """Return the build that a STEP file comes from, and the revisions that use it."""
     request = Request("POST", f"{BASE}/verify", step, headers={"Content-Type": "model/step"})
     return answered(Verification, request)
 
 
 def job(id: str) -> Exchange[Job]:
-    """A job."""
+    """Return a job."""
     return answered(Job, get(f"/jobs/{id}"))
 
 
@@ -261,11 +263,14 @@ def follow(job: str, on_progress: Progress | None = None) -> Exchange[Job]:
 
 
 def _file(path: str, on_progress: Progress | None) -> Exchange[bytes]:
-    """A file once it has been made."""
+    """Return a file once it has been made."""
     return (yield from _awaited(path, on_progress)).content
 
 
 def _awaited(path: str, on_progress: Progress | None) -> Exchange[httpx.Response]:
-    """The answer with a file once it has been made, its job followed from the start if progress is wanted."""
+    """Return the answer with a file once it has been made.
+
+    With `on_progress`, the job is followed from the start.
+    """
     headers = {"Prefer": "respond-async"} if on_progress else {}
     return awaited(replace(get(path), headers=headers), on_progress)

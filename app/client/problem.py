@@ -32,12 +32,12 @@ class Problem(Exception):
 
     @property
     def errors(self) -> list[Fault]:
-        """Every wrong input by name, where there are several."""
+        """Return every wrong input by name, where there are several."""
         return self.described.errors
 
     @classmethod
     def of(cls, response: httpx.Response) -> Problem:
-        """The problem in an answer; a proxy's page counts as one too."""
+        """Return the problem in an answer; a proxy's page counts as one too."""
         try:
             return cls(response.status_code, response.json())
         except ValueError:  # no JSON, or JSON that is not a problem
@@ -45,7 +45,7 @@ class Problem(Exception):
 
 
 def checked(response: httpx.Response) -> httpx.Response:
-    """The answer as it is.
+    """Return the answer as it is.
 
     Raises
     ------

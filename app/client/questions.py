@@ -23,7 +23,7 @@ def solve_design(
     others: Mapping[str, object] | None = None,
     on_progress: Progress | None = None,
 ) -> Exchange[DesignSolution]:
-    """Every value of a parameter or input between two bounds that gives a wanted output.
+    """Return every value of a parameter or input between two bounds that gives a wanted output.
 
     `others` are other values of the design for this question: `{"film.speed": "7000 rpm"}`.
     """
@@ -43,7 +43,7 @@ def tolerance(
     levels: Mapping[str, str] | None = None,
     on_progress: Progress | None = None,
 ) -> Exchange[ToleranceAnalysis]:
-    """Worst case, scatter, shares and yields of outputs, those that criteria judge if none are named."""
+    """Return worst case, scatter, shares and yields of outputs, by default those that criteria judge."""
     sampling = {"points": points, "seed": seed, "levels": dict(levels or {})}
     body = {"outputs": outputs, "criteria": criteria, **sampling}
     return calculated(ToleranceAnalysis, post(f"/designs/{id}/tolerance", body), on_progress)
@@ -60,7 +60,7 @@ def impact(
     units: System = "si",
     on_progress: Progress | None = None,
 ) -> Exchange[Impact]:
-    """The effect of a version on the designs that use another one, worst first; nothing is saved.
+    """Return the effect of a version on the designs that use another one, worst first; nothing is saved.
 
     All designs that are not archived, unless ids, a part of the name or tags select some.
     """

@@ -46,17 +46,17 @@ def begin(design: str, body: Mapping[str, object], key: str | None = None) -> Ex
 
 
 def find(id: str) -> Exchange[Study]:
-    """A study as it stands."""
+    """Return a study as it stands."""
     return answered(Study, get(f"/studies/{id}"))
 
 
 def find_all(design: str | None = None) -> Exchange[list[Study]]:
-    """Studies, newest first; those of a design, if one is named."""
+    """Return studies, newest first; those of a design, if one is named."""
     return listed(StudyList, "/studies", [("design", design)] if design else [])
 
 
 def end_of(id: str, on_progress: Progress | None = None) -> Exchange[Study]:
-    """A study that has done its work.
+    """Return a study that has done its work.
 
     Raises
     ------
@@ -73,12 +73,12 @@ def end_of(id: str, on_progress: Progress | None = None) -> Exchange[Study]:
 
 
 def rows_of(id: str, query: Sequence[tuple[str, str]]) -> Exchange[list[StudyRow]]:
-    """Rows of a study, all pages of them."""
+    """Return rows of a study, all pages of them."""
     return listed(StudyRows, f"/studies/{id}/rows", [*query, ("limit", _PAGE)])
 
 
 def file_of(id: str, kind: Kind, query: Sequence[tuple[str, str]]) -> Exchange[File]:
-    """Rows of a study as a file."""
+    """Return rows of a study as a file."""
     response = yield get(f"/studies/{id}/rows.{kind}", tuple(query))
     return File.of(checked(response))
 
@@ -86,7 +86,7 @@ def file_of(id: str, kind: Kind, query: Sequence[tuple[str, str]]) -> Exchange[F
 def chosen(
     study: Study, row: int, note: str | None, on_progress: Progress | None, key: str | None
 ) -> Exchange[Design]:
-    """The design after a row of its study became its newest revision."""
+    """Return the design after a row of its study became its newest revision."""
     newest = yield from design(study.design)
     headers = {"If-Match": f'"{newest.revision}"', **_once(key)}
     body = {"row": row, **({"note": note} if note else {})}
@@ -99,7 +99,7 @@ def chosen(
 
 
 def _once(key: str | None) -> dict[str, str]:
-    """A key that makes a repeated request harmless."""
+    """Return a key that makes a repeated request harmless."""
     return {"Idempotency-Key": key or uuid.uuid4().hex}
 
 
@@ -110,7 +110,7 @@ def ended(id: str) -> Exchange[Study | None]:
 
 
 def filters(columns: Sequence[str] | None, where: Where | None, sort: str | None) -> list[tuple[str, str]]:
-    """The chosen rows and columns as parameters of a query."""
+    """Return the chosen rows and columns as parameters of a query."""
     given = {"columns": ",".join(columns) if columns else None, "where": where, "sort": sort}
     return [(name, value) for name, value in given.items() if value is not None]
 
@@ -123,18 +123,18 @@ class ClientStudy:
 
     @property
     def id(self) -> str:
-        """Its name in the service."""
+        """Return its name in the service."""
         return self.study.id
 
     def wait(self, on_progress: Progress | None = None) -> Study:
-        """The study once it has done its work; raises Problem if it failed or was cancelled."""
+        """Return the study once it has done its work; raises Problem if it failed or was cancelled."""
         self.study = self._client.run(end_of(self.id, on_progress))
         return self.study
 
     def rows(
         self, columns: Sequence[str] | None = None, *, where: Where | None = None, sort: str | None = None
     ) -> list[StudyRow]:
-        """Its rows, in their order or sorted by a column (`-` before it: the largest first)."""
+        """Return its rows, in their order or sorted by a column (`-` before it: the largest first)."""
         return self._client.run(rows_of(self.id, filters(columns, where, sort)))
 
     def file(
@@ -145,7 +145,7 @@ class ClientStudy:
         where: Where | None = None,
         sort: str | None = None,
     ) -> File:
-        """Its rows as a file: csv, xlsx or npz."""
+        """Return its rows as a file: csv, xlsx or npz."""
         return self._client.run(file_of(self.id, kind, filters(columns, where, sort)))
 
     def choose(
@@ -156,7 +156,7 @@ class ClientStudy:
         on_progress: Progress | None = None,
         key: str | None = None,
     ) -> Design:
-        """The design with the values of a row, as a new revision of it."""
+        """Return the design with the values of a row, as a new revision of it."""
         return self._client.run(chosen(self.study, row, note, on_progress, key))
 
     def end(self) -> Study | None:
@@ -172,18 +172,18 @@ class AsyncClientStudy:
 
     @property
     def id(self) -> str:
-        """Its name in the service."""
+        """Return its name in the service."""
         return self.study.id
 
     async def wait(self, on_progress: Progress | None = None) -> Study:
-        """The study once it has done its work; raises Problem if it failed or was cancelled."""
+        """Return the study once it has done its work; raises Problem if it failed or was cancelled."""
         self.study = await self._client.run(end_of(self.id, on_progress))
         return self.study
 
     async def rows(
         self, columns: Sequence[str] | None = None, *, where: Where | None = None, sort: str | None = None
     ) -> list[StudyRow]:
-        """Its rows, in their order or sorted by a column (`-` before it: the largest first)."""
+        """Return its rows, in their order or sorted by a column (`-` before it: the largest first)."""
         return await self._client.run(rows_of(self.id, filters(columns, where, sort)))
 
     async def file(
@@ -194,7 +194,7 @@ class AsyncClientStudy:
         where: Where | None = None,
         sort: str | None = None,
     ) -> File:
-        """Its rows as a file: csv, xlsx or npz."""
+        """Return its rows as a file: csv, xlsx or npz."""
         return await self._client.run(file_of(self.id, kind, filters(columns, where, sort)))
 
     async def choose(
@@ -205,7 +205,7 @@ class AsyncClientStudy:
         on_progress: Progress | None = None,
         key: str | None = None,
     ) -> Design:
-        """The design with the values of a row, as a new revision of it."""
+        """Return the design with the values of a row, as a new revision of it."""
         return await self._client.run(chosen(self.study, row, note, on_progress, key))
 
     async def end(self) -> Study | None:

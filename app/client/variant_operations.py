@@ -33,7 +33,7 @@ Table = Mapping[str, Mapping[str, object]]
 
 
 def variants(id: str, revision: int | None = None, *, outputs: Sequence[str] = ()) -> Exchange[VariantsOut]:
-    """The variants of a design's revision, the newest if none is named; with some of their outputs."""
+    """Return the variants of a design's revision, the newest if none is named; with some of their outputs."""
     one = f"/revisions/{revision}" if revision else ""
     return answered(VariantsOut, get(f"/designs/{id}{one}/variants", tuple(("output", o) for o in outputs)))
 
@@ -47,7 +47,10 @@ def variant(
     units: System = "si",
     on_progress: Progress | None = None,
 ) -> Exchange[VariantDetail]:
-    """One variant with all its outputs, or some of them, curves included; `base` is the design itself."""
+    """Return one variant with all its outputs, or some of them, curves included.
+
+    `base` is the design itself.
+    """
     one = f"/revisions/{revision}" if revision else ""
     query = (("units", units), *(("output", output) for output in outputs))
     return calculated(VariantDetail, get(f"/designs/{id}{one}/variants/{name}", query), on_progress)
@@ -89,7 +92,7 @@ def download_variant(
     revision: int | None = None,
     on_progress: Progress | None = None,
 ) -> Exchange[File]:
-    """A file of a variant under its name, `{design}_{variant}_r{revision}.{kind}`.
+    """Return a file of a variant under its name, `{design}_{variant}_r{revision}.{kind}`.
 
     Of its newest good solid if no revision is named; `model` says which one, if the design has several.
     """
@@ -102,7 +105,7 @@ def download_variant(
 def download_variants(
     id: str, revision: int | None = None, *, on_progress: Progress | None = None
 ) -> Exchange[File]:
-    """The STEP files of all variants that have solids, in a ZIP."""
+    """Return the STEP files of all variants that have solids, in a ZIP."""
     one = f"/revisions/{revision}" if revision else ""
     return File.of((yield from _awaited(f"/designs/{id}{one}/variants.zip", on_progress)))
 

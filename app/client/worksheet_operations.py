@@ -26,17 +26,17 @@ _PATH = "/worksheets"
 
 
 def worksheets() -> Exchange[list[SheetSummary]]:
-    """Every worksheet at its newest version."""
+    """Return every worksheet at its newest version."""
     return listed(SheetList, _PATH)
 
 
 def read_worksheet(id: str, version: int | None = None) -> Exchange[Sheet]:
-    """A worksheet at its newest version, or at another one."""
+    """Return a worksheet at its newest version, or at another one."""
     return answered(Sheet, get(f"{_PATH}/{id}" if version is None else f"{_PATH}/{id}/versions/{version}"))
 
 
 def worksheet_text(id: str, version: int | None = None) -> Exchange[str]:
-    """The text of a worksheet as it was written."""
+    """Return the text of a worksheet as it was written."""
     query = {} if version is None else {"version": str(version)}
     return checked((yield get(f"{_PATH}/{id}/text", query))).content.decode()
 
@@ -49,7 +49,7 @@ def check_worksheet(text: str, id: str | None = None) -> Exchange[SheetCheck]:
 def create_worksheet(
     id: str, text: str, *, author: str | None = None, key: str | None = None
 ) -> Exchange[Sheet]:
-    """A new worksheet, a draft; two requests under one key make one."""
+    """Return a new worksheet, a draft; two requests under one key make one."""
     body = {"id": id, "text": text, **({"author": author} if author else {})}
     return answered(Sheet, post(_PATH, body, {"Idempotency-Key": key or uuid.uuid4().hex}))
 
@@ -57,7 +57,7 @@ def create_worksheet(
 def import_worksheet(
     id: str, content: bytes, file: str, *, key: str | None = None, on_progress: Progress | None = None
 ) -> Exchange[Sheet]:
-    """The draft that a sheet of Mathcad (.mcdx, .xmcd) becomes, once it has been read.
+    """Return the draft that a sheet of Mathcad (.mcdx, .xmcd) becomes, once it has been read.
 
     Raises
     ------
@@ -73,12 +73,12 @@ def import_worksheet(
 
 
 def read_import(id: str) -> Exchange[SheetImport]:
-    """The result of the import for every region of the original sheet."""
+    """Return the result of the import for every region of the original sheet."""
     return answered(SheetImport, get(f"{_PATH}/{id}/import"))
 
 
 def change_worksheet(sheet: Sheet, text: str, *, author: str | None = None) -> Exchange[Sheet]:
-    """An edit of a worksheet as it was read: a draft again, of a released version the next one."""
+    """Return an edit of a worksheet as it was read: a draft again, of a released version the next one."""
     body = {"text": text, **({"author": author} if author else {})}
     headers = {"Content-Type": MERGE_PATCH, "Idempotency-Key": uuid.uuid4().hex, **_if_match(sheet)}
     return answered(Sheet, Request("PATCH", f"{BASE}{_PATH}/{sheet.id}", written(body), headers=headers))

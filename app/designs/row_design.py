@@ -69,8 +69,17 @@ class RowDesign:
         return varying(self.graph, self.varied)
 
     def needs(self, wanted: Wanted) -> Needs:
-        """The cells on which some values depend."""
-        return needs(self.graph, wanted.references, self.varied | self.measured.keys(), wanted.inside)
+        """The cells on which some values depend; kept for the next call."""
+        if wanted not in self._needs:
+            if len(self._needs) >= MOST_PREPARED:
+                self._needs.clear()
+            known = self.varied | self.measured.keys()
+            self._needs[wanted] = needs(self.graph, wanted.references, known, wanted.inside)
+        return self._needs[wanted]
+
+    @cached_property
+    def _needs(self) -> dict[Wanted, Needs]:
+        return {}
 
     def steps(self, wanted: Wanted) -> list[Block]:
         """The steps that are calculated for some values, in order."""

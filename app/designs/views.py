@@ -22,12 +22,6 @@ from app.storage.tables import DesignRow, RevisionModelRow, RevisionRow
 STEP = "step"
 
 
-def design(row: DesignRow, revision: RevisionRow) -> Design:
-    """A design as of one revision: what its user wrote, and how its regeneration stands."""
-    state, problem = revision.state, revision.problem
-    return _design(row.id, revision.number, revision.document, row.created, revision.created, state, problem)
-
-
 def newest(session: Session, id: str, number: int | None = None) -> Design:
     """A design as of a revision, by default the newest.
 

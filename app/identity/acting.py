@@ -53,7 +53,7 @@ BUILT_IN = frozenset({LOCAL.id, SYSTEM.id, ANONYMOUS.id})
 
 
 def client_of(principal: str) -> str:
-    """The client, whose turn jobs take, that a principal is."""
+    """Return the client, whose turn jobs take, that a principal is."""
     return f"principal:{principal}"
 
 

@@ -65,12 +65,12 @@ class Verified:
 
 
 def hash_of(row: AuditRow, seq: int, previous: str | None) -> str:
-    """The hash of a row at a place in the chain."""
+    """Return the hash of a row at a place in the chain."""
     return _hash(_said(row), seq, previous)
 
 
 def _said(row: AuditRow) -> dict[str, object]:
-    """What a row says, by its columns."""
+    """Return what a row says, by its columns."""
     return {name: getattr(row, name) for name in _SAID}
 
 
@@ -80,7 +80,7 @@ def _hash(row: Mapping[str, object], seq: int, previous: str | None) -> str:
 
 
 def head(session: Session) -> Link:
-    """The newest sealed row; one whose number was replaced by what is none is passed over."""
+    """Return the newest sealed row; one whose number was replaced by what is none is passed over."""
     is_number = cast(AuditRow.seq, BigInteger) == AuditRow.seq  # SQLite keeps what somebody wrote: 2.5 or 'x'
     numbered = select(AuditRow.seq).where(AuditRow.seq < NO_NUMBER, is_number)
     seq = session.scalar(numbered.order_by(AuditRow.seq.desc()).limit(1))
@@ -121,7 +121,7 @@ def verify(session: Session, exported: str | None = None) -> Verified:
 
 
 def _sealed(session: Session) -> Iterator[AuditRow]:
-    """The sealed rows in their order, a page at a time."""
+    """Yield the sealed rows in their order, a page at a time."""
     last = -(2**63)
     while True:
         query = select(AuditRow).where(AuditRow.seq > last).order_by(AuditRow.seq).limit(AT_ONCE)
@@ -139,7 +139,7 @@ def _sealed(session: Session) -> Iterator[AuditRow]:
 
 
 def _fault(row: AuditRow, last: Link) -> str:
-    """What is wrong with a row behind a sound one; empty if nothing is."""
+    """Return what is wrong with a row behind a sound one; empty if nothing is."""
     seq, name = row.seq, f"row {row.seq} ({row.action} of {row.object} by {row.name}, {row.at})"
     if not isinstance(seq, int):
         return f"{name} was changed: its number is none"
@@ -161,7 +161,10 @@ def _is_text(row: AuditRow) -> bool:
 
 
 def waiting(session: Session) -> list[AuditRow]:
-    """The oldest rows that are not sealed, without those that hold what is not text: `verify` names these."""
+    """Return the oldest rows that are not sealed, without those that hold what is not text.
+
+    `verify` names these.
+    """
     query = select(AuditRow).where(AuditRow.seq.is_(None)).order_by(AuditRow.id).limit(SOME)
     try:
         rows = list(session.scalars(query))
@@ -178,7 +181,7 @@ def _readable(session: Session, query: Select[AuditRow]) -> list[AuditRow]:
 
 
 def _unsealed(session: Session) -> list[dict[str, object]]:
-    """What the rows of `waiting` say; without the ORM, unless one of them is damaged."""
+    """Return what the rows of `waiting` say; without the ORM, unless one of them is damaged."""
     session.flush()
     try:
         rows = _UNSEALED.run(session, {"most": SOME})

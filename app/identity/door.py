@@ -58,11 +58,11 @@ class Door:
         return not self._asks
 
     async def by_key(self, key: str) -> Guest | None:
-        """Whom this key lets in; None if it is not valid."""
+        """Return whom this key lets in; None if it is not valid."""
         return await self._guest(digest(key), lambda: self._holder(key))
 
     async def by_session(self, token: str) -> Guest | None:
-        """The guest who has signed in by the session of this cookie; None if it is not valid."""
+        """Return the guest who has signed in by the session of this cookie; None if it is not valid."""
         hash = digest(token)
         return await self._guest(hash, lambda: self._signed_in(hash))
 
@@ -78,7 +78,10 @@ class Door:
         self._rate.take(guest.principal, limits.requests_per_minute)
 
     async def _guest(self, hash: str, find: Callable[[], Guest | None]) -> Guest | None:
-        """The guest of this hash, from the cache or from `find`; kept in the cache that there was before."""
+        """Return the guest of this hash, from the cache or from `find`.
+
+        Kept in the cache that there was before.
+        """
         cache = self._by_key
         if (guest := cache.get(hash)) is not None:
             return guest

@@ -29,7 +29,7 @@ class NewKey:
 
     @property
     def hash(self) -> str:
-        """The hash of the key that is stored."""
+        """Return the hash of the key that is stored."""
         return digest(self.text)
 
 
@@ -42,7 +42,7 @@ def new_key() -> NewKey:
 
 
 def digest(text: str) -> str:
-    """SHA-256 of a key or of a session's cookie, in hexadecimal digits."""
+    """Return the SHA-256 of a key or of a session's cookie, in hexadecimal digits."""
     return hashlib.sha256(text.encode()).hexdigest()
 
 

@@ -39,7 +39,7 @@ NAMES = tuple(field.name for field in fields(Limits))
 
 
 def limits_of(settings: Settings, own: Mapping[str, object] | None) -> Limits:
-    """The limits of a principal whose row has these of its own."""
+    """Return the limits of a principal whose row has these of its own."""
     general = {
         "requests_per_minute": settings.principal_rate,
         "storage_mb": settings.principal_storage_mb,
@@ -61,12 +61,12 @@ class LimitReached(IdentityError):
 
 
 def today() -> str:
-    """The present day in UTC, as rows of usage have it."""
+    """Return the present day in UTC, as rows of usage have it."""
     return datetime.now(UTC).date().isoformat()
 
 
 def seconds_to_midnight() -> int:
-    """The time until the next day begins in UTC [s]."""
+    """Return the time until the next day begins in UTC [s]."""
     present = datetime.now(UTC)
     tomorrow = present.replace(hour=0, minute=0, second=0, microsecond=0) + timedelta(days=1)
     return ceil((tomorrow - present).total_seconds())

@@ -41,7 +41,7 @@ class Begun:
 
     @property
     def challenge(self) -> str:
-        """The hash of the verifier that the provider receives (RFC 7636, S256)."""
+        """Return the hash of the verifier that the provider receives (RFC 7636, S256)."""
         hashed = hashlib.sha256(self.verifier.encode()).digest()
         return base64.urlsafe_b64encode(hashed).rstrip(b"=").decode()
 
@@ -70,7 +70,7 @@ class Provider:
         self._transport = transport
 
     async def address(self, begun: Begun, back: str) -> str:
-        """The address at which the browser signs in; the provider sends it to `back`.
+        """Return the address at which the browser signs in; the provider sends it to `back`.
 
         Raises
         ------
@@ -92,7 +92,7 @@ class Provider:
         return f"{place}{'&' if '?' in place else '?'}{urlencode(query)}"
 
     async def person(self, begun: Begun, state: str, code: str, back: str) -> Person:
-        """The person who has signed in, by the code that the browser brought back.
+        """Return the person who has signed in, by the code that the browser brought back.
 
         Raises
         ------
@@ -120,7 +120,7 @@ class Provider:
         return Person(f"{self.issuer} {subject}", " ".join(name.split())[:_LONGEST_NAME])
 
     def _verified(self, token: str, keys: Mapping[str, object], nonce: str) -> Mapping[str, object]:
-        """The claims of a token, if it is signed by the provider, for this service and this sign-in."""
+        """Return the claims of a token that the provider signed for this service and this sign-in."""
         try:
             from joserfc import jwt
             from joserfc.errors import JoseError
@@ -168,7 +168,7 @@ class Provider:
 async def _asked(
     http: httpx.AsyncClient, method: str, place: str, sent: Mapping[str, str] | None = None
 ) -> Mapping[str, object]:
-    """The provider's answer; nothing of it is quoted."""
+    """Return the provider's answer; nothing of it is quoted."""
     try:
         answer = await http.request(method, place, data=sent)
         content: object = answer.json() if answer.is_success else None

@@ -45,6 +45,6 @@ class Rate:
         self._counts[who.id] += 1
 
     def counted(self) -> Counter[str]:
-        """The requests let through since the last call."""
+        """Return the requests let through since the last call."""
         counts, self._counts = self._counts, Counter()
         return counts

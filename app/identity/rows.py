@@ -31,7 +31,7 @@ def any_principal(session: Session) -> bool:
 
 
 def holder(session: Session, prefix: str, key: str) -> Guest | None:
-    """The owner of a key; None if the key is not valid, for whatever reason.
+    """Return the owner of a key; None if the key is not valid, for whatever reason.
 
     Whether there is such a prefix makes no difference in what is done.
     """
@@ -46,7 +46,7 @@ def holder(session: Session, prefix: str, key: str) -> Guest | None:
 
 
 def signed_in(session: Session, hash: str) -> Guest | None:
-    """The guest of a session; None if it, or the key by which it began, is not valid."""
+    """Return the guest of a session; None if it, or the key by which it began, is not valid."""
     query = select(SessionRow, PrincipalRow, ApiKeyRow).join(
         PrincipalRow, SessionRow.principal_id == PrincipalRow.id
     )
@@ -60,13 +60,13 @@ def signed_in(session: Session, hash: str) -> Guest | None:
 
 
 def principal(row: PrincipalRow) -> Principal:
-    """A principal with all its roles."""
+    """Return a principal with all its roles."""
     kind = cast(Literal["person", "service"], row.kind)
     return Principal(row.id, row.name, kind, frozenset(cast(list[Role], row.roles)))
 
 
 def _by_key(row: PrincipalRow, key: ApiKeyRow) -> Principal:
-    """A principal with those of its roles that a key allows."""
+    """Return a principal with those of its roles that a key allows."""
     whole = principal(row)
     scopes = cast(list[Role], key.scopes)
     allowed = frozenset(scope for scope in scopes if whole.may(scope)) if scopes else whole.roles
@@ -79,7 +79,7 @@ def is_over(moment: str | None) -> bool:
 
 
 def find(session: Session, id: str) -> PrincipalRow:
-    """A principal by its id.
+    """Return a principal by its id.
 
     Raises
     ------
@@ -93,23 +93,23 @@ def find(session: Session, id: str) -> PrincipalRow:
 
 
 def named(session: Session, name: str) -> PrincipalRow | None:
-    """A principal by its name, or None."""
+    """Return a principal by its name, or None."""
     return session.scalar(select(PrincipalRow).where(PrincipalRow.name == name))
 
 
 def of_subject(session: Session, subject: str) -> PrincipalRow | None:
-    """The person whom an OpenID provider calls so, or None."""
+    """Return the person whom an OpenID provider calls so, or None."""
     return session.scalar(select(PrincipalRow).where(PrincipalRow.subject == subject))
 
 
 def principals(session: Session, limit: int, after: str | None) -> list[PrincipalRow]:
-    """Principals in the order of their creation, behind one of them if given."""
+    """Return principals in the order of their creation, behind one of them if given."""
     query = select(PrincipalRow).order_by(PrincipalRow.id).limit(limit)
     return list(session.scalars(query.where(PrincipalRow.id > after) if after else query))
 
 
 def keys_of(session: Session, principal: str) -> list[ApiKeyRow]:
-    """The keys of a principal, oldest first."""
+    """Return the keys of a principal, oldest first."""
     return list(
         session.scalars(
             select(ApiKeyRow)
@@ -120,7 +120,7 @@ def keys_of(session: Session, principal: str) -> list[ApiKeyRow]:
 
 
 def find_key(session: Session, prefix: str, principal: str | None = None) -> ApiKeyRow:
-    """A key by its prefix; that of one principal, if it is named.
+    """Return a key by its prefix; that of one principal, if it is named.
 
     Raises
     ------
@@ -134,7 +134,10 @@ def find_key(session: Session, prefix: str, principal: str | None = None) -> Api
 
 
 def keys_of_key(session: Session, prefix: str, spared: str | None) -> list[ApiKeyRow]:
-    """A key, and those made by it or by one of these; without a spared one and those that it has made."""
+    """Return a key, and those made by it or by one of these.
+
+    Without a spared one and those that it has made.
+    """
     keys = [session.get_one(ApiKeyRow, prefix)]
     for row in keys:  # grows meanwhile
         below = select(ApiKeyRow).where(ApiKeyRow.made_by == row.prefix)
@@ -158,13 +161,13 @@ def end_session(session: Session, hash: str) -> None:
 
 
 def asked_by(session: Session, id: str) -> Principal:
-    """On whose behalf a job runs; LOCAL where that principal is of another database."""
+    """Return on whose behalf a job runs; LOCAL where that principal is of another database."""
     row = session.get(PrincipalRow, id)
     return LOCAL if row is None else principal(row)
 
 
 def names(session: Session, ids: Collection[str]) -> dict[str, str]:
-    """The names of principals by their ids; one without a row has none."""
+    """Return the names of principals by their ids; one without a row has none."""
     wanted = set(ids) - BUILT_IN
     by_id = {LOCAL.id: LOCAL.name, SYSTEM.id: SYSTEM.name}
     if not wanted:

@@ -83,7 +83,7 @@ class Identity:
         return self._write(unit)
 
     def find(self, id: str) -> PrincipalRow:
-        """A principal.
+        """Return a principal.
 
         Raises
         ------
@@ -94,12 +94,12 @@ class Identity:
             return rows.find(session, id)
 
     def named(self, name: str) -> PrincipalRow | None:
-        """A principal by its name, or None."""
+        """Return a principal by its name, or None."""
         with self._database.read() as session:
             return rows.named(session, name)
 
     def page(self, limit: int, after: str | None = None) -> list[PrincipalRow]:
-        """Principals in the order of their creation."""
+        """Return principals in the order of their creation."""
         with self._database.read() as session:
             return rows.principals(session, limit, after)
 
@@ -163,7 +163,7 @@ class Identity:
         return new, self._write(unit)
 
     def keys(self, principal: str) -> list[ApiKeyRow]:
-        """The keys of a principal, for itself or an administrator; oldest first.
+        """Return the keys of a principal, for itself or an administrator; oldest first.
 
         Raises
         ------
@@ -176,7 +176,7 @@ class Identity:
             return rows.keys_of(session, principal)
 
     def usage(self, principal: str) -> tuple[Used, Limits | None]:
-        """The usage and limits of a principal, for itself or an administrator.
+        """Return the usage and limits of a principal, for itself or an administrator.
 
         Raises
         ------
@@ -246,7 +246,7 @@ class Identity:
         return token
 
     def signed_in_as(self, subject: str, name: str) -> str:
-        """The principal whom a provider names by a subject; a new one has no roles yet."""
+        """Return the principal whom a provider names by a subject; a new one has no roles yet."""
 
         def unit(session: Session) -> str:
             if (principal := rows.of_subject(session, subject)) is not None:
@@ -303,7 +303,7 @@ def _end(session: Session, key: ApiKeyRow) -> None:
 
 
 def _maker(session: Session, owner: Principal) -> ApiKeyRow | None:
-    """The key by which a principal makes another one for itself; None for others, or without a key.
+    """Return the key by which a principal makes another one for itself; None for others, or without a key.
 
     Raises
     ------
@@ -320,7 +320,10 @@ def _maker(session: Session, owner: Principal) -> ApiKeyRow | None:
 
 
 def _scopes(owner: Principal, scopes: list[Role], maker: ApiKeyRow | None) -> list[str]:
-    """The scopes of a new key: as asked, within what its owner may, and within what whoever makes it may."""
+    """Return the scopes of a new key.
+
+    As asked, within what its owner may, and within what whoever makes it may.
+    """
     for scope in scopes:
         if not owner.may(scope):
             raise RoleNeeded(owner, [scope])
@@ -336,7 +339,7 @@ def _scopes(owner: Principal, scopes: list[Role], maker: ApiKeyRow | None) -> li
 
 
 def _expires(asked: datetime | None, maker: ApiKeyRow | None) -> str | None:
-    """When a new key ends: as asked, at the latest with the key that makes it."""
+    """Return when a new key expires: as asked, at the latest with the key that makes it."""
     wanted = None if asked is None else as_text(asked)
     latest = None if maker is None else maker.expires
     if wanted and latest and wanted > latest:

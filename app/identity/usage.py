@@ -57,7 +57,7 @@ def note_bytes(session: Session, size: int) -> None:
 
 
 def used(session: Session, principal: str) -> Used:
-    """The usage of a principal."""
+    """Return the usage of a principal."""
     row = session.get(UsageRow, (principal, today()), populate_existing=True)
     total = select(StorageRow.bytes).where(StorageRow.principal_id == principal)
     waiting = select(func.count()).where(JobRow.client == client_of(principal), JobRow.state == "queued")
@@ -68,7 +68,7 @@ def used(session: Session, principal: str) -> Used:
 
 
 def own_limits(session: Session, settings: Settings) -> Limits | None:
-    """The limits of the acting principal; None: nothing limits it."""
+    """Return the limits of the acting principal; None: nothing limits it."""
     who = ACTING.get()
     if who.id in BUILT_IN:
         return None

@@ -27,7 +27,7 @@ class Durations:
         self._seconds[lane].append(seconds)
 
     def mean(self, lane: Lane) -> float:
-        """The mean of the latest jobs [s]."""
+        """Return the mean of the latest jobs [s]."""
         latest = list(self._seconds[lane])
         return sum(latest) / len(latest) if latest else _USUAL
 
@@ -58,6 +58,6 @@ def _reserve(limit: int) -> int:
 
 
 def _seconds_to_a_place(session: Session, client: str, lane: Lane, threads: int, durations: Durations) -> int:
-    """When a job of the client has probably left the queue [s]."""
+    """Return the estimated time until a job of the client has left the queue [s]."""
     rounds = turns.count_until_next(session, client, lane) / threads
     return min(_LONGEST, max(1, ceil(rounds * durations.mean(lane))))

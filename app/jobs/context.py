@@ -49,7 +49,7 @@ class JobContext:
 
     @property
     def is_cancelled(self) -> bool:
-        """Whether somebody cancelled the job, or the server stops."""
+        """Return whether somebody cancelled the job, or the server stops."""
         return self._cancelled.is_set()
 
     @property

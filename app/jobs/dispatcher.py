@@ -108,7 +108,7 @@ class Dispatcher:
             self.wake()
 
     def lane(self, kind: str) -> Lane:
-        """The lane in which jobs of a kind wait."""
+        """Return the lane in which jobs of a kind wait."""
         return self._lane(self._lane_name(kind))
 
     def threads(self, kind: str) -> int:
@@ -127,7 +127,7 @@ class Dispatcher:
             running.cancelled.set()
 
     def running(self) -> list[Job]:
-        """The jobs that this server runs, as they were claimed."""
+        """Return the jobs that this server runs, as they were claimed."""
         return [running.job for running in list(self._running.values())]
 
     def give_back_all(self, owner: str | None = None) -> None:
@@ -208,7 +208,7 @@ class Dispatcher:
         return self.kinds[kind].lane if kind in self.kinds else FAST
 
     def _lane(self, lane: str) -> Lane:
-        """A lane by its name; a kind that nobody registered waits in the fast one."""
+        """Return a lane by its name; a kind that nobody registered waits in the fast one."""
         beside = {name: kind.lane for name, kind in self.kinds.items() if kind.lane != FAST}
         if lane == FAST:
             return Lane(tuple(beside))

@@ -75,7 +75,7 @@ class Events:
                     self.publish(*event_log.above(session, topic, start))
 
     def heard(self, topics: Iterable[str] | None = None) -> set[str]:
-        """Those of these topics, or of all, to which somebody listens here."""
+        """Return those of these topics, or of all, to which somebody listens here."""
         with self._lock:
             return set(self._topics) if topics is None else self._topics.keys() & set(topics)
 

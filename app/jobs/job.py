@@ -39,11 +39,11 @@ class Job:
 
     @cached_property
     def topics(self) -> tuple[str, ...]:
-        """The topics of its events: its own, and its design's."""
+        """Return the topics of its events: its own, and its design's."""
         own = f"job:{self.id}"
         return (own,) if self.design is None else (own, f"design:{self.design}")
 
     @property
     def finished(self) -> bool:
-        """Whether nothing will change any more."""
+        """Return whether nothing will change any more."""
         return self.state in FINAL

@@ -49,7 +49,7 @@ class Leases:
 
     @property
     def is_started(self) -> bool:
-        """Whether `start` was called."""
+        """Return whether `start` was called."""
         return self._thread.ident is not None
 
     def start(self) -> None:

@@ -127,7 +127,7 @@ def publish(events: Events, job: Job, fraction: float, text: str) -> None:
 
 
 def _topics(hint: str) -> Collection[str]:
-    """The topics to which a hint of progress belongs; none, if it is another hint."""
+    """Return the topics to which a hint of progress belongs; none, if it is another hint."""
     subject, _, names = hint.partition(":")
     job, _, design = names.partition(":")
     if subject != SUBJECT:

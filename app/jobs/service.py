@@ -172,7 +172,7 @@ class Jobs:
         return id
 
     def _share(self, limits: PrincipalLimits | None) -> int:
-        """Most jobs of one client that may wait."""
+        """Return most jobs of one client that may wait."""
         return self.settings.client_queue_limit if limits is None else limits.queued_jobs
 
     def waiting(self, session: Session, kind: str, payload: JsonObject) -> str | None:

@@ -57,7 +57,7 @@ class Subscription:
                 yield next_one
 
     async def _missed(self) -> AsyncIterator[Event]:
-        """The events above `number`, page by page, if some are missing."""
+        """Yield the events above `number`, page by page, if some are missing."""
         while self._is_behind and self.number is not None:
             self._is_behind = False  # unless more is dropped from now on
             page = await asyncio.to_thread(self._read, self._topic, self.number)

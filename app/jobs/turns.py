@@ -33,7 +33,7 @@ class Lane:
     is_common: bool = True
 
     def holds(self) -> ColumnElement[bool]:
-        """The condition that a job is in this lane."""
+        """Return the condition that a job is in this lane."""
         if not self.kinds:
             return true() if self.is_common else false()
         kinds = [literal(kind) for kind in self.kinds]  # not a list that is written out at each execution
@@ -44,7 +44,7 @@ ALL_KINDS = Lane()
 
 
 def next_turn(session: Session, client: str, lane: Lane) -> int:
-    """The turn of a client's next job."""
+    """Return the turn of a client's next job."""
     ((own, present),) = _turns(lane).run(session, {"by": client})
     turn: int = max(present, own)
     return turn
@@ -52,7 +52,7 @@ def next_turn(session: Session, client: str, lane: Lane) -> int:
 
 @lru_cache(LANES)
 def _turns(lane: Lane) -> Statement:
-    """The turn after a client's last one in a lane, and the turn that the lane is at.
+    """Return the turn after a client's last one in a lane, and the turn that the lane is at.
 
     That is the lowest that waits, else the highest that runs.
     """
@@ -125,17 +125,17 @@ def leave(session: Session, id: str, client: str) -> bool:
 
 
 def client_of(session: Session, id: str) -> str:
-    """The client whose turn a job takes."""
+    """Return the client whose turn a job takes."""
     return session.get_one(JobRow, id).client
 
 
 def _locked(session: Session, id: str) -> JobRow:
-    """A job as it is now; no other unit changes it before the end of this one."""
+    """Return a job as it is now; no other unit changes it before the end of this one."""
     return session.get_one(JobRow, id, with_for_update=True, populate_existing=True)
 
 
 def oldest_queued(session: Session) -> int | None:
-    """When the job that waits longest was queued [s of operation], or None if none waits."""
+    """Return when the job that waits longest was queued [s of operation], or None if none waits."""
     # The sum keeps SQLite from walking the index of ages through all jobs that ended earlier.
     since: Function[int | None] = func.min(JobRow.operated + 0)
     age: int | None = session.scalar(select(since).where(JobRow.state == "queued"))

@@ -23,5 +23,5 @@ def is_compressed(name: Path) -> bool:
 
 
 def artifact_entry(sha: str) -> str:
-    """The name of an artifact in the archive, and in the data folder."""
+    """Return the name of an artifact in the archive, and in the data folder."""
     return f"artifacts/{sha[:2]}/{sha}"

@@ -157,7 +157,7 @@ def _add_artifact(tar: tarfile.TarFile, row: Named, source: Path, data: Path, co
 
 
 def manifest(form: int, snapshot: Path, schema: str, artifacts: int) -> Manifest:
-    """The manifest of a backup: its format, when and by what it was made, the hash of the database."""
+    """Return the manifest of a backup: its format, when and by what it was made, the hash of the database."""
     with snapshot.open("rb") as file:
         sha = hashlib.file_digest(file, "sha256").hexdigest()
     size = snapshot.stat().st_size
@@ -193,7 +193,7 @@ def _add(tar: tarfile.TarFile, name: str, data: bytes) -> None:
 
 
 def _plain(entry: tarfile.TarInfo) -> tarfile.TarInfo:
-    """Without the owner and the mode that the file happens to have."""
+    """Return the entry of an archive without the owner and the mode of the file."""
     entry.uid = entry.gid = 0
     entry.uname = entry.gname = ""
     entry.mode = 0o644

@@ -56,7 +56,7 @@ class Findings:
         self.unnamed |= {sha: files.place(sha) for sha in lying}
 
     def lines(self) -> Iterable[str]:
-        """The faults, one a line, then what was counted."""
+        """Yield the faults, one a line, then what was counted."""
         yield from (f"database: {text}" for text in self.database)
         yield from (f"reference: {text}" for text in self.references)
         yield from (f"worksheet: {text}" for text in self.worksheets)
@@ -126,7 +126,7 @@ def is_still_named(database: Path, row: Named) -> bool:
 
 
 def named_files_of(connection: sqlite3.Connection, row: Named) -> Iterable[Named]:
-    """The row as it stands now, if it does."""
+    """Return the row as it stands now, if it does."""
     if row.kind in OWNERS:
         return (other for other in named_files(connection) if other.kind == row.kind)
     query = "SELECT sha256, size, build_key, kind FROM artifact WHERE build_key = ? AND kind = ?"

@@ -33,19 +33,19 @@ class Files(Protocol):
     """The files of a service."""
 
     def ages(self) -> dict[str, float]:
-        """When each file was put [s since 1970], by hash."""
+        """Return when each file was put [s since 1970], by hash."""
         ...
 
     def fault(self, row: Named) -> str | None:
-        """The fault of a row's file, or None."""
+        """Return the fault of a row's file, or None."""
         ...
 
     def size(self, sha: str) -> int:
-        """The size of a good file [bytes]."""
+        """Return the size of a good file [bytes]."""
         ...
 
     def place(self, sha: str) -> str:
-        """The place of a file."""
+        """Return the place of a file."""
         ...
 
     def quarantined(self) -> int:
@@ -54,7 +54,7 @@ class Files(Protocol):
 
 
 def files_of(settings: Settings) -> Files:
-    """The files that the settings name.
+    """Return the files that the settings name.
 
     Raises
     ------
@@ -76,11 +76,11 @@ class FolderFiles:
     folder: Path
 
     def path(self, sha: str) -> Path:
-        """The place of a file, whether it exists or not."""
+        """Return the place of a file, whether it exists or not."""
         return self.folder / sha[:2] / sha
 
     def ages(self) -> dict[str, float]:
-        """When each file was put [s since 1970], by hash."""
+        """Return when each file was put [s since 1970], by hash."""
         seconds = {}
         for path in self.folder.glob("[0-9a-f][0-9a-f]/*"):
             if SHA256.fullmatch(path.name):
@@ -91,15 +91,15 @@ class FolderFiles:
         return seconds
 
     def fault(self, row: Named) -> str | None:
-        """The fault of a row's file, or None."""
+        """Return the fault of a row's file, or None."""
         return fault_of(self.path(row.sha), row)
 
     def size(self, sha: str) -> int:
-        """The size of a good file [bytes]."""
+        """Return the size of a good file [bytes]."""
         return self.path(sha).stat().st_size
 
     def place(self, sha: str) -> str:
-        """The place of a file."""
+        """Return the place of a file."""
         return str(self.path(sha))
 
     def quarantined(self) -> int:
@@ -115,11 +115,11 @@ class BucketFiles:
         self._sizes: dict[str, int] = {}
 
     def ages(self) -> dict[str, float]:
-        """When each file was put [s since 1970], by hash."""
+        """Return when each file was put [s since 1970], by hash."""
         return {key: modified for key, modified in self._listed.items() if SHA256.fullmatch(key)}
 
     def fault(self, row: Named) -> str | None:
-        """The fault of a row's object, or None."""
+        """Return the fault of a row's object, or None."""
         try:
             answer = self._bucket.get(row.sha)
         except ArtifactsUnreachable as error:
@@ -134,11 +134,11 @@ class BucketFiles:
         return None
 
     def size(self, sha: str) -> int:
-        """The size of a good object [bytes]."""
+        """Return the size of a good object [bytes]."""
         return self._sizes[sha]
 
     def place(self, sha: str) -> str:
-        """The place of an object."""
+        """Return the place of an object."""
         return f"{self._url}/{sha}"
 
     def quarantined(self) -> int:
@@ -154,7 +154,7 @@ class BucketFiles:
 
 
 def fault_of(path: Path, row: Named) -> str | None:
-    """The fault of a row's file, or None; its size is in bytes."""
+    """Return the fault of a row's file, or None; its size is in bytes."""
     try:
         size = path.stat().st_size
         if row.size is not None and size != row.size:

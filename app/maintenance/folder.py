@@ -22,7 +22,7 @@ NOT_SQLITE = (
 
 
 def database_file(data: Path, url: str | None) -> Path:
-    """The SQLite file of a data folder.
+    """Return the SQLite file of a data folder.
 
     Raises
     ------

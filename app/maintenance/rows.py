@@ -23,12 +23,12 @@ class Rows(Protocol):
     """The rows of a database, of whatever kind."""
 
     def execute(self, query: str, /) -> Iterable[tuple[str, ...]]:
-        """The rows of a query without parameters, mostly texts."""
+        """Return the rows of a query without parameters, mostly texts."""
         ...
 
 
 def named_files(connection: Rows) -> Iterator[Named]:
-    """Every file that a row names; the same file as often as it is named."""
+    """Yield every file that a row names; the same file as often as it is named."""
     for sha, size, key, kind in connection.execute("SELECT sha256, size, build_key, kind FROM artifact"):
         yield Named(sha, int(size), key, kind)
     if _has_table(connection, "analysis"):
@@ -102,7 +102,7 @@ RELEASES = """
 
 
 def broken_worksheets(connection: sqlite3.Connection) -> Iterator[str]:
-    """Released worksheets whose text or results are not those of the release, a sentence each."""
+    """Yield released worksheets whose text or results are not those of the release, a sentence each."""
     from app.calculations.sources import SheetSource  # templates, which the other checks do without
     from app.worksheets.examining import as_released
 
@@ -116,7 +116,7 @@ def broken_worksheets(connection: sqlite3.Connection) -> Iterator[str]:
 
 
 def broken_references(connection: sqlite3.Connection) -> Iterator[str]:
-    """Rows that refer to rows that do not exist, a sentence each."""
+    """Yield rows that refer to rows that do not exist, a sentence each."""
     for table, row, parent, _ in connection.execute("PRAGMA foreign_key_check"):
         yield f"row {row} of table {table} refers to a row of {parent} that does not exist"
     for sentence, query in LEADING_NOWHERE.items():

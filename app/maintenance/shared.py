@@ -25,7 +25,7 @@ class Rows:
         self._connection = connection
 
     def execute(self, query: str) -> Iterable[tuple[str, ...]]:
-        """The rows of a query without parameters, mostly texts."""
+        """Return the rows of a query without parameters, mostly texts."""
         return (tuple(row) for row in self._connection.exec_driver_sql(query))
 
 
@@ -66,7 +66,7 @@ def _require_schema(connection: Connection) -> None:
 
 
 def _broken_references(connection: Connection) -> Iterable[str]:
-    """Rows that lead nowhere, a sentence each; foreign keys are PostgreSQL's own."""
+    """Yield rows that lead nowhere, a sentence each; foreign keys are PostgreSQL's own."""
     for sentence, query in LEADING_NOWHERE.items():
         for (name,) in connection.exec_driver_sql(query):
             yield sentence.format(name)

@@ -103,7 +103,7 @@ def restore(settings: Settings, url: str, archive: Path, say: Say) -> Restored:
 
 
 def _read(store: Artifacts, row: Named) -> tuple[bytes | None, str]:
-    """The bytes of a file, or None and what is wrong with it."""
+    """Return the bytes of a file, or None and what is wrong with it."""
     try:
         data = store.read(row.sha)
     except ArtifactMissing:

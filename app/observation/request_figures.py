@@ -45,7 +45,7 @@ class RequestFigures(Collector):
         row.seconds += seconds
 
     def collect(self) -> Iterator[Metric]:
-        """The figures as the library writes them."""
+        """Yield the figures as the library writes them."""
         rows = list(self._rows.items())
         requests = CounterMetricFamily(
             "crankwright_requests", "Requests answered", labels=["route", "method", "status"]
@@ -65,7 +65,7 @@ class RequestFigures(Collector):
 def _by_route(
     rows: list[tuple[tuple[str, str, int], _Row]],
 ) -> dict[tuple[str, str], tuple[list[int], float]]:
-    """Counts by class of time, and the sum of the times, of all statuses together."""
+    """Return counts by class of time, and the sum of the times, of all statuses together."""
     groups: defaultdict[tuple[str, str], list[_Row]] = defaultdict(list)
     for (route, method, _), row in rows:
         groups[route, method].append(row)

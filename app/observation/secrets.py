@@ -11,7 +11,7 @@ _KEY = re.compile(rf"{MARK}([a-z0-9]{{{PREFIX}}})_[A-Za-z0-9_-]{{{SECRET}}}")
 
 
 def key_prefix(text: str) -> str | None:
-    """The prefix of a key; None for a text that has not the form of one."""
+    """Return the prefix of a key; None for a text that has not the form of one."""
     match = _KEY.fullmatch(text) if len(text) == LENGTH else None
     return match[1] if match else None
 
@@ -22,5 +22,5 @@ def holds_key(text: str) -> bool:
 
 
 def without_keys(text: str) -> str:
-    """A text in which of each key the prefix is left."""
+    """Return a text in which of each key the prefix is left."""
     return _KEY.sub(rf"{MARK}\1_***", text) if MARK in text else text

@@ -50,15 +50,15 @@ class QueuedJob(Protocol):
 
     @property
     def id(self) -> str:
-        """Its id."""
+        """Return its id."""
 
     @property
     def kind(self) -> str:
-        """The kind of the job."""
+        """Return the kind of the job."""
 
     @property
     def attempt(self) -> int:
-        """The number of times that the job was claimed."""
+        """Return the number of times that the job was claimed."""
 
 
 class Traces:
@@ -93,20 +93,23 @@ class Traces:
             span.end()
 
     def job(self, job: QueuedJob) -> AbstractContextManager[object]:
-        """The span of a job that runs, in the trace of what has queued it."""
+        """Return the span of a job that runs, in the trace of what has queued it."""
         about = {"job.id": job.id, "job.kind": job.kind, "job.attempt": str(job.attempt)}
         return self.span(f"job {job.kind}", about, SpanKind.CONSUMER)
 
     def writer(self, writer: Writer) -> Writer:
-        """A writer of which each unit of work is a span, if it is part of a trace."""
+        """Return a writer of which each unit of work is a span, if it is part of a trace."""
         return _TracedWriter(writer, self)
 
     def worker(self, worker: BatchWorker) -> BatchWorker:
-        """A worker of which each run is a span, if it is part of a trace."""
+        """Return a worker of which each run is a span, if it is part of a trace."""
         return _TracedWorker(worker, self)
 
     def part(self, name: str, function: Callable[..., object]) -> AbstractContextManager[object]:
-        """The span of a function within a trace; none for what the service does by itself, such as beats."""
+        """Return the span of a function within a trace.
+
+        None for what the service does by itself, such as beats.
+        """
         return self.span(name, {FUNCTION: _named(function)}) if logs.TRACE.get() else nullcontext()
 
     def submitted(self, writer: Writer, unit: Unit[T]) -> Future[T]:
@@ -189,14 +192,14 @@ class _TracedWorker(_TracedBatch):
 
 
 def _carried(span: Span) -> str:
-    """The context of a span as text."""
+    """Return the context of a span as text."""
     carrier: dict[str, str] = {}
     _CARRIER.inject(carrier, set_span_in_context(span, Context()))
     return carrier.get(TRACEPARENT, "")
 
 
 def _named(function: Callable[..., object]) -> str:
-    """Module and name of a function; a partial function is called by that which it calls."""
+    """Return the module and name of a function; a partial function is called by that which it calls."""
     while isinstance(function, partial):
         function = function.func
     named = function if hasattr(function, "__qualname__") else type(function)

@@ -39,7 +39,7 @@ class Mark:
 
 
 def tornado(bars: Sequence[Bar]) -> str:
-    """Shares as bars, those of total effect behind those of a value alone; empty without any."""
+    """Return shares as bars, those of total effect behind those of a value alone; empty without any."""
     if not bars:
         return ""
     height = ROW * len(bars) + 24

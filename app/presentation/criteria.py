@@ -26,11 +26,11 @@ class Amount(Protocol):
 
     @property
     def value(self) -> float:
-        """The magnitude."""
+        """Return the magnitude."""
 
     @property
     def unit(self) -> str:
-        """Its unit."""
+        """Return its unit."""
 
 
 class Between(Protocol):
@@ -38,11 +38,11 @@ class Between(Protocol):
 
     @property
     def value(self) -> Sequence[float | None]:
-        """Low and high."""
+        """Return low and high."""
 
     @property
     def unit(self) -> str:
-        """Their unit."""
+        """Return their unit."""
 
 
 class Judged(Protocol):
@@ -109,7 +109,7 @@ class Line:
 
 
 def line(criterion: Judged) -> Line:
-    """A criterion in words."""
+    """Return a criterion in words."""
     return Line(
         name=criterion.name,
         step=step_of(criterion),
@@ -129,18 +129,18 @@ def line(criterion: Judged) -> Line:
 
 
 def sides(require: str) -> tuple[str, str, str]:
-    """Value, sign and limit of a requirement, as written."""
+    """Return the value, sign and limit of a requirement, as written."""
     parts = _SIGN.match(require)
     return (parts[1], parts[2], parts[3]) if parts else (require, "", "")
 
 
 def plain_name(text: str) -> str:
-    """A side of a requirement in words: `film.minimum_film_thickness` → `minimum film thickness`."""
+    """Return a side of a requirement in words: `film.minimum_film_thickness` → `minimum film thickness`."""
     return _NAME.sub(lambda name: name[1].replace("_", " "), text).strip()
 
 
 def step_of(criterion: Judged) -> str:
-    """The block whose value is judged, by the name of the criterion or by what it requires."""
+    """Return the block whose value is judged, by the name of the criterion or by what it requires."""
     name = Reference.parse(criterion.name)
     if name.output is not None:
         return name.block
@@ -149,13 +149,16 @@ def step_of(criterion: Judged) -> str:
 
 
 def title(criterion: Judged) -> str:
-    """The subject of the criterion in words; of a value calculated within it, its own name."""
+    """Return the subject of the criterion in words; of a value calculated within it, its own name."""
     left = sides(criterion.require)[0]
     return plain_name(left if _ONE_NAME.fullmatch(left) else criterion.name)
 
 
 def compared(criterion: Judged) -> str:
-    """The value, the sign that is true of it, and the limit: `1.53 µm < 2 µm`; empty if one is missing."""
+    """Return the value, the sign that is true of it, and the limit: `1.53 µm < 2 µm`.
+
+    Empty if one is missing.
+    """
     value, limit = criterion.value, criterion.limit
     if value is None or limit is None:
         return ""
@@ -165,14 +168,14 @@ def compared(criterion: Judged) -> str:
 
 
 def _sign(criterion: Judged, value: Amount, limit: Amount) -> str:
-    """The sign between value and limit that is true of them, near the one that is required."""
+    """Return the sign between value and limit that is true of them, near the one that is required."""
     if sides(criterion.require)[1] == ">=":
         return "≥" if value.value >= limit.value else "<"
     return "≤" if value.value <= limit.value else ">"
 
 
 def margin(criterion: Judged) -> str:
-    """The margin to the limit, with the ends that the error allows; negative if the limit is passed."""
+    """Return the margin to the limit, with the range that the error allows; negative beyond the limit."""
     if criterion.margin is None:
         return ""
     left = numbers.in_line(criterion.margin)
@@ -181,7 +184,10 @@ def margin(criterion: Judged) -> str:
 
 
 def _ends(criterion: Judged) -> tuple[float, float] | None:
-    """The least and the largest margin, in the unit of the margin; None where the band does not say."""
+    """Return the least and the largest margin, in the unit of the margin.
+
+    None where the band does not say.
+    """
     band, limit, left = criterion.band, criterion.limit, criterion.margin
     if band is None or limit is None or left is None or not band.unit == limit.unit == left.unit:
         return None
@@ -193,7 +199,7 @@ def _ends(criterion: Judged) -> tuple[float, float] | None:
 
 
 def error(criterion: Judged) -> str:
-    """The error of the value, in words."""
+    """Return the error of the value, in words."""
     if criterion.value is None:
         return ""
     if not criterion.error_stated or criterion.relative_error is None:
@@ -202,7 +208,7 @@ def error(criterion: Judged) -> str:
 
 
 def missing(criterion: Judged) -> str:
-    """The input to give, or the result that is needed, for a verdict; empty where there is one."""
+    """Return the input or result that a verdict still needs; empty where there is a verdict."""
     if criterion.give:
         return f"give {', '.join(map(plain_name, criterion.give))}"
     if criterion.verdict == "undecided" and criterion.needs is not None:
@@ -211,7 +217,10 @@ def missing(criterion: Judged) -> str:
 
 
 def remarks(criterion: Judged) -> tuple[str, ...]:
-    """Restrictions of the verdict: an error not stated, a limit not verified, a waiver, the worst place."""
+    """Return restrictions of the verdict.
+
+    An error not stated, a limit not verified, a waiver, the worst place.
+    """
     said = (
         NOT_STATED if criterion.value is not None and not criterion.error_stated else "",
         f"unverified: {criterion.unverified}" if criterion.unverified else "",
@@ -241,7 +250,7 @@ class Summed(Protocol):
 
 
 def tone(verdict: Summed) -> str:
-    """The colour of a verdict: green only where the interface says so."""
+    """Return the colour of a verdict: green only where the interface says so."""
     if verdict.green:
         return "green"
     return {"not_met": "bad", "undecided": "open", "not_checked": "open"}.get(verdict.verdict, "plain")
@@ -256,5 +265,8 @@ _WHY = {
 
 
 def headline_of(state: str, *, is_judged: bool) -> str:
-    """The headline in place of a verdict: the design has no criteria, or they were not judged, and why."""
+    """Return the headline in place of a verdict.
+
+    The design has no criteria, or they were not judged, and why.
+    """
     return NO_CRITERIA if is_judged else _WHY.get(state, NOT_JUDGED)

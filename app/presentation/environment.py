@@ -18,27 +18,27 @@ PAGES = Path(__file__).with_name("pages")
 
 
 def formula(latex: str) -> Markup:
-    """LaTeX as MathML, set as in a line of its own."""
+    """Return LaTeX as MathML, set as in a line of its own."""
     return Markup(mathml(latex).replace('display="inline"', 'display="block"', 1))
 
 
 def inline(latex: str) -> Markup:
-    """LaTeX as MathML within a line of words."""
+    """Return LaTeX as MathML within a line of words."""
     return Markup(mathml(latex))
 
 
 def capital(words: str) -> str:
-    """The words with a capital; the rest as it is."""
+    """Return the words with a capital; the rest as it is."""
     return words[:1].upper() + words[1:]
 
 
 def isolated(text: object) -> Markup:
-    """A text of a user, escaped, in an element of its own that turns nothing beside it."""
+    """Return a text of a user, escaped, in an element of its own that turns nothing beside it."""
     return Markup("<bdi>{}</bdi>").format(balanced(str(text)))
 
 
 def coded(text: str) -> Markup:
-    """A sentence, escaped, with what stands between backticks as code."""
+    """Return a sentence, escaped, with what stands between backticks as code."""
     pieces = text.split("`")
     if len(pieces) % 2 == 0:
         return escape(text)
@@ -46,7 +46,7 @@ def coded(text: str) -> Markup:
 
 
 def environment(folder: Path) -> Environment:
-    """Jinja for the pages in a folder, which may extend the frame of every page, `base.html`."""
+    """Return Jinja for the pages in a folder, which may extend the frame of every page, `base.html`."""
     jinja = Environment(
         loader=FileSystemLoader([PAGES, folder]),
         autoescape=True,

@@ -26,7 +26,10 @@ class Aligned(NamedTuple):
 
 
 def aligned(value: float) -> Aligned:
-    """A number with five significant digits: `3.2449` → `3` and `.2449`; `1.2e-7` → `1` and `.2·10⁻⁷`."""
+    """Return a number with five significant digits: `3.2449` → `3` and `.2449`.
+
+    `1.2e-7` → `1` and `.2·10⁻⁷`.
+    """
     rounded = float(f"{value:.{DIGITS}g}")
     shown = f"{rounded:.0f}" if 1e4 <= abs(rounded) < LARGEST_PLAIN else f"{rounded:.{DIGITS}g}"
     mantissa, _, exponent = shown.partition("e")
@@ -36,13 +39,13 @@ def aligned(value: float) -> Aligned:
 
 
 def plain(value: float) -> str:
-    """A number with five significant digits on one line."""
+    """Return a number with five significant digits on one line."""
     return "".join(aligned(value))
 
 
 @lru_cache(maxsize=1024)
 def unit(text: str | None) -> str:
-    """A unit as it is printed: `mm**2/s` → `mm²/s`; nothing for a pure number or a text."""
+    """Return a unit as it is printed: `mm**2/s` → `mm²/s`; nothing for a pure number or a text."""
     return unit_symbol(text) if text else ""
 
 
@@ -50,17 +53,20 @@ ALMOST_ALL = 0.985
 
 
 def percent(relative: float) -> str:
-    """A relative error in two digits: `0.24` → `24 %`, `4.5e-5` → `0.0045 %`."""
+    """Return a relative error in two digits: `0.24` → `24 %`, `4.5e-5` → `0.0045 %`."""
     return f"{rough(relative * 100)} %"
 
 
 def share(used: float) -> str:
-    """The used share of an allowance: in two digits; near 100 % and above in four, to see on which side."""
+    """Return the used share of an allowance: in two digits.
+
+    Near 100 % and above in four, to see on which side.
+    """
     return percent(used) if used < ALMOST_ALL else f"{plain(float(f'{used * 100:.4g}'))} %"
 
 
 def rough(value: float) -> str:
-    """A number with two significant digits."""
+    """Return a number with two significant digits."""
     return plain(float(f"{value:.2g}"))
 
 
@@ -70,7 +76,7 @@ class Quantity(Protocol):
 
     @property
     def value(self) -> object:
-        """The magnitude, of any shape, or a choice."""
+        """Return the magnitude, of any shape, or a choice."""
 
 
 SIGNS = {"plus": "+", "minus": "−", "upper": "", "lower": ""}  # of deviations; two have their own
@@ -78,7 +84,7 @@ PARTS = ("value", "unit", "reason", *SIGNS, "zone", "distribution")
 
 
 def in_line(quantity: object) -> str:
-    """A quantity, as typed or as answered, in one line: `25 kN`, `= scale * 48 mm`, `[1, 2, 3] mm`."""
+    """Return a quantity, as typed or as answered, in one line: `25 kN`, `= scale * 48 mm`, `[1, 2, 3] mm`."""
     if quantity is None:
         return ""
     if isinstance(quantity, Mapping):
@@ -106,7 +112,7 @@ def _written(value: object) -> str:
 
 
 def _list(values: list[object]) -> str:
-    """A list whole, up to 20 values; of a longer one the least and the largest."""
+    """Return a list whole, up to 20 values; of a longer one the least and the largest."""
     if size(values) <= FEW:
         return f"[{', '.join(map(_written, values))}]"
     ends, flat = extremes(values), list(_flat(values))
@@ -114,7 +120,7 @@ def _list(values: list[object]) -> str:
 
 
 def _remark(values: object) -> str:
-    """Of a long list, how many values there are, and where the least and the largest are."""
+    """Return how many values a long list has, and where the least and the largest are."""
     if not isinstance(values, list) or size(values) <= FEW:
         return ""
     ends = extremes(values)
@@ -132,13 +138,13 @@ def size(values: object) -> int:
 
 
 def counted(values: list[object]) -> str:
-    """The number of values in words: `720`, or `3 × 24` of a table."""
+    """Return the number of values in words: `720`, or `3 × 24` of a table."""
     inside = values[0] if values else None
     return f"{len(values)} × {counted(inside)}" if isinstance(inside, list) else str(len(values))
 
 
 def extremes(values: list[object]) -> tuple[int, int] | None:
-    """The places of the least and the largest number of a list; None without any number."""
+    """Return the places of the least and the largest number of a list; None without any number."""
     placed = [(value, place) for place, value in enumerate(_flat(values)) if isinstance(value, int | float)]
     return (min(placed)[1], max(placed, key=lambda one: (one[0], -one[1]))[1]) if placed else None
 
@@ -152,7 +158,7 @@ def _flat(values: object) -> Iterator[object]:
 
 
 def tolerance(more: Mapping[str, object]) -> str:
-    """A tolerance after its value: `H7 (+0.025 −0.0)`, `+10 −5 uniform`."""
+    """Return a tolerance after its value: `H7 (+0.025 −0.0)`, `+10 −5 uniform`."""
     given = {name: more[name] for name in (*SIGNS, "zone", "distribution") if more.get(name) is not None}
     if not given:
         return ""
@@ -165,7 +171,7 @@ def tolerance(more: Mapping[str, object]) -> str:
 
 
 def _deviation(name: str, size: object) -> str:
-    """A deviation with its sign, in the unit of the value or in that of its text."""
+    """Return a deviation with its sign, in the unit of the value or in that of its text."""
     shown = plain(size) if isinstance(size, float) else str(size)
     sign = SIGNS[name]
     return sign + shown if sign or shown.startswith(("-", "−")) else f"+{shown}"

@@ -11,7 +11,7 @@ _LINK = re.compile(r"(?:https?://|mailto:)[^\s]+", re.IGNORECASE)
 
 
 def html_of(markdown: str) -> str:
-    """Safe HTML of a text in Markdown; what would be a tag, or another link, stays text."""
+    """Return safe HTML of a text in Markdown; what would be a tag, or another link, stays text."""
     rendered: str = _renderer().render(markdown)
     return rendered.strip()
 

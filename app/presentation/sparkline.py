@@ -21,7 +21,10 @@ class Course:
 
 
 def course(values: object, axis: object = None, unit: str | None = None) -> Course | None:
-    """The course of a long list of numbers, along an axis where there is one; None of anything else."""
+    """Return the course of a long list of numbers, along an axis where there is one.
+
+    None of anything else.
+    """
     if not isinstance(values, list) or len(values) <= numbers.FEW or numbers.size(values) != len(values):
         return None
     ends = numbers.extremes(values)
@@ -41,7 +44,7 @@ def _place(end: int, axis: object, unit: str | None, count: int) -> str:
 
 
 def _path(values: list[float | None], ends: tuple[int, int]) -> str:
-    """The line; begun again after values that are missing."""
+    """Return the line; begun again after values that are missing."""
     low, high = values[ends[0]], values[ends[1]]
     assert low is not None
     assert high is not None

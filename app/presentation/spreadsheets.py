@@ -17,7 +17,7 @@ Value = float | int | str | None
 
 
 def harmless(value: Value) -> Value:
-    """A value for a cell of a CSV file: a text that looks like a formula gets a leading apostrophe."""
+    """Return a value for a cell of a CSV file: a text that looks like a formula gets a leading apostrophe."""
     return f"'{value}" if isinstance(value, str) and value.startswith(DANGEROUS) else value
 
 
@@ -36,5 +36,5 @@ def put(cell: object, value: Value) -> None:
 
 
 def without_illegal(text: str) -> str:
-    """A text without the control characters that XLSX cannot hold, at most `LONGEST_CELL` long."""
+    """Return a text without the control characters that XLSX cannot hold, at most `LONGEST_CELL` long."""
     return str(_ILLEGAL.sub("", text))[:LONGEST_CELL]

@@ -28,12 +28,12 @@ US = {
 
 
 def shown_unit(declared: str, system: System) -> str:
-    """The unit in which a value declared in another is shown."""
+    """Return the unit in which a value declared in another is shown."""
     return US.get(declared, declared) if system == "us" else declared
 
 
 def shown_value(value: object, declared: str, system: System) -> object:
-    """A magnitude of any shape, given in a declared unit, in the unit in which it is shown."""
+    """Return a magnitude of any shape, given in a declared unit, in the unit in which it is shown."""
     return _value(value, declared) if system == "us" and declared in US else value
 
 

@@ -41,7 +41,7 @@ Valued = Quantity | Values | Shown | Output | UsedInput | AnalysisOutput
 
 
 def cell(quantity: Valued, *, whole: bool = False) -> Cell:
-    """A quantity as the interface shows it; five digits, or the `whole` number as typed."""
+    """Return a quantity as the interface shows it; five digits, or the `whole` number as typed."""
     value = quantity.value
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         parts = _all_digits(value) if whole else numbers.aligned(value)
@@ -50,7 +50,10 @@ def cell(quantity: Valued, *, whole: bool = False) -> Cell:
 
 
 def _in_words(quantity: Valued) -> str:
-    """A text, an array, or why there is no value; points without one are dashes, with their reasons."""
+    """Return a text, an array, or why there is no value.
+
+    Points without one are dashes, with their reasons.
+    """
     fields = {name: getattr(quantity, name) for name in WRITTEN if name in quantity.model_fields_set}
     if not isinstance(quantity, Output) or not quantity.reasons:
         return in_line(fields)
@@ -59,7 +62,7 @@ def _in_words(quantity: Valued) -> str:
 
 
 def flat(value: object) -> list[object]:
-    """All items of a list of any depth; of a single value, the value."""
+    """Return all items of a list of any depth; of a single value, the value."""
     return [item for part in value for item in flat(part)] if isinstance(value, list) else [value]
 
 
@@ -68,17 +71,20 @@ def _dashed(value: object) -> object:
 
 
 def typed(raw: Raw) -> str:
-    """A value as its user typed it."""
+    """Return a value as its user typed it."""
     return clean(text_of(raw))
 
 
 def clean(text: str) -> str:
-    """A user's words without signs that are not seen: control characters, and those that turn the writing."""
+    """Return a user's words without signs that are not seen.
+
+    Control characters, and those that turn the writing.
+    """
     return _UNSEEN.sub(" ", text)
 
 
 def in_si(quantity: Valued) -> Cell:
-    """The same value in SI units; empty for texts and arrays."""
+    """Return the same value in SI units; empty for texts and arrays."""
     value, name = quantity.value, quantity.unit
     if not isinstance(value, (int, float)) or isinstance(value, bool) or not name:
         return NOTHING
@@ -87,7 +93,10 @@ def in_si(quantity: Valued) -> Cell:
 
 @lru_cache(maxsize=512)
 def si_unit(text: str) -> str:
-    """The coherent SI unit of a unit, composed as it is: `kN` → `N`, `mPa*s` → `Pa*s`, `rpm` → `rad/s`."""
+    """Return the coherent SI unit of a unit, composed as it is.
+
+    `kN` → `N`, `mPa*s` → `Pa*s`, `rpm` → `rad/s`.
+    """
     whole = _WORD.fullmatch(text) or text == "1"
     if not whole:
         replaced = _WORD.sub(lambda word: _coherent(word[0], _DERIVED) or "?", text)
@@ -98,7 +107,10 @@ def si_unit(text: str) -> str:
 
 
 def _coherent(text: str, candidates: tuple[str, ...]) -> str | None:
-    """The candidate that measures the same: an angle is given in rad, though it counts as a pure number."""
+    """Return the candidate that measures the same.
+
+    An angle is given in rad, though it counts as a pure number.
+    """
     base = unit(text).base
     alike = [si for si in candidates if compatible(unit(si).base, base)]
     exact = (si for si in alike if str(unit(si).base) == str(base))
@@ -106,7 +118,7 @@ def _coherent(text: str, candidates: tuple[str, ...]) -> str | None:
 
 
 def _all_digits(value: float) -> tuple[str, str]:
-    """A number with all digits that were typed."""
+    """Return a number with all digits that were typed."""
     shown = f"{value:.{DIGITS_TYPED}g}"
     if "e" in shown:
         return tuple(numbers.aligned(value))  # type: ignore[return-value]

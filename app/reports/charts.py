@@ -52,7 +52,7 @@ class _Axis:
     logarithmic: bool
 
     def share(self, value: float) -> float:
-        """The position of a value between the ends of the axis, 0 to 1."""
+        """Return the position of a value between the ends of the axis, 0 to 1."""
         low, high = self._scaled(self.low), self._scaled(self.high)
         return (self._scaled(value) - low) / (high - low)
 
@@ -72,13 +72,13 @@ class _Axis:
 
 
 def _round_step(least: float) -> float:
-    """The smallest of 1, 2 or 5 times a power of ten that is not below `least`."""
+    """Return the smallest of 1, 2 or 5 times a power of ten that is not below `least`."""
     power = 10.0 ** floor(log10(least))
     return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= least * (1 - 1e-9))
 
 
 def svg(chart: Chart) -> str:
-    """A chart as SVG; empty if there is nothing to draw."""
+    """Return a chart as SVG; empty if there is nothing to draw."""
     across = [series.x for series in chart.series]
     upright = [series.y for series in chart.series]
     x, y = _axis(across, chart.logarithmic, None), _axis(upright, chart.logarithmic, chart.highest)
@@ -126,18 +126,18 @@ class _Frame:
         return self.height - self.top - BOTTOM
 
     def place(self, x: float, y: float) -> tuple[float, float]:
-        """A point of the drawing."""
+        """Return a point of the drawing."""
         return LEFT + self.x.share(x) * self.width, self.top + (1 - self.y.share(y)) * self.depth
 
     def with_equal_scales(self) -> _Frame:
-        """The same frame with one axis made longer, so that circles are round."""
+        """Return the same frame with one axis made longer, so that circles are round."""
         scale = max((self.x.high - self.x.low) / self.width, (self.y.high - self.y.low) / self.depth) * 1.05
         return _Frame(
             _around(self.x, scale * self.width), _around(self.y, scale * self.depth), self.height, self.top
         )
 
     def grid(self) -> Iterator[str]:
-        """Lines and numbers at the ticks, and the frame."""
+        """Yield lines and numbers at the ticks, and the frame."""
         for value in self.x.ticks():
             at, bottom = _text(self.place(value, self.y.low)[0]), _text(self.height - BOTTOM)
             yield f'<path d="M{at},{self.top}V{bottom}" stroke="#d6dde4"/>'
@@ -179,7 +179,7 @@ def _lines(frame: _Frame, series: Sequence[Series]) -> Iterator[str]:
 
 
 def _path(frame: _Frame, line: Series) -> str:
-    """The line, begun again after every value that is missing."""
+    """Return the line, begun again after every value that is missing."""
     pieces, down = [], False
     for x, y in _points(frame, line):
         if x is None or y is None:

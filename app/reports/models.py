@@ -43,7 +43,7 @@ def model_of(
     remark: str,
     painted: Sequence[SolidField] = (),
 ) -> Model:
-    """One model of a revision, compared with the newest good one before it."""
+    """Return one model of a revision, compared with the newest good one before it."""
     cls = class_of(catalogue, model.id, model.version)
     row = rows.build(session, model.build or "")
     measured = measures.measurements(**row.measurements) if row else None
@@ -85,7 +85,7 @@ def _parameters(
     cls: type[CadModel] | None,
     system: System,
 ) -> Iterator[Mapped]:
-    """The mapping; `before` are the parameters of the model that it is compared with, as stored."""
+    """Yield the mapping; `before` are the parameters of the model that it is compared with, as stored."""
     dimensions = measured.dimensions if measured else {}
     for name in [n for n in (cls.inputs if cls else model.parameters) if n in model.parameters]:
         old = Shown.model_validate(before[name]) if name in before else None
@@ -127,7 +127,7 @@ def _analyses(analyses: Mapping[str, ModelAnalysis], system: System) -> Iterator
 
 
 def _analysed(kind: str, analysis: ModelAnalysis, name: str, output: AnalysisOutput, system: System) -> Line:
-    """An output of an analysis, and how it was computed."""
+    """Return an output of an analysis, and how it was computed."""
     mesh, level = output.mesh, f"level {output.level}" if output.level else "refined"
     held = analysis.boundary.replace("_", " ")
     within = f", within {numbers.percent(analysis.tolerance)} asked" if analysis.tolerance else ""
@@ -149,7 +149,7 @@ def _error(output: AnalysisOutput) -> str:
 
 
 def _rules(model: RevisionModel, cls: type[CadModel] | None) -> list[Rule]:
-    """The rules between the parameters; ranges are those of a whole family of sizes and say little."""
+    """Return the rules between the parameters; ranges are those of a whole family of sizes and say little."""
     if cls is None or not model.parameters:
         return []
     given = {n: p.value if p.unit is None else p.plain() for n, p in model.parameters.items()}

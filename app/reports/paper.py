@@ -28,7 +28,7 @@ class Press:
         self._lock = Lock()
 
     def print(self, report: Report, pictures: Pictures) -> bytes:
-        """A report as PDF; equal reports give equal bytes. It waits, so call it in a thread.
+        """Return a report as PDF; equal reports give equal bytes. It waits, so call it in a thread.
 
         Raises
         ------
@@ -45,7 +45,7 @@ class Press:
                 raise Unprintable(f"this report is too long for paper: {reason} ({error})") from error
 
     def draw(self, svg: bytes) -> bytes:
-        """A drawing as PDF; equal drawings give equal bytes. It waits, so call it in a thread.
+        """Return a drawing as PDF; equal drawings give equal bytes. It waits, so call it in a thread.
 
         Raises
         ------

@@ -30,7 +30,7 @@ class Picture:
     names: Mapping[str, object]
 
     def for_script(self, scope: str) -> dict[str, object]:
-        """The picture for the script that draws it."""
+        """Return the picture for the script that draws it."""
         return {"kind": self.kind, "scope": scope, **self.names}
 
 
@@ -44,15 +44,15 @@ class Declaring(Protocol):
 
     @property
     def inputs(self) -> Schema:
-        """JSON Schema of the inputs."""
+        """Return the JSON Schema of the inputs."""
 
     @property
     def outputs(self) -> Schema:
-        """JSON Schema of the outputs."""
+        """Return the JSON Schema of the outputs."""
 
 
 def pictures(template: Declaring, answer: Evaluated | RevisionStep) -> list[Picture]:
-    """The pictures of one evaluation, in the order of the table below."""
+    """Return the pictures of one evaluation, in the order of the table below."""
     if not answer.outputs:
         return []
     used = {name: value for name, value in answer.inputs.items() if isinstance(value, UsedInput)}
@@ -62,7 +62,7 @@ def pictures(template: Declaring, answer: Evaluated | RevisionStep) -> list[Pict
 
 
 def axis_of(template: Declaring, answer: Evaluated | RevisionStep, name: str) -> str | None:
-    """The name of what a value of an evaluation goes along; None for a single value."""
+    """Return the name of what a value of an evaluation goes along; None for a single value."""
     output = answer.outputs.get(name)
     if output is None or not isinstance(output.value, list):
         return None
@@ -122,7 +122,7 @@ def _orbit(values: Values, declared: Members) -> Iterator[Picture]:
 
 
 def _star(values: Values, declared: Members) -> Iterator[Picture]:
-    """The crankpins of an engine, of one cylinder too."""
+    """Yield the crankpins of an engine, of one cylinder too."""
     angles = values["crankpin_angles"].value if "crankpin_angles" in values else None
     if not isinstance(angles, list) or not 1 <= len(angles) <= MOST_PINS:
         return
@@ -145,7 +145,7 @@ def _modes(values: Values, declared: Members) -> Iterator[Picture]:
 
 
 def _curves(values: Values, declared: Members) -> Iterator[Picture]:
-    """Every curve over its axis: those of one unit and axis together."""
+    """Yield every curve over its axis: those of one unit and axis together."""
     groups: dict[tuple[str, str], list[str]] = {}
     for name, about in declared.items():
         axis = _axis(values, declared, name)
@@ -159,7 +159,7 @@ def _curves(values: Values, declared: Members) -> Iterator[Picture]:
 
 
 def _rows(values: Values, declared: Members) -> Iterator[Picture]:
-    """Every array of rows over a list that was given, such as vibratory torques of shafts over the speeds."""
+    """Yield each array of rows over an input list, such as vibratory torques of shafts over the speeds."""
     for name, about in declared.items():
         axis = about.along
         if axis is None or name not in values or about.unit is None:
@@ -172,7 +172,10 @@ def _rows(values: Values, declared: Members) -> Iterator[Picture]:
 
 
 def _most(table: object, length: int) -> list[int]:
-    """Which rows, counted from 1, have the largest numbers, in their order; none of what is no table."""
+    """Return which rows, counted from 1, have the largest numbers, in their order.
+
+    None of what is no table.
+    """
     if not isinstance(table, list) or not table:
         return []
     sizes = []
@@ -185,7 +188,10 @@ def _most(table: object, length: int) -> list[int]:
 
 
 def _axis(values: Values, declared: Members, name: str) -> str | None:
-    """The name over which a curve is drawn: its own axis, or else the crank angle or an array of inputs."""
+    """Return the name over which a curve is drawn.
+
+    Its own axis, or else the crank angle or an array of inputs.
+    """
     if not _is_curve(values, name) or declared[name].unit is None:
         return None
     length = _length(values[name])

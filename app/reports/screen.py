@@ -11,7 +11,7 @@ from app.reports.content import Report
 
 
 def display(formula: str) -> Markup:
-    """A formula of the report, which is MathML, set as in a line of its own."""
+    """Return a formula of the report, which is MathML, set as in a line of its own."""
     return Markup(formula.replace('display="inline"', 'display="block"', 1))
 
 
@@ -20,7 +20,7 @@ jinja.filters["display"] = display
 
 
 def page(report: Report) -> str:
-    """A report as HTML."""
+    """Return a report as HTML."""
     base = f"/api/v1/designs/{report.design}/revisions/{report.revision}"
     return jinja.get_template("report.html").render(
         report=report, units=report.units, path=f"{base}/report", base=base

@@ -54,7 +54,7 @@ class Reports:
         self.owner = owner  # legal owner of drawings
 
     def number(self, id: str, number: int | None) -> int:
-        """The revision meant: the newest, if none is named.
+        """Return the revision meant: the newest, if none is named.
 
         Raises
         ------
@@ -74,7 +74,7 @@ class Reports:
         only: str | None = None,
         has_formulas: bool = True,
     ) -> schemas.RevisionWorksheet:
-        """A revision with its formulas written out, or without them; with `only`, that step alone.
+        """Return a revision with its formulas written out, or without them; with `only`, that step alone.
 
         Raises
         ------
@@ -88,7 +88,7 @@ class Reports:
         return worksheet(revision, self.catalogues.templates, system, only=only, has_formulas=has_formulas)
 
     def request_pictures(self, id: str, number: int, client: str = "") -> list[str]:
-        """The jobs that make what a report shows of every built model; none if all is there."""
+        """Return the jobs that make what a report shows of every built model; none if all is there."""
         with self.database.read() as session:
             row = repository.revision(session, id, number)
             analysed = (row.results or {}).get("analyses", {})
@@ -102,7 +102,10 @@ class Reports:
         return [self.models.request_files(key, kinds, client) for key, kinds in missing.items() if kinds]
 
     def request_variant_pictures(self, id: str, number: int, client: str = "") -> list[str]:
-        """The job that makes a picture of every distinct solid of the variants; none if all is there."""
+        """Return the job that makes a picture of every distinct solid of the variants.
+
+        None if all is there.
+        """
         with self.database.read() as session:
             row = repository.revision(session, id, number)
             keys = {model.build_key for model in row.variant_models if model.build_key}
@@ -111,7 +114,7 @@ class Reports:
         return [self.models.request_files_of_all(missing, (SKETCH,), client)] if missing else []
 
     def gather_variants(self, id: str, number: int, system: System, *, pending: bool) -> Report:
-        """The report of a revision with all its variants.
+        """Return the report of a revision with all its variants.
 
         Raises
         ------
@@ -169,7 +172,7 @@ class Reports:
         )
 
     def pictures(self, report: Report) -> dict[str, dict[str, bytes]]:
-        """Picture and drawing of every model that has them; the drawing with its stamp."""
+        """Return the picture and drawing of every model that has them; the drawing with its stamp."""
         files = {model.name: {file.kind: file.sha256 for file in model.files} for model in report.models}
         with self.database.read() as session:
             models = repository.revision(session, report.design, report.revision).models
@@ -189,7 +192,7 @@ class Reports:
         return own | {one.name: {SKETCH: self.store.read(one.file.sha256)} for one in solids if one.file}
 
     def _painted(self, report: Report, name: str) -> dict[str, bytes]:
-        """The pictures of a model in the colours of its fields."""
+        """Return the pictures of a model in the colours of its fields."""
         place = report.design, report.revision, name
         with self.database.read() as session:
             fields = fields_of(session, self.catalogues.models, *place)
@@ -201,7 +204,7 @@ class Reports:
     def _missing(
         self, there: Mapping[str, str], shown: Sequence[str] = (PICTURE, DRAWING)
     ) -> tuple[str, ...]:
-        """The pictures of a build that no job has drawn yet, or that are lost."""
+        """Return the pictures of a build that no job has drawn yet, or that are lost."""
         return tuple(kind for kind in shown if kind not in there or not self.store.exists(there[kind]))
 
     def _model(
@@ -227,12 +230,12 @@ class Reports:
 
 
 def _kinds(*, is_analysed: bool) -> tuple[str, ...]:
-    """The files that a report shows a model by; a field is painted on the third."""
+    """Return the files that a report shows a model by; a field is painted on the third."""
     return (PICTURE, DRAWING, SURFACE) if is_analysed else (PICTURE, DRAWING)
 
 
 def tag(report: Report, kind: str) -> str:
-    """A strong ETag: equal reports have equal tags."""
+    """Return a strong ETag: equal reports have equal tags."""
     return f'"{hashlib.sha256(to_json([asdict(report), kind])).hexdigest()[:32]}"'
 
 
@@ -242,7 +245,7 @@ def _round(one: schemas.Round) -> Round:
 
 
 def _summary(steps: Sequence[Step], models: Sequence[Model]) -> list[str]:
-    """The notes for a checker besides the verdict: warnings, values out of range, violated rules."""
+    """Return the notes for a checker besides the verdict: warnings, values out of range, violated rules."""
     warnings = sum(len(step.warnings) for step in steps) + sum(len(model.warnings) for model in models)
     outside = [f"{step.name}: {one.words}" for step in steps for one in step.ranges if not one.holds]
     rules = [(part.name, part.rules) for part in steps] + [(part.name, part.rules) for part in models]

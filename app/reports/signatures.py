@@ -17,7 +17,7 @@ ROLES = {"calculated": "Calculated", "checked": "Checked", "released": "Released
 
 
 def signatures_of(design: str, revision: int, units: System, steps: Sequence[Approval]) -> Signatures:
-    """The signatures of a revision; a step that nobody has taken has none."""
+    """Return the signatures of a revision; a step that nobody has taken has none."""
     taken = {one.step: one for one in steps}
     state: ApprovalState = steps[-1].step if steps else "unsigned"
     block = Block(
@@ -38,7 +38,7 @@ def signatures_of(design: str, revision: int, units: System, steps: Sequence[App
 
 
 def author_of(author: Author | None, steps: Sequence[Approval]) -> str:
-    """The name of a revision's author; empty for `local`, and before 0.2.
+    """Return the name of a revision's author; empty for `local`, and before 0.2.
 
     From the hand-over on it is the name of that time: to rename somebody changes no report that is signed.
     """
@@ -49,7 +49,7 @@ def author_of(author: Author | None, steps: Sequence[Approval]) -> str:
 
 
 def of_variants(signatures: Signatures) -> Signatures:
-    """The signatures in the report of all variants."""
+    """Return the signatures in the report of all variants."""
     block = Block.model_validate_json(signatures.block).model_copy(update={"has_variants": True})
     return replace(signatures, block=block.model_dump_json())
 
@@ -61,7 +61,7 @@ def _signature(role: str, step: Approval | None) -> Signature:
 
 
 def moment(at: str) -> str:
-    """A time as it is printed."""
+    """Return a time as it is printed."""
     return f"{at[:10]} {at[11:19]} UTC"
 
 

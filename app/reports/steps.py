@@ -47,7 +47,7 @@ class StepAsTyped(TypedDict):
 
 
 def step_of(name: str, step: PreviewedStep, document: StepAsTyped, catalogues: Catalogues) -> Step:
-    """One step, from the worksheet of a revision and from its `document`, which is the step as typed."""
+    """Return one step from the worksheet of a revision and from its `document`, the step as typed."""
     calculated_by, catalogue = step.template, catalogues.templates
     review = review_of(catalogues.snapshot.sheets.released.get((calculated_by.id, calculated_by.version)))
     cls = class_of(catalogue, calculated_by.id, calculated_by.version)
@@ -69,7 +69,7 @@ def step_of(name: str, step: PreviewedStep, document: StepAsTyped, catalogues: C
 
 
 def review_of(sheet: ReleasedSheet | None) -> str:
-    """The author and reviewer of a worksheet; empty for a template from a file."""
+    """Return the author and reviewer of a worksheet; empty for a template from a file."""
     if sheet is None:
         return ""
     author = f"written by {sheet.author}" if sheet.author else "its author is not named"
@@ -78,7 +78,7 @@ def review_of(sheet: ReleasedSheet | None) -> str:
 
 
 def class_of(catalogue: Catalogue[T], id: str, version: int) -> type[T] | None:
-    """The class of a version, or None if its file was taken away."""
+    """Return the class of a version, or None if its file was taken away."""
     try:
         return catalogue.get(id, version)
     except TemplateError:
@@ -86,7 +86,7 @@ def class_of(catalogue: Catalogue[T], id: str, version: int) -> type[T] | None:
 
 
 def version_of(calculated_by: CalculatedBy, cls: Class) -> Identity:
-    """A version with the digest of the code that calculated, as far as the revision has it."""
+    """Return a version with the digest of the code that calculated, as far as the revision has it."""
     digest = calculated_by.digest or (identity(cls)["digest"] if cls else "")
     title = cls.title() if cls else "a version that is no longer there"
     withdrawn = (cls and cls.withdrawn) or ""
@@ -94,7 +94,7 @@ def version_of(calculated_by: CalculatedBy, cls: Class) -> Identity:
 
 
 def rules(checks: Iterable[Check]) -> list[Rule]:
-    """Ranges or rules, those that do not hold first, then those that use most."""
+    """Return ranges or rules, those that do not hold first, then those that use most."""
     useful = [c for c in checks if not (c.kind == "domain" and c.holds and _idle(c.used))]
     return [_rule(check) for check in sorted(useful, key=lambda c: (c.holds, -(c.used or 0.0)))]
 
@@ -118,7 +118,10 @@ def _rule(check: Check) -> Rule:
 
 
 def _about_the_case(detail: str, checks: Iterable[Check]) -> str:
-    """A warning; where it begins with the sentence of a rule that is violated, what is instead of that."""
+    """Return a warning.
+
+    Where it begins with the sentence of a rule that is violated, what is instead of that.
+    """
     for check in checks:
         if check.violation and detail.startswith(check.words):
             return check.violation + detail.removeprefix(check.words)
@@ -134,13 +137,13 @@ def _level(level: object, tolerance: float | None) -> str:
 
 
 def _inputs(step: PreviewedStep, typed: Mapping[str, Raw], cls: Class) -> list[Line]:
-    """Inputs in the order of the template; those of a step that waits are as typed."""
+    """Return inputs in the order of the template; those of a step that waits are as typed."""
     names = _ordered(step.inputs, cls.inputs if cls else ())
     return [_input(name, step.inputs[name], typed.get(name), cls) for name in names]
 
 
 def _ordered(there: Iterable[str], declared: Iterable[str]) -> list[str]:
-    """Names in the order of their declarations, where there are any."""
+    """Return names in the order of their declarations, where there are any."""
     order = {name: place for place, name in enumerate(declared)}
     return sorted(there, key=lambda name: order.get(name, len(order)))
 
@@ -162,7 +165,7 @@ def _input(name: str, used: UsedInput | Raw, raw: Raw, cls: Class) -> Line:
 
 
 def relation_mathml(raw: Raw) -> str:
-    """A relation in MathML; empty where it is a name alone, or none."""
+    """Return a relation in MathML; empty where it is a name alone, or none."""
     latex = relation_latex(raw)
     return mathml(latex) if latex else ""
 
@@ -193,13 +196,13 @@ def _error(error: object, *, is_curve: bool) -> str:
 
 
 def words_of(name: str, cls: Class) -> str:
-    """The meaning of a name, in words."""
+    """Return the meaning of a name, in words."""
     declared = _declared(name, cls)
     return declared.meaning.words if declared else name.replace("_", " ")
 
 
 def symbol_of(name: str, cls: Class) -> str:
-    """The symbol of a name in MathML; empty for options, which have none on paper."""
+    """Return the symbol of a name in MathML; empty for options, which have none on paper."""
     declared = _declared(name, cls)
     return mathml(symbol(declared)) if declared and not hasattr(declared, "options") else ""
 

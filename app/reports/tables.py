@@ -61,7 +61,7 @@ class Table:
 
 
 def of(worksheet: RevisionWorksheet) -> Table:
-    """The quantities of a revision."""
+    """Return the quantities of a revision."""
     return Table(worksheet.name, worksheet.number, worksheet.created, [*_rows(worksheet)])
 
 
@@ -94,7 +94,10 @@ def _of_model(block: str, model: RevisionModel) -> Iterator[Row]:
 
 
 def _read(raw: Raw) -> tuple[object, str]:
-    """A parameter as typed: its number and unit, or its text if it is a relation or a list with one."""
+    """Return a parameter as typed.
+
+    Its number and unit, or its text if it is a relation or a list with one.
+    """
     try:
         typed = read_any(raw) if not is_relation(raw) else None
     except FaultyText:
@@ -110,7 +113,7 @@ def _quantity(
 
 
 def write_csv(table: Table) -> bytes:
-    """A row for each single value; arrays have a row for each of their values, with its index."""
+    """Return a row for each single value; arrays have a row for each of their values, with its index."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\r\n")
     writer.writerow(HEAD)
@@ -122,7 +125,7 @@ def write_csv(table: Table) -> bytes:
 
 
 def _each(value: object, remark: object, index: str = "") -> Iterator[tuple[str, Value, str]]:
-    """Every single value of an array, with its index: `3` or `3 1`, counted from 1."""
+    """Yield every single value of an array, with its index: `3` or `3 1`, counted from 1."""
     if not isinstance(value, list):
         yield index, cast(Value, value), "" if remark is None else str(remark)
         return
@@ -132,7 +135,7 @@ def _each(value: object, remark: object, index: str = "") -> Iterator[tuple[str,
 
 
 def write_xlsx(table: Table) -> bytes:
-    """A sheet of all single values, and for each block that has arrays a sheet with a column for each."""
+    """Return a sheet of all single values, and for each block with arrays a sheet with a column for each."""
     from openpyxl import Workbook  # type: ignore[import-untyped]
     from openpyxl.worksheet.worksheet import Worksheet
 
@@ -156,7 +159,7 @@ def write_xlsx(table: Table) -> bytes:
 
 
 def _single(row: Row) -> tuple[Value, ...]:
-    """A line of the sheet of values; an array is in the sheet of its block, and only counted here."""
+    """Return a line of the sheet of values; an array is in the sheet of its block, and only counted here."""
     if isinstance(row.value, list):
         remark = f"{len(row.value)} values, in the sheet of {row.block}"
         return row.block, row.kind, row.name, None, None, row.unit, row.origin, remark
@@ -206,7 +209,7 @@ def _fill(sheet: Worksheet, lines: Sequence[Sequence[Value]]) -> None:
 
 
 def _sheet_name(block: str, taken: Sequence[str]) -> str:
-    """A name that spreadsheets allow, and that no other sheet has, whatever its capitals."""
+    """Return a name that spreadsheets allow, and that no other sheet has, whatever its capitals."""
     there = {name.lower() for name in taken}
     plain = _NO_SHEET_NAME.sub("", block)[: _LONGEST_SHEET_NAME - 4]
     numbered = chain([plain], (f"{plain} {i}" for i in count(2)))

@@ -15,7 +15,7 @@ _SAME = 0.05  # deg, pins nearer than this are drawn as one
 
 
 def rays(angles: Sequence[float]) -> list[tuple[float, list[int]]]:
-    """Angles of pins [deg] from 0 up to 360, and which cylinders, counted from 1, are at each."""
+    """Return angles of pins [deg] from 0 up to 360, and which cylinders, counted from 1, are at each."""
     star: list[tuple[float, list[int]]] = []
     for cylinder, angle in enumerate(angles, 1):
         for at, cylinders in star:
@@ -28,7 +28,7 @@ def rays(angles: Sequence[float]) -> list[tuple[float, list[int]]]:
 
 
 def throw_star(angles: Sequence[float]) -> str:
-    """The star as SVG; empty without pins. `angles` are those of the cylinders' pins [deg]."""
+    """Return the star as SVG; empty without pins. `angles` are those of the cylinders' pins [deg]."""
     if not angles:
         return ""
     drawn = [_ray(angle, cylinders) for angle, cylinders in rays(angles)]
@@ -43,7 +43,7 @@ def throw_star(angles: Sequence[float]) -> str:
 
 
 def _ray(angle: float, cylinders: Sequence[int]) -> str:
-    """One pin and its web."""
+    """Return one pin and its web."""
     left, up = sin(radians(angle)), cos(radians(angle))
     x, y = _place(-RAY * left), _place(-RAY * up)
     at_x, at_y = _place(-WORDS * left), _place(-WORDS * up + 4)
@@ -55,5 +55,5 @@ def _ray(angle: float, cylinders: Sequence[int]) -> str:
 
 
 def _place(value: float) -> str:
-    """A coordinate, without a minus of zero."""
+    """Return a coordinate, without a minus of zero."""
     return f"{value + 0.0 if abs(value) >= 0.05 else 0.0:.1f}"

@@ -75,7 +75,7 @@ class ReportAsData(TypedDict):
 
 
 def typeset(report: ReportAsData, pictures: Pictures) -> bytes:
-    """A report as PDF; equal reports give equal bytes."""
+    """Return a report as PDF; equal reports give equal bytes."""
     steps = [_bounded(step) for step in report["steps"]]
     models = [
         {**part, "rules": _rules(part["rules"]), **_illustrated(part, pictures)} for part in report["models"]
@@ -95,7 +95,7 @@ def typeset(report: ReportAsData, pictures: Pictures) -> bytes:
 
 
 def _bounded(step: _Step) -> dict[str, object]:
-    """A step that says of each formula whether it fits its place for sure, so that it is not measured."""
+    """Return a step that marks the formulas that surely fit, so that they need not be measured."""
     return {
         **step,
         "formulas": [
@@ -120,12 +120,12 @@ def _rules(rules: Iterable[_Rule]) -> list[dict[str, object]]:
 
 
 def _illustrated(part: _Solid, pictures: Pictures) -> dict[str, object]:
-    """The pictures of a model or solid, which stand by its name, as a field of it."""
+    """Return the pictures of a model or solid, which stand by its name, as a field of it."""
     return {"pictures": _as_svg(pictures.get(part["name"], {}))}
 
 
 def _as_svg(files: Mapping[str, bytes]) -> dict[str, str]:
-    """Pictures as SVG texts, for the typesetter's data is text: a PNG is put into one."""
+    """Return pictures as SVG texts, for the typesetter's data is text: a PNG is put into one."""
     kinds = {"drawing": DRAWING, "picture": SKETCH}
     pictures = {name: files[kind].decode() for name, kind in kinds.items() if kind in files}
     if PICTURE in files:

@@ -19,7 +19,7 @@ SIGNS = {"met": "met", "not_met": "NOT MET", "undecided": "undecided", "not_chec
 
 
 def variants_of(out: VariantsOut, *, pending: bool) -> Variants:
-    """The content of a report of all variants; `pending` while the service makes their pictures."""
+    """Return the content of a report of all variants; `pending` while the service makes their pictures."""
     rows = _worst_first(out)
     first = next((row for row in rows if out.governing and row.name == out.governing.variant), None)
     return Variants(
@@ -33,7 +33,7 @@ def variants_of(out: VariantsOut, *, pending: bool) -> Variants:
 
 
 def _worst_first(out: VariantsOut) -> list[VariantResult]:
-    """The variants in their order, the one that governs before them."""
+    """Return the variants in their order, the one that governs before them."""
     rows = [*([out.base] if out.base else []), *out.rows]
     governs = out.governing.variant if out.governing else ""
     return sorted(rows, key=lambda row: row.name != governs)
@@ -44,7 +44,7 @@ def _called(row: VariantResult) -> str:
 
 
 def _sentence(first: VariantResult | None) -> str:
-    """A sentence that names the governing variant and its criterion."""
+    """Return a sentence that names the governing variant and its criterion."""
     criterion = _governing(first)
     if first is None or criterion is None:
         return ""
@@ -86,7 +86,7 @@ Column = tuple[str, list[str]]  # heading, and a text for each variant
 
 
 def _inputs(out: VariantsOut, rows: Sequence[VariantResult]) -> list[Column]:
-    """Every place in which variants differ; the design's own value in brackets."""
+    """Return every place in which variants differ; the design's own value in brackets."""
     columns = []
     for about in out.columns:
         own = f"({numbers.in_line(about.nominal)})" if about.nominal else ""
@@ -98,7 +98,7 @@ def _inputs(out: VariantsOut, rows: Sequence[VariantResult]) -> list[Column]:
 
 
 def _used(rows: Sequence[VariantResult]) -> list[Column]:
-    """Verdict and utilisation of every criterion."""
+    """Return the verdict and utilisation of every criterion."""
     names = dict.fromkeys(one.name for row in rows for one in row.criteria)
     columns = []
     for name in names:
@@ -114,7 +114,7 @@ def _share(shown: Line | None) -> str:
 
 
 def _parts(columns: Sequence[Column], rows: Sequence[VariantResult]) -> Iterable[Columns]:
-    """Tables that are as wide as paper, each with the names of the variants."""
+    """Yield tables that are as wide as paper, each with the names of the variants."""
     for start in range(0, len(columns), MOST_COLUMNS):
         part = columns[start : start + MOST_COLUMNS]
         texts = [[_called(row), *(column[1][at] for column in part)] for at, row in enumerate(rows)]
@@ -122,7 +122,7 @@ def _parts(columns: Sequence[Column], rows: Sequence[VariantResult]) -> Iterable
 
 
 def _solids(rows: Sequence[VariantResult], *, pending: bool) -> list[Solid]:
-    """Every distinct solid once, with the variants that share it."""
+    """Return every distinct solid once, with the variants that share it."""
     shared: dict[tuple[str, str], list[VariantResult]] = {}
     for row in rows:
         for name, model in row.models.items():

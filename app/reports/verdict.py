@@ -10,7 +10,7 @@ from app.schemas import criteria as schemas
 
 
 def judged(revision: RevisionWorksheet) -> Judged:
-    """The verdict of a revision, or why there is none."""
+    """Return the verdict of a revision, or why there is none."""
     verdict = revision.verdict
     if verdict is None or not revision.criteria:
         return Judged(headline_of(revision.state, is_judged=revision.criteria is not None), "plain", "", [])
@@ -21,12 +21,12 @@ def judged(revision: RevisionWorksheet) -> Judged:
 
 
 def _governing(first: Line | None) -> str:
-    """The criterion that governs, in one sentence; empty without one."""
+    """Return the criterion that governs, in one sentence; empty without one."""
     return governing_sentence(first) if first else ""
 
 
 def governing_sentence(first: Line) -> str:
-    """A criterion that governs, in one sentence."""
+    """Return a criterion that governs, in one sentence."""
     used = f"{first.used} of the limit used" if first.used else ""
     margin = f"margin {first.margin}" if first.margin else ""
     error = f"error {first.error}" if first.error else ""
@@ -40,7 +40,7 @@ def _where(one: Line) -> str:
 
 
 def row_of(one: Line, criterion: schemas.Criterion) -> Criterion:
-    """A criterion as a row of the report."""
+    """Return a criterion as a row of the report."""
     basis = ", ".join(filter(None, (criterion.level and f"level {criterion.level}", criterion.truth)))
     remarks = [one.missing, *one.remarks, basis and f"calculated: {basis}"]
     return Criterion(

@@ -35,7 +35,7 @@ class Line:
 
 
 def read_block(pdf: bytes) -> Block:
-    """The approval block that a report carries.
+    """Return the approval block that a report carries.
 
     Raises
     ------
@@ -161,7 +161,7 @@ def _text(pdf: bytes, printed: bytes) -> Iterator[Line]:
 
 
 def _lines(pdf: bytes) -> list[str]:
-    """The lines of the pages."""
+    """Return the lines of the pages."""
     from pypdf import PdfReader
 
     pages = PdfReader(io.BytesIO(pdf)).pages

@@ -52,7 +52,7 @@ def fits(mathml: Iterable[str], width: float) -> bool:
 
 
 def _alike(mathml: str) -> str:
-    """A formula with a zero for each digit in its texts: all digits are equally wide."""
+    """Return a formula with a zero for each digit in its texts: all digits are equally wide."""
     return _TEXT.sub(_with_zeros, mathml)
 
 
@@ -66,7 +66,7 @@ def _plain(reference: re.Match[str]) -> str:
 
 @lru_cache(4096)
 def _bound(mathml: str) -> float:
-    """No less than the width of a formula [em]."""
+    """Return an upper bound of the width of a formula [em]."""
     try:
         return _of(fromstring(mathml))
     except ParseError:

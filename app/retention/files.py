@@ -52,7 +52,7 @@ class Sweep:
         return sum(self._store.delete_unchanged(file) for file in self._old(unused) if not is_stopping())
 
     def _is_spare(self, file: Stored) -> bool:
-        """True if a discarded file that a row names is in its place again, if need be by this look at it."""
+        """Return whether a discarded file that a row names is in its place again; put it back if need be."""
         return file.is_discarded and self._store.exists(file.sha)
 
     def _old(self, unused: set[Stored]) -> Iterable[Stored]:

@@ -58,7 +58,7 @@ def delete_events(session: Session, kept: float, most: int) -> int:
 
 
 def unwanted_builds(session: Session, kept: float, after: str, most: int) -> list[str]:
-    """Some of the builds that no revision uses and nobody has wanted for this long [s], by key."""
+    """Return some of the builds that no revision uses and nobody has wanted for this long [s], by key."""
     unwanted = select(BuildRow.key).where(BuildRow.key > after, _is_unwanted(session, kept))
     return list(session.scalars(unwanted.order_by(BuildRow.key).limit(most)))
 
@@ -77,7 +77,7 @@ def delete_builds(session: Session, keys: Collection[str], kept: float) -> int:
 
 
 def referenced_files(session: Session) -> set[str]:
-    """The SHA-256 of every file that a row refers to, and some hashes more, such as keys of builds.
+    """Return the SHA-256 of every file that a row refers to, and some hashes more, such as keys of builds.
 
     Files belong to artifacts, to outputs of analyses that are files, to whatever a job was given or made, and
     to studies: the rows that they were given and those that they calculated; and worksheets to the files from
@@ -107,7 +107,7 @@ def _is_unwanted(session: Session, kept: float) -> ColumnElement[bool]:
 
 
 def _awaited(session: Session) -> set[str]:
-    """The builds of which unfinished jobs make further files."""
+    """Return the builds of which unfinished jobs make further files."""
     payloads = session.scalars(select(JobRow.payload).where(JobRow.state.in_(UNFINISHED)))
     named = ([payload["build"]] if "build" in payload else payload.get("builds", ()) for payload in payloads)
     return set(chain.from_iterable(named))

@@ -23,7 +23,7 @@ FRESH = (
 
 
 def is_fresh(session: Session, keys: Collection[str]) -> bool:
-    """True if all of these builds are there, and sure to stay for as long as any request or job takes."""
+    """Return whether all of these builds exist, and will stay for as long as any request or job takes."""
     wanted, present = set(keys), operated(session)
     seen = _seen(session, wanted)
     return len(seen) == len(wanted) and min(map(itemgetter(1), seen), default=present) >= present - FRESH
@@ -48,7 +48,7 @@ def renew(session: Session, keys: Collection[str]) -> bool:
 
 
 def _seen(session: Session, keys: Collection[str]) -> Sequence[Row]:
-    """Key and age of those of these builds that are there."""
+    """Return the key and age of those of these builds that are there."""
     ages = _ages(len(keys))
     return ages.run(session, dict(zip(ages.names, keys, strict=True)))
 

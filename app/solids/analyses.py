@@ -40,7 +40,7 @@ class Analyses:
     def request(
         self, shape: CadModel, question: Question, outputs: tuple[str, ...], client: str = ""
     ) -> str | None:
-        """The job that builds and analyses a model, or None if all outputs are stored.
+        """Return the job that builds and analyses a model, or None if all outputs are stored.
 
         Raises
         ------
@@ -56,7 +56,7 @@ class Analyses:
         return None if there and fresh else self._enqueued(shape, question, outputs, client, there=there)
 
     def request_surface(self, key: str, catalogue: Catalogue[CadModel]) -> str:
-        """The job that finds the lost surface of an analysis again.
+        """Return the job that finds the lost surface of an analysis again.
 
         Raises
         ------
@@ -86,7 +86,7 @@ class Analyses:
         *,
         there: bool = False,
     ) -> str | None:
-        """The job; None if all outputs were there, and their build was not purged meanwhile."""
+        """Return the job; None if all outputs were there, and their build was not purged meanwhile."""
         payload = {
             "model": shape.id,
             "version": shape.version,
@@ -105,7 +105,7 @@ class Analyses:
         return job
 
     def show(self, shape: CadModel, question: Question, outputs: tuple[str, ...]) -> Analysis:
-        """The outputs that were asked for, as far as they are stored."""
+        """Return the outputs that were asked for, as far as they are stored."""
         build = build_key(shape)
         with self.database.read() as session:
             stored = repository.outputs_of(session, question.key(build))
@@ -113,7 +113,7 @@ class Analyses:
         return shown(Version(id=shape.id, version=shape.version), build, question, computed)
 
     def show_all(self, key: str, load: float) -> Analysis:
-        """All that is stored for a question about a build, under a load [N·m].
+        """Return all that is stored for a question about a build, under a load [N·m].
 
         Raises
         ------
@@ -126,7 +126,7 @@ class Analyses:
             return shown(_model_of(session, build), build, question, under_load(question, outputs))
 
     def of_build(self, build: str) -> list[Analysis]:
-        """All that is stored of a build, under 1 N·m.
+        """Return all that is stored of a build, under 1 N·m.
 
         Raises
         ------
@@ -138,7 +138,7 @@ class Analyses:
             return [shown(model, build, *answered) for answered in repository.of_build(session, build)]
 
     def surface(self, key: str) -> File:
-        """The surface that an analysis computed.
+        """Return the surface that an analysis computed.
 
         Raises
         ------

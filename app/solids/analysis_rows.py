@@ -19,13 +19,13 @@ from cad.analysis.kinds import STRESSES, SURFACE
 
 
 def outputs_of(session: Session, key: str) -> Outputs:
-    """The stored outputs of a question about a build, by output."""
+    """Return the stored outputs of a question about a build, by output."""
     rows = session.scalars(select(AnalysisRow).where(AnalysisRow.key == key))
     return {row.output: _output(row) for row in rows}
 
 
 def outputs_of_builds(session: Session, builds: Collection[str]) -> Mapping[str, Outputs]:
-    """The stored outputs of all questions about some builds, by key of the question and output."""
+    """Return the stored outputs of all questions about some builds, by key of the question and output."""
     outputs: dict[str, dict[str, StoredOutput]] = {}
     for row in session.scalars(select(AnalysisRow).where(AnalysisRow.build_key.in_(builds))):
         outputs.setdefault(row.key, {})[row.output] = _output(row)
@@ -33,7 +33,10 @@ def outputs_of_builds(session: Session, builds: Collection[str]) -> Mapping[str,
 
 
 def stresses(session: Session, build: str, question: Question) -> Outputs:
-    """The stored stresses of a build, whatever level was asked for: their meshes follow from the stress."""
+    """Return the stored stresses of a build, whatever level was asked for.
+
+    Their meshes follow from the stress.
+    """
     rows = session.scalars(
         select(AnalysisRow).where(AnalysisRow.build_key == build, AnalysisRow.output.in_(STRESSES))
     )
@@ -48,7 +51,7 @@ def stresses(session: Session, build: str, question: Question) -> Outputs:
 
 
 def asked(session: Session, key: str) -> tuple[str, Question, Outputs]:
-    """The build, the question, and all that is known to it.
+    """Return the build, the question, and all that is known to it.
 
     Raises
     ------
@@ -62,13 +65,13 @@ def asked(session: Session, key: str) -> tuple[str, Question, Outputs]:
 
 
 def key_of_surface(session: Session, sha256: str) -> str | None:
-    """The analysis whose surface has this hash; rare, so no index serves it."""
+    """Return the analysis whose surface has this hash; rare, so no index serves it."""
     named = type_coerce(AnalysisRow.found, Text).contains(f'"sha256":"{sha256}"', autoescape=True)
     return session.scalar(select(AnalysisRow.key).where(AnalysisRow.output == SURFACE, named).limit(1))
 
 
 def of_build(session: Session, build: str) -> list[tuple[Question, Outputs]]:
-    """Every question that was asked about a build, by kind, with all that is known to it."""
+    """Return every question that was asked about a build, by kind, with all that is known to it."""
     rows = list(session.scalars(select(AnalysisRow).where(AnalysisRow.build_key == build)))
     grouped: dict[str, list[AnalysisRow]] = {}
     for row in sorted(rows, key=lambda row: (row.asked["kind"], row.key)):
@@ -77,7 +80,7 @@ def of_build(session: Session, build: str) -> list[tuple[Question, Outputs]]:
 
 
 def _together(rows: list[AnalysisRow]) -> tuple[Question, Outputs]:
-    """A question from the rows of its answers."""
+    """Return a question from the rows of its answers."""
     question = Question(**rows[0].asked)
     outputs = {row.output: _output(row) for row in rows}
     return question, {name: outputs[name] for name in in_order(question.kind, outputs)}

@@ -12,7 +12,7 @@ from cad.analysis.kinds import SURFACE
 
 
 def shown(model: Version, build: str, question: Question, outputs: Mapping[str, StoredOutput]) -> Analysis:
-    """An analysis on its own. Outputs that were computed together have one mesh and one time."""
+    """Return an analysis on its own. Outputs that were computed together have one mesh and one time."""
     meshes = [output["mesh"] for output in outputs.values()]
     levels = (output["level"] for output in outputs.values() if output["level"])
     fields = {
@@ -27,12 +27,12 @@ def shown(model: Version, build: str, question: Question, outputs: Mapping[str, 
 
 
 def in_design(build: str, question: Question, outputs: Mapping[str, StoredOutput]) -> ModelAnalysis:
-    """An analysis in a revision, without times: equal revisions are equal."""
+    """Return an analysis in a revision, without times: equal revisions are equal."""
     return ModelAnalysis.model_validate(_fields(build, question, outputs))
 
 
 def output(stored: StoredOutput) -> AnalysisOutput:
-    """One output of an analysis, without its time."""
+    """Return one output of an analysis, without its time."""
     return AnalysisOutput.model_validate(_timeless(stored))
 
 
@@ -51,5 +51,5 @@ def _timeless(output: StoredOutput) -> dict[str, object]:
 
 
 def _linked(key: str, name: str, output: Mapping[str, object]) -> dict[str, object]:
-    """An output; one that is a file says where it is."""
+    """Return an output; one that is a file says where it is."""
     return {"url": f"/api/v1/analyses/{key}/{name}", **output} if name == SURFACE else {**output}

@@ -72,7 +72,7 @@ class Builds:
             self.database.write(lambda session: self._record(session, shape, build, sha))
 
     def _built(self, shape: CadModel, context: Runner) -> Build:
-        """The build of a model; a brought one is drawn by its program first."""
+        """Return the build of a model; a brought one is drawn by its program first."""
         source, texts = source_of(type(shape)), as_text(shape)
         if not isinstance(shape, BroughtModel):
             return context.run(build_in_worker, source, texts)
@@ -178,7 +178,7 @@ def _signed_otherwise(row: rows.Artifact) -> CannotRebuild:
 
 @may_share(lambda source, texts: isinstance(source, FileSource) and not source.digest)
 def build_in_worker(source: Source, texts: Mapping[str, str]) -> Build:
-    """`cad.regenerate.regenerate_class`, reporting progress to the job; runs in the worker's process.
+    """Return `cad.regenerate.regenerate_class`, reporting progress to the job; runs in the worker's process.
 
     The process may build for another job after a built-in model, never after a team's own code.
     """
@@ -188,7 +188,7 @@ def build_in_worker(source: Source, texts: Mapping[str, str]) -> Build:
 
 
 def build_drawn_in_worker(source: Source, texts: Mapping[str, str], drawn: Drawn) -> Build:
-    """The build of what a program drew, checked like any other; runs in the worker's process."""
+    """Return the build of what a program drew, checked like any other; runs in the worker's process."""
     shape = loaded(source).from_quantities(texts)
     assert isinstance(shape, BroughtModel), "the source is that of a brought model"
     shape.take(drawn)

@@ -61,7 +61,7 @@ class Analysing:
     def _computed(
         self, shape: CadModel, question: Question, unknown: tuple[str, ...], step: str, context: Runner
     ) -> Computed:
-        """Outputs from the file of the build, or from those of its throws, which are drawn for it."""
+        """Return outputs from the file of the build, or from those of its throws, which are drawn for it."""
         if question.kind == BORE_COMPLIANCE:
             bytes_, place = self.store.read(step), bore_of(shape)
             return context.run(analyse_bore_in_worker, bytes_, place, question, limits=self.limits)
@@ -80,7 +80,7 @@ class Analysing:
         return context.run(analyse_in_worker, bytes_, shaft, throw, question, unknown, limits=self.limits)
 
     def _stored(self, output: Mapping[str, object]) -> StoredOutput:
-        """An output as its row holds it: of one that is a file, what the store calls it."""
+        """Return an output as its row holds it: of one that is a file, what the store calls it."""
         file = output.get(FILE)
         if not isinstance(file, bytes):
             return cast(StoredOutput, output)
@@ -94,7 +94,7 @@ def is_stored(outputs: Outputs, output: str, store: Artifacts) -> bool:
 
 
 def bore_of(shape: CadModel) -> BorePlace:
-    """Where the split bore of a model is.
+    """Return where the split bore of a model is.
 
     Raises
     ------
@@ -122,7 +122,7 @@ def shaft_of(shape: CadModel) -> Shaft:
 
 
 def throw_of(shape: CadModel, question: Question) -> Crank | None:
-    """Where pin and fillets are, for an analysis that has to know; None for others.
+    """Return where pin and fillets are, for an analysis that has to know; None for others.
 
     Raises
     ------
@@ -143,7 +143,7 @@ def throw_of(shape: CadModel, question: Question) -> Crank | None:
 def analyse_in_worker(
     step: bytes, shaft: Shaft, crank: Crank | None, question: Question, outputs: tuple[str, ...]
 ) -> Computed:
-    """`cad.analysis.analyse.analyse` with progress reported to the job; runs in the worker's process.
+    """Return `cad.analysis.analyse.analyse` with progress reported to the job; runs in the worker's process.
 
     Of a throw's tables all are answered, whichever are asked for: they cost the same together.
     """
@@ -165,7 +165,9 @@ def analyse_in_worker(
 
 
 def analyse_chain_in_worker(apart: ThrowsApart, question: Question) -> Computed:
-    """`cad.analysis.chain_answers.chain_answers` with progress reported to the job; in the worker's process.
+    """Return `cad.analysis.chain_answers.chain_answers` with progress reported to the job.
+
+    In the worker's process.
 
     All outputs are answered, whichever are asked for: they cost the same together.
     """
@@ -181,7 +183,10 @@ def analyse_chain_in_worker(apart: ThrowsApart, question: Question) -> Computed:
 
 
 def analyse_bore_in_worker(step: bytes, place: BorePlace, question: Question) -> Computed:
-    """`cad.analysis.bore_tables.bore_tables` with progress reported to the job; in the worker's process."""
+    """Return `cad.analysis.bore_tables.bore_tables` with progress reported to the job.
+
+    In the worker's process.
+    """
     from cad.analysis.bore_tables import bore_tables
 
     try:
@@ -194,7 +199,7 @@ def analyse_bore_in_worker(step: bytes, place: BorePlace, question: Question) ->
 
 
 def _packed(output: Mapping[str, object]) -> Mapping[str, object]:
-    """A surface as the bytes of its JSON, with the number of its triangles."""
+    """Return a surface as the bytes of its JSON, with the number of its triangles."""
     from cad.analysis.surface import Surface
 
     surface = output["value"]

@@ -30,11 +30,14 @@ class Healing:
         self._lock = threading.Lock()
 
     def is_good(self, sha: str) -> bool:
-        """True if an artifact is there with the right bytes; otherwise what is there has been set aside."""
+        """Return whether an artifact is there with the right bytes.
+
+        Otherwise what is there has been set aside.
+        """
         return self.store.exists(sha)
 
     def request(self, sha: str) -> str:
-        """The job that makes an artifact again.
+        """Return the job that makes an artifact again.
 
         Raises
         ------
@@ -53,7 +56,7 @@ class Healing:
         raise ArtifactMissing(sha)
 
     def refused(self, sha: str) -> JsonObject | None:
-        """The problem for which an artifact could not be made again since the service started."""
+        """Return the problem for which an artifact could not be made again since the service started."""
         with self._lock:
             return self._refused.get(sha)
 
@@ -75,7 +78,7 @@ class Healing:
         raise error
 
     def _needs_another(self, session: Session, key: str) -> bool:
-        """True if a build's STEP file is lost, and this program makes another build of its parameters."""
+        """Return whether a build's STEP file is lost and this program would make another build of it."""
         step = rows.artifact(session, key, "step")
         if step and self.store.exists(step.sha256):
             return False
@@ -83,7 +86,7 @@ class Healing:
 
 
 def other_bytes(sha: str) -> CannotRebuild:
-    """An artifact that was made again, and is another one now."""
+    """Return an artifact that was made again, and is another one now."""
     detail = (
         f"artifact {sha} is lost. It was made again from its row and has other bytes now, because libraries "
         "have changed since: GET the build, the revision or the analysis that names it for the new hash"

@@ -15,12 +15,12 @@ from cad.regenerate import as_quantities
 
 
 def parameters(shape: CadModel) -> JsonObject:
-    """Every parameter of a model in its declared unit, defaults included, as rows keep it."""
+    """Return every parameter of a model in its declared unit, defaults included, as rows keep it."""
     return as_quantities(shape)
 
 
 def clearance(one: Between) -> Clearance:
-    """Distance and overlap of two parts of an assembly."""
+    """Return the distance and overlap of two parts of an assembly."""
     overlap = {"overlap": Quantity(value=one.overlap, unit="mm**3")} if one.overlap else {}
     distance = Quantity(value=one.distance, unit="mm")
     return Clearance(parts=[one.one, one.other], distance=distance, **overlap)
@@ -33,7 +33,7 @@ def measurements(
     trust: str | None = None,
     clearances: Sequence[Mapping[str, object]] = (),
 ) -> Measurements:
-    """The measurements of a solid; builds of an older recipe have fewer."""
+    """Return the measurements of a solid; builds of an older recipe have fewer."""
 
     def one(name: str) -> Quantity:
         return Quantity(value=measures[name], unit=MEASURES[name])
@@ -58,6 +58,6 @@ def measurements(
 
 
 def _dimension(size: Mapping[str, object]) -> Quantity | Values:
-    """One number, or the items of a list."""
+    """Return one number, or the items of a list."""
     is_list = isinstance(size["value"], list)
     return Values.model_validate(size) if is_list else Quantity.model_validate(size)

@@ -52,11 +52,11 @@ class Models:
 
     @property
     def catalogue(self) -> Catalogue[CadModel]:
-        """The models, as they are now."""
+        """Return the models, as they are now."""
         return self.catalogues.models
 
     def request(self, shape: CadModel, kinds: tuple[str, ...], client: str = "") -> str | None:
-        """The job that makes a build and its files, or None if all are there."""
+        """Return the job that makes a build and its files, or None if all are there."""
         key = build_key(shape)
         with self.database.read() as session:
             there = rows.artifacts(session, key)
@@ -81,15 +81,15 @@ class Models:
         return job
 
     def request_file(self, key: str, kind: str, client: str = "") -> str:
-        """The job that makes a file of a finished build, whichever recipe it was made by."""
+        """Return the job that makes a file of a finished build, whichever recipe it was made by."""
         return self.request_files(key, (kind,), client)
 
     def request_files(self, key: str, kinds: tuple[str, ...], client: str = "") -> str:
-        """The job that makes several files of a finished build."""
+        """Return the job that makes several files of a finished build."""
         return self._requested([key], {"build": key, "kinds": [*kinds]}, client)
 
     def request_files_of_all(self, keys: Sequence[str], kinds: tuple[str, ...], client: str = "") -> str:
-        """The one job that makes files of several finished builds, in as few processes as possible."""
+        """Return the one job that makes files of several finished builds, in as few processes as possible."""
         return self._requested(keys, {"builds": [*keys], "kinds": [*kinds]}, client)
 
     def _requested(self, keys: Sequence[str], payload: dict[str, str | list[str]], client: str) -> str:
@@ -102,7 +102,7 @@ class Models:
         return job
 
     def show(self, key: str) -> Build:
-        """A build: its files and what was measured on it.
+        """Return a build: its files and what was measured on it.
 
         Raises
         ------
@@ -122,13 +122,13 @@ class Models:
             )
 
     def file(self, key: str, kind: str) -> File | None:
-        """A file of a build, or None if it is not made yet."""
+        """Return a file of a build, or None if it is not made yet."""
         with self.database.read() as session:
             row = rows.artifact(session, key, kind)
         return File(kind, row.sha256) if row else None
 
     def verify(self, step: bytes) -> Verification:
-        """From which build a STEP file is, which revisions use it, and whether its bytes are still those.
+        """Return the build of a STEP file, the revisions that use it, and whether its bytes are unchanged.
 
         A file with validation properties, of a build whose own file has none, is compared with the stored
         copy that has them. What the file states beside its shape is read and compared; what a stamp says is
@@ -162,7 +162,7 @@ class Models:
         return Verification.model_validate({**about, "statements": read} if read else about)
 
     def _compared_with(self, step: bytes, artifacts: Mapping[str, str]) -> tuple[str, str]:
-        """Kind and hash of the stored file of a build that a STEP file should be."""
+        """Return the kind and hash of the stored file of a build that a STEP file should be."""
         copy = artifacts.get(VALIDATED)
         if copy is not None and is_validated(step) and not is_validated(self.store.read(artifacts["step"])):
             return VALIDATED, copy
@@ -202,7 +202,10 @@ class ModelBuild:
         return self._derived(key, asked["kinds"], context)
 
     def _derived_of_all(self, keys: Sequence[str], kinds: Sequence[str], context: JobContext) -> Completion:
-        """The files of several builds; what fails for one is raised once those of all others are there."""
+        """Return the files of several builds.
+
+        What fails for one is raised once those of all others are there.
+        """
         failures: list[JobFailed | JobCrashed] = []
         for number, key in enumerate(keys):
             context.progress(number / len(keys), f"solid {number + 1} of {len(keys)}")

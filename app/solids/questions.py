@@ -81,7 +81,7 @@ class Question:
     load: float = 1.0  # [N m]
 
     def key(self, build: str) -> str:
-        """The key of the answers for a build: SHA-256 of build, question, solver and recipe.
+        """Return the key of the answers for a build: SHA-256 of build, question, solver and recipe.
 
         Not by the load: everything is linear in it, so what is kept is computed under 1 N·m.
         """
@@ -89,32 +89,35 @@ class Question:
         return hashlib.sha256(json.dumps(identity, sort_keys=True).encode()).hexdigest()
 
     def whatever_level(self) -> Question:
-        """The same of stress, whose mesh is refined until it settles; under 1 N·m."""
+        """Return the same of stress, whose mesh is refined until it settles; under 1 N·m."""
         return replace(self, level=None, tolerance=None, load=1.0)
 
     def kept(self) -> dict[str, object]:
-        """The question as it is kept with its answers, without the load."""
+        """Return the question as it is kept with its answers, without the load."""
         return {name: value for name, value in asdict(self).items() if name != "load"}
 
     def shown(self) -> dict[str, object]:
-        """The question as it is shown."""
+        """Return the question as it is shown."""
         return {**asdict(self), "load": {"value": self.load, "unit": "N*m"}}
 
 
 def question(kind: str, options: Options) -> Question:
-    """The question that options of a kind ask; nothing said is the default level, and a load of 1 N·m."""
+    """Return the question that options of a kind ask.
+
+    Nothing said is the default level, and a load of 1 N·m.
+    """
     level = options.level or (None if options.tolerance else DEFAULT_LEVEL)
     load = 1.0 if options.load is None or load_faults(options.load) else load_of(options.load)
     return Question(kind, options.boundary, level, options.tolerance, load)
 
 
 def load_of(raw: Raw) -> float:
-    """A load [N·m] without faults."""
+    """Return a load [N·m] without faults."""
     return float(read(raw, "N*m").si)
 
 
 def faults(kind: str, options: Options) -> list[Fault]:
-    """The faults of the options of a kind, apart from their types."""
+    """Return the faults of the options of a kind, apart from their types."""
     if kind in (UNIT_LOADS, BORE_COMPLIANCE):
         return [*_faults_of_tables(kind, options)]
     both = options.level is not None and options.tolerance is not None
@@ -142,7 +145,7 @@ _OF_TABLES = {
 
 
 def _faults_of_tables(kind: str, options: Options) -> Iterator[Fault]:
-    """The options that tables do not have."""
+    """Yield the options that tables do not have."""
     why = _OF_TABLES[kind]
     if options.boundary != "free_end":
         yield Fault("boundary", "not_offered", f"{kind} {why['boundary']}: leave boundary out")
@@ -154,7 +157,7 @@ def _faults_of_tables(kind: str, options: Options) -> Iterator[Fault]:
 
 
 def load_faults(raw: Raw) -> list[Fault]:
-    """The faults of a load."""
+    """Return the faults of a load."""
     try:
         load = read(raw, "N*m").si
     except FaultyText as error:
@@ -166,7 +169,10 @@ def load_faults(raw: Raw) -> list[Fault]:
 
 
 def under_load(asked: Question, outputs: Mapping[str, StoredOutput]) -> Outputs:
-    """Outputs under the load of the question from those under 1 N·m: stress is proportional to the load."""
+    """Return outputs under the load of the question from those under 1 N·m.
+
+    Stress is proportional to the load.
+    """
     return {
         name: _times(asked.load, output) if name in STRESSES else output for name, output in outputs.items()
     }
@@ -180,17 +186,17 @@ def _times(load: float, stress: StoredOutput) -> StoredOutput:
 
 
 def offered(kind: str) -> tuple[str, ...]:
-    """All outputs of a kind that can be asked for."""
+    """Return all outputs of a kind that can be asked for."""
     return (*KINDS[kind],) if kind in WITHOUT_SURFACE else (*KINDS[kind], SURFACE)
 
 
 def in_order(kind: str, outputs: Container[str]) -> tuple[str, ...]:
-    """Outputs of a kind, each once and always in the same order."""
+    """Return outputs of a kind, each once and always in the same order."""
     return tuple(name for name in offered(kind) if name in outputs)
 
 
 def no_shaft(cls: type[CadModel]) -> str | None:
-    """Why solids of a model cannot be analysed as shafts; None if they can."""
+    """Return why solids of a model cannot be analysed as shafts; None if they can."""
     if issubclass(cls, AssemblyModel):
         return f"{cls.id} is an assembly: finite elements take one solid"
     if cls.shaft is not CadModel.shaft:
@@ -199,7 +205,7 @@ def no_shaft(cls: type[CadModel]) -> str | None:
 
 
 def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
-    """Why solids of a model cannot be analysed in this way; None if they can."""
+    """Return why solids of a model cannot be analysed in this way; None if they can."""
     if kind == BORE_COMPLIANCE:
         from cad.shells.bore_place import has_split_bore  # it draws too
 
@@ -223,7 +229,7 @@ def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
 
 
 def what_can_be_asked(cls: type[CadModel]) -> dict[str, object]:
-    """The kinds of analyses of a model, each with its outputs and their units."""
+    """Return the kinds of analyses of a model, each with its outputs and their units."""
     return {
         kind: {
             "outputs": {name: KINDS[kind].get(name) for name in offered(kind)},
@@ -239,7 +245,7 @@ def what_can_be_asked(cls: type[CadModel]) -> dict[str, object]:
 
 
 def warnings(asked: Question, outputs: Mapping[str, StoredOutput]) -> list[dict[str, str]]:
-    """The outputs whose error may be larger than was wanted."""
+    """Return the outputs whose error may be larger than was wanted."""
     wanted = asked.tolerance
     return [
         {"code": "tolerance_unmet", "name": name, "detail": _unmet(error, wanted)}

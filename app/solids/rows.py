@@ -62,44 +62,44 @@ _ARTIFACT = Statement(
 
 
 def build(session: Session, key: str) -> Build | None:
-    """A build by its key, if it was made."""
+    """Return a build by its key, if it was made."""
     for row in _BUILD.run(session, {"of": key}):
         return Build(*row)
     return None
 
 
 def measures(session: Session, key: str) -> Mapping[str, float] | None:
-    """The measures of a build, if it was made."""
+    """Return the measures of a build, if it was made."""
     for (measured,) in _MEASURED.run(session, {"of": key}):
         return dict(measured["measures"])
     return None
 
 
 def artifact(session: Session, key: str, kind: str) -> Artifact | None:
-    """One artifact of a build, if it was made."""
+    """Return one artifact of a build, if it was made."""
     for row in _ARTIFACT.run(session, {"of": key, "like": kind}):
         return Artifact(*row)
     return None
 
 
 def artifact_named(session: Session, sha256: str) -> ArtifactRow | None:
-    """An artifact by the hash of its bytes; several builds may have files of equal bytes."""
+    """Return an artifact by the hash of its bytes; several builds may have files of equal bytes."""
     return session.scalar(select(ArtifactRow).where(ArtifactRow.sha256 == sha256).limit(1))
 
 
 def artifacts(session: Session, key: str | None) -> dict[str, str]:
-    """The SHA-256 of every artifact of a build, by kind."""
+    """Return the SHA-256 of every artifact of a build, by kind."""
     rows = session.scalars(select(ArtifactRow).where(ArtifactRow.build_key == key))
     return {row.kind: row.sha256 for row in rows}
 
 
 def builds(session: Session, keys: Collection[str]) -> dict[str, BuildRow]:
-    """Those of several builds that were made, by key."""
+    """Return those of several builds that were made, by key."""
     return {row.key: row for row in session.scalars(select(BuildRow).where(BuildRow.key.in_(keys)))}
 
 
 def artifacts_of(session: Session, keys: Collection[str]) -> dict[str, dict[str, str]]:
-    """The SHA-256 of every artifact of several builds, by key and kind."""
+    """Return the SHA-256 of every artifact of several builds, by key and kind."""
     artifacts: dict[str, dict[str, str]] = {}
     for row in session.scalars(select(ArtifactRow).where(ArtifactRow.build_key.in_(keys))):
         artifacts.setdefault(row.build_key, {})[row.kind] = row.sha256
@@ -138,7 +138,7 @@ def add_artifact(session: Session, key: str, kind: str, sha256: str, size: int) 
 
 
 def users_of(session: Session, key: str) -> list[dict[str, object]]:
-    """The revisions that use a build, oldest first, and whether each is its design's newest.
+    """Return the revisions that use a build, oldest first, and whether each is its design's newest.
 
     A revision stands there once for its own models, and once for each of its variants.
     """
@@ -166,7 +166,7 @@ def is_signed(session: Session, key: str) -> bool:
 
 
 def _use(design: str, number: int, model: str, head: int) -> dict[str, object]:
-    """A use of a build; a dot in the name of the model stands behind that of a variant."""
+    """Return a use of a build; a dot in the name of the model stands behind that of a variant."""
     variant = variant_of(model)
     more = {} if variant is None else {"variant": variant}
     return {"design": design, "revision": number, "current": number == head, **more}

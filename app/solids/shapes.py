@@ -15,7 +15,9 @@ OLDER = "an older version of this program"
 
 
 def shape_of(session: Session, catalogue: Catalogue[CadModel], key: str) -> CadModel:
-    """The model of a build, with its parameters; its key may be another, if another recipe made the build.
+    """Return the model of a build, with its parameters.
+
+    Its key may be another, if another recipe made the build.
 
     Raises
     ------
@@ -40,7 +42,10 @@ def shape_of(session: Session, catalogue: Catalogue[CadModel], key: str) -> CadM
 
 
 def built_by_another(session: Session, key: str, shape: CadModel) -> CannotRebuild:
-    """Why a build cannot be made again by this program; the link leads to the build that it makes instead."""
+    """Return why a build cannot be made again by this program.
+
+    The link leads to the build that it makes instead.
+    """
     row = rows.build(session, key)
     maker, now = (row.made_by if row else "") or OLDER, made_by(type(shape))
     if maker.startswith(f"{MADE_BY}, code "):

@@ -10,7 +10,10 @@ LONGEST = 200
 
 
 def statements(original: bytes, step: bytes) -> list[Stated]:
-    """Every statement of a build's STEP file beside that of another file; equal bytes are read once."""
+    """Return every statement of a build's STEP file beside that of another file.
+
+    Equal bytes are read once.
+    """
     expected = read_statements(original)
     read = expected if step is original else read_statements(step)
     return [

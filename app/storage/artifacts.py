@@ -53,7 +53,7 @@ class Artifacts(Protocol):
 
     @property
     def is_shared(self) -> bool:
-        """Whether more servers than the one of a data folder may use the store."""
+        """Return whether more servers than the one of a data folder may use the store."""
         ...
 
     def put(self, *parts: bytes | memoryview) -> str:
@@ -89,7 +89,7 @@ class Artifacts(Protocol):
         ...
 
     def list(self) -> Iterator[Stored]:
-        """Every file in the store, verified or not."""
+        """Return every file in the store, verified or not."""
         ...
 
     def claim(self, owner: str) -> str:
@@ -150,7 +150,7 @@ class ArtifactStore:
         return sha
 
     def fetch(self, sha: str) -> Path:
-        """The path of a verified artifact.
+        """Return the path of a verified artifact.
 
         Raises
         ------
@@ -187,7 +187,10 @@ class ArtifactStore:
             raise
 
     def exists(self, sha: str) -> bool:
-        """True if the artifact is there and its bytes still have this hash; a damaged one is set aside."""
+        """Return whether the artifact is there and its bytes still have this hash.
+
+        A damaged one is set aside.
+        """
         try:
             self.open(sha).file.close()
         except (ArtifactMissing, ArtifactDamaged):
@@ -211,7 +214,7 @@ class ArtifactStore:
         return False
 
     def list(self) -> Iterator[Stored]:
-        """Every artifact in the folder, verified or not, without those that were set aside."""
+        """Yield every artifact in the folder, verified or not, without those that were set aside."""
         for path in self.folder.glob("[0-9a-f][0-9a-f]/*"):
             if SHA256.fullmatch(path.name):
                 with suppress(FileNotFoundError):  # deleted meanwhile
@@ -283,7 +286,7 @@ class ArtifactStore:
             os.replace(target, aside)
 
     def _unreadable(self, sha: str, file: BufferedReader, error: OSError) -> Exception:
-        """A disk that cannot give the bytes back has damaged them; any other error is none of the file's."""
+        """Return ArtifactDamaged if the disk cannot read the bytes back; any other error as it is."""
         if error.errno not in _FAILING_DISK:
             return error
         return self._set_aside(sha, stamp_of(file), f"the disk cannot read it ({error.strerror})")
@@ -324,7 +327,7 @@ def require_name(sha: str) -> None:
 
 
 def hashed(parts: Iterable[bytes | memoryview]) -> str:
-    """The SHA-256 of bytes in parts."""
+    """Return the SHA-256 of bytes in parts."""
     total = hashlib.sha256()
     for part in parts:
         total.update(part)

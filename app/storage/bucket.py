@@ -59,7 +59,7 @@ class BucketStore:
         return sha
 
     def fetch(self, sha: str) -> Path:
-        """The path of a verified copy; it stays there for a minute. Raises as `open` does."""
+        """Return the path of a verified copy; it stays there for a minute. Raises as `open` does."""
         with self.open(sha):
             return self._copies.path(sha)
 
@@ -142,7 +142,7 @@ class BucketStore:
         return True
 
     def list(self) -> Iterator[Stored]:
-        """Every object, verified or not, and the discarded ones, without those that were set aside."""
+        """Yield every object, verified or not, and the discarded ones, without those that were set aside."""
         for key, entry in self._bucket.list():
             sha = key.removeprefix(DISCARDED)
             if SHA256.fullmatch(sha):
@@ -169,7 +169,7 @@ class BucketStore:
         self._bucket.probe()
 
     def _download(self, sha: str) -> bytes:
-        """The bytes in the bucket, verified; raises as `open` does."""
+        """Return the bytes in the bucket, verified; raises as `open` does."""
         for _ in range(_TRIES):  # the second time because a connection may have broken off unnoticed
             answer = self._bucket.get(sha) or self._brought_back(sha)
             if answer is None:
@@ -185,7 +185,7 @@ class BucketStore:
         raise ArtifactDamaged(sha, f"its {len(data)} bytes in the bucket have another hash")
 
     def _brought_back(self, sha: str) -> tuple[bytes, Entry] | None:
-        """An object that a sweep has discarded, in its place again."""
+        """Return an object that a sweep has discarded, in its place again."""
         return self._bucket.get(sha) if self._bucket.copy(DISCARDED + sha, sha) else None
 
     def _is_good(self, sha: str) -> bool:

@@ -68,7 +68,7 @@ class OperationClock:
 
     @property
     def elapsed(self) -> int:
-        """Whole seconds that the counter does not hold yet."""
+        """Return whole seconds that the counter does not hold yet."""
         return int(time.monotonic() - self._counted)
 
     def advance(self, connection: Connection) -> int:
@@ -123,7 +123,7 @@ def tick(session: Session) -> None:
 
 
 def operated(session: Session) -> int:
-    """The time of operation [s]: exact to a second in a unit of work, else that of the last write.
+    """Return the time of operation [s]: exact to a second in a unit of work, else that of the last write.
 
     On PostgreSQL it is exact everywhere.
     """

@@ -22,7 +22,7 @@ BACKENDS = ("sqlite", "postgresql", "postgres")
 def opened_database(
     settings: Settings, folder: DataFolder, on_commit: Callable[[int, float, bool], object]
 ) -> Database:
-    """The database, migrated; a damaged one is refused before anything is written to it.
+    """Return the database, migrated; a damaged one is refused before anything is written to it.
 
     Raises
     ------

@@ -43,7 +43,7 @@ class Copies:
         return opened
 
     def read(self, sha: str) -> bytes | None:
-        """The bytes of a good copy; None if there is none."""
+        """Return the bytes of a good copy; None if there is none."""
         try:
             data = self._files.read(sha)
         except (ArtifactMissing, ArtifactDamaged):
@@ -52,7 +52,7 @@ class Copies:
         return data
 
     def path(self, sha: str) -> Path:
-        """The path of a copy that was used just now; it stays there for a minute."""
+        """Return the path of a copy that was used just now; it stays there for a minute."""
         return self._files.fetch(sha)
 
     def put(self, *parts: bytes | memoryview) -> None:
@@ -103,7 +103,7 @@ class Copies:
             self._used = {sha: used for sha, used in self._used.items() if sha in files}
 
     def _last_use(self, file: Stored) -> float:
-        """When a copy was used last: by this process, or by others as far as the file system notes it."""
+        """Return when this process, or another one as far as the file system notes it, last used a copy."""
         with suppress(OSError):
             location = self._files.folder / file.sha[:2] / file.sha
             return max(location.stat().st_atime, file.modified, self._used.get(file.sha, 0.0))

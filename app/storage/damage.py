@@ -49,7 +49,7 @@ class Watch:
             raise self._named(error) from error
 
     def translated(self, error: Exception) -> Exception:
-        """DatabaseDamaged in place of an error that says so; any other error as it is."""
+        """Return DatabaseDamaged in place of an error that says so; any other error as it is."""
         try:
             self.raise_if_damage(error)
         except DatabaseDamaged as damage:
@@ -80,5 +80,5 @@ class Watch:
 
     @staticmethod
     def _again(damage: DatabaseDamaged) -> DatabaseDamaged:
-        """A fresh exception: one that is raised in several threads would collect their tracebacks."""
+        """Return a fresh exception: one that is raised in several threads would collect their tracebacks."""
         return DatabaseDamaged(damage.database, damage.faults)

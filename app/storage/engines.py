@@ -20,7 +20,7 @@ _MIGRATOR = ("busy_timeout = 10000", "journal_mode = wal")
 
 
 def writing_engine(url: str, pool: int = 1) -> Engine:
-    """Engine of the writer.
+    """Return the engine of the writer.
 
     On SQLite transactions take the write lock first and are synced at commit. PostgreSQL has so many
     connections, in whose transactions every statement sees what others have committed before it.
@@ -31,14 +31,14 @@ def writing_engine(url: str, pool: int = 1) -> Engine:
 
 
 def migrating_engine(url: str) -> Engine:
-    """Engine on which the schema may be changed."""
+    """Return the engine on which the schema may be changed."""
     if is_sqlite(url):
         return _sqlite_engine(url, _MIGRATOR, "BEGIN IMMEDIATE")
     return _postgres_engine(url, 1, isolation_level="READ COMMITTED")
 
 
 def reading_engine(url: str, pool: int = 1) -> Engine:
-    """Engine whose transactions are snapshots and cannot write; PostgreSQL has so many connections."""
+    """Return an engine of read-only snapshots, with `pool` connections on PostgreSQL."""
     if is_sqlite(url):
         return _sqlite_engine(url, _READER, "BEGIN")
     engine = _postgres_engine(url, pool, isolation_level="REPEATABLE READ", pool_pre_ping=True)
@@ -46,7 +46,7 @@ def reading_engine(url: str, pool: int = 1) -> Engine:
 
 
 def sqlite_file(url: str) -> Path | None:
-    """The file of a SQLite database; None for any other database."""
+    """Return the file of a SQLite database; None for any other database."""
     chosen = make_url(url)
     return Path(chosen.database) if is_sqlite(url) and chosen.database else None
 
@@ -57,7 +57,7 @@ def is_sqlite(url: str) -> bool:
 
 
 def _postgres_engine(url: str, pool: int, **options: str | bool) -> Engine:
-    """An engine of PostgreSQL that says soon when it cannot be reached.
+    """Return an engine of PostgreSQL that says soon when it cannot be reached.
 
     Raises
     ------
@@ -105,7 +105,10 @@ def _sqlite_engine(url: str, pragmas: tuple[str, ...], begin: str) -> Engine:
 
 
 def _lower(value: str | float | None) -> str | float | None:
-    """A text in lower case, for SQLite, whose own function knows A to Z only: `Ä` would not match `ä`."""
+    """Return a text in lower case, for SQLite, whose own function knows A to Z only.
+
+    `Ä` would not match `ä`.
+    """
     return value.lower() if isinstance(value, str) else value
 
 

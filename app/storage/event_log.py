@@ -51,7 +51,7 @@ class Event:
 
     @property
     def message(self) -> dict[str, object]:
-        """The event as its readers get it: a JSON object with its name."""
+        """Return the event as its readers get it: a JSON object with its name."""
         return {"event": self.name, **self.data}
 
 
@@ -96,7 +96,7 @@ def note_all(session: Session, *events: Event) -> list[Event]:
 
 
 def newest(session: Session, topics: Iterable[str]) -> dict[str, int]:
-    """The number of the newest event of each topic whose design or job there is; 0 if it has none."""
+    """Return the number of the newest event of each topic whose design or job there is; 0 if it has none."""
     ids: dict[str, list[str]] = {kind: [] for kind in _OWNERS}
     for topic in topics:
         kind, _, id = topic.partition(":")
@@ -110,7 +110,7 @@ def newest(session: Session, topics: Iterable[str]) -> dict[str, int]:
 
 
 def above(session: Session, topic: str, number: int, most: int = PAGE) -> list[Event]:
-    """The events of a topic above a number, in their order; not more than `most`."""
+    """Return the events of a topic above a number, in their order; not more than `most`."""
     row = EventRow
     later = select(row.name, row.data, row.number).where(row.topic == topic, row.number > number)
     rows = session.execute(later.order_by(row.number).limit(most))

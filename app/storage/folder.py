@@ -29,12 +29,12 @@ class DataFolder:
 
     @property
     def database_url(self) -> str:
-        """The SQLAlchemy URL of the SQLite file in this folder."""
+        """Return the SQLAlchemy URL of the SQLite file in this folder."""
         return f"sqlite:///{self.path / 'crankwright.sqlite'}"
 
     @property
     def artifacts(self) -> Path:
-        """The folder of the artifact store."""
+        """Return the folder of the artifact store."""
         return self.path / "artifacts"
 
     def release(self) -> None:

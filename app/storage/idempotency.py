@@ -44,7 +44,7 @@ class Once:
     client: str = ""  # two clients may choose the same key
 
     def find(self, session: Session) -> JsonObject | None:
-        """The stored answer of an equal earlier request; None if there was none.
+        """Return the stored answer of an equal earlier request; None if there was none.
 
         Raises
         ------
@@ -58,7 +58,9 @@ class Once:
         return self._answer(*kept) if kept else None
 
     def begin(self, session: Session) -> JsonObject | None:
-        """The stored answer of an equal earlier request; else let `keep` follow, for which a key is reserved.
+        """Return the stored answer of an equal earlier request.
+
+        Else let `keep` follow, for which a key is reserved.
 
         It comes first in a unit of work: while another server carries out the same request, this waits.
 

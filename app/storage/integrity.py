@@ -51,12 +51,12 @@ def refuse_damage(url: str) -> None:
 
 
 def marker_of(path: Path) -> Path:
-    """The note beside a SQLite file that damage has shown while a service used it."""
+    """Return the note beside a SQLite file that damage has shown while a service used it."""
     return path.with_name(f"{path.name}.damaged")
 
 
 def _faults_now(path: Path) -> list[str]:
-    """The faults of a file of which damage is noted already; its own state names the pages."""
+    """Return the faults of a file of which damage is noted already; its own state names the pages."""
     if not path.is_file():
         return [f"{path.name} is missing"]
     try:
@@ -74,7 +74,7 @@ def _noted(marker: Path) -> str:
 
 
 def faults(path: Path, most: int = MOST, mode: str = "rw") -> list[str]:
-    """The faults of a SQLite file, at most this many lines; `ro` leaves its log as it is."""
+    """Return the faults of a SQLite file, at most this many lines; `ro` leaves its log as it is."""
     with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode={mode}", uri=True)) as connection:
         connection.execute("PRAGMA busy_timeout = 10000")
         # A page on which SQLite stops takes the lines before it along, unless only one was wanted.
@@ -102,7 +102,7 @@ def _seen(path: Path) -> tuple[tuple[int, int, int], ...]:
 
 
 def _collected(lines: Iterator[str], path: Path) -> list[str]:
-    """The lines, or the error in place of the first."""
+    """Return the lines, or the error in place of the first."""
     collected: list[str] = []
     try:
         collected.extend(lines)
@@ -135,14 +135,17 @@ def _unreadable_schema(path: Path) -> str:
 
 
 def _of_pages(connection: sqlite3.Connection, most: int) -> Iterator[str]:
-    """Faults of trees, free pages and indexes, as SQLite words them."""
+    """Yield faults of trees, free pages and indexes, as SQLite words them."""
     for (text,) in connection.execute(f"PRAGMA integrity_check({most})"):
         lines = (line.strip() for line in text.splitlines())
         yield from (line for line in lines if line not in ("", "ok", "*** in database main ***"))
 
 
 def _of_texts(connection: sqlite3.Connection) -> Iterator[str]:
-    """Rows with texts that should be JSON and are not; a database of an older program may lack columns."""
+    """Yield rows with texts that should be JSON and are not.
+
+    A database of an older program may lack columns.
+    """
     for table in Base.metadata.sorted_tables:
         there = {row[1] for row in connection.execute(f"PRAGMA table_info({table.name})")}
         for column in (c.name for c in table.columns if isinstance(c.type, JsonText) and c.name in there):

@@ -26,7 +26,7 @@ def is_loss(error: DBAPIError) -> bool:
 
 
 def translated(error: Exception) -> Exception:
-    """DatabaseUnavailable in place of an error that says so; any other error as it is."""
+    """Return DatabaseUnavailable in place of an error that says so; any other error as it is."""
     if isinstance(error, PoolExhausted):
         return DatabaseUnavailable("all its connections are in use")
     if not isinstance(error, DBAPIError):
@@ -41,6 +41,6 @@ def translated(error: Exception) -> Exception:
 
 
 def state_of(error: DBAPIError) -> str | None:
-    """The SQLSTATE of an error of PostgreSQL; None if it came from no answer of the server."""
+    """Return the SQLSTATE of an error of PostgreSQL; None if it came from no answer of the server."""
     state: str | None = getattr(error.orig, "sqlstate", None)
     return state

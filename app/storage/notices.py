@@ -86,7 +86,7 @@ class Notices:
             connection.close()
 
     def _next_hints(self) -> list[str] | None:
-        """The hints that wait, each once; wait for one. None at the end."""
+        """Return the hints that wait, each once; wait for one. None at the end."""
         hints = {self._waiting.get(): None}
         while not self._waiting.empty():
             hints[self._waiting.get()] = None
@@ -144,7 +144,7 @@ class Notices:
 
 
 def payloads(hints: Iterable[str]) -> Iterator[str]:
-    """Hints as JSON lists, each of which has room in one notification."""
+    """Yield hints as JSON lists, each of which has room in one notification."""
     part, size = list[str](), 2
     for hint in hints:
         length = len(json.dumps(hint)) + 2  # ASCII only: characters are bytes
@@ -158,7 +158,7 @@ def payloads(hints: Iterable[str]) -> Iterator[str]:
 
 
 def hints_of(payload: str) -> list[str]:
-    """The hints of a notification; none, if it is not one of ours."""
+    """Return the hints of a notification; none, if it is not one of ours."""
     try:
         hints = json.loads(payload)
     except ValueError:

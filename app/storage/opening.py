@@ -37,7 +37,7 @@ NO_FIGURES = Figures()
 
 
 def opened_store(settings: Settings, folder: DataFolder, figures: Figures = NO_FIGURES) -> Artifacts:
-    """The store of the settings, once it has answered.
+    """Return the store of the settings, once it has answered.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def is_bucket(settings: Settings) -> bool:
 
 
 def shared_folder(settings: Settings) -> Path | None:
-    """The folder that servers share, if the files are in one; raises StoreRefused for a wrong URL."""
+    """Return the folder that servers share, if the files are in one; raises StoreRefused for a wrong URL."""
     if settings.artifacts_url is None or (place := _parsed(settings.artifacts_url)).scheme != "file":
         return None
     path = Path(unquote(place.path))
@@ -94,7 +94,7 @@ def _shared_store(path: Path) -> Artifacts:
 
 
 def opened_bucket(settings: Settings, figures: Figures = NO_FIGURES) -> Bucket:
-    """The bucket of the settings, once it has answered; raises StoreRefused."""
+    """Return the bucket of the settings, once it has answered; raises StoreRefused."""
     try:
         from app.storage.s3 import Bucket
     except ImportError:

@@ -9,7 +9,10 @@ DEBIAN = Path("/usr/lib/postgresql")
 
 
 def postgres_program(name: str) -> Path | None:
-    """The program of this name, such as `pg_dump`, of the newest version; None if none is installed."""
+    """Return the program of this name, such as `pg_dump`, of the newest version.
+
+    None if none is installed.
+    """
     versions = sorted((path for path in DEBIAN.glob("[0-9]*") if path.name.isdecimal()), key=_number)
     for version in reversed(versions):
         if (program := version / "bin" / name).is_file():

@@ -73,11 +73,11 @@ class Bucket:
 
     @property
     def is_silent(self) -> bool:
-        """Whether the bucket has just not answered."""
+        """Return whether the bucket has just not answered."""
         return time.monotonic() < self._silent_until
 
     def head(self, key: str) -> Entry | None:
-        """The entry of a key; None if there is none."""
+        """Return the entry of a key; None if there is none."""
         with self._asked("head"):
             seen = obstore.head(self._questions, key)
             return Entry(seen["e_tag"], seen["size"], seen["last_modified"].timestamp())
@@ -85,7 +85,7 @@ class Bucket:
         return None
 
     def get(self, key: str) -> tuple[bytes, Entry] | None:
-        """The bytes under a key; None if there are none."""
+        """Return the bytes under a key; None if there are none."""
         with self._asked("get"):
             answer = obstore.get(self._downloads, key)
             seen = answer.meta
@@ -114,7 +114,7 @@ class Bucket:
             obstore.delete(self._questions, key)
 
     def list(self) -> Iterator[tuple[str, Entry]]:
-        """All objects with their keys."""
+        """Yield all objects with their keys."""
         pages = iter(obstore.list(self._downloads))
         while True:
             page = None
@@ -164,12 +164,15 @@ class Bucket:
 
 
 def seconds_of_upload(size: int, silence: float) -> float:
-    """The time limit of an upload of a size [bytes] [s]; few different times, each of which has a client."""
+    """Return the time limit of an upload of a size [bytes] [s].
+
+    Few different times, each of which has a client.
+    """
     return silence + 2.0 ** math.ceil(math.log2(max(1.0, size / _UPLOAD))) - 1
 
 
 def _options(endpoint: str | None, seconds: float, silence: float) -> ClientConfig:
-    """Options of requests: their time limits in all, and without a further byte [s]."""
+    """Return options of requests: their time limits in all, and without a further byte [s]."""
     return {
         "allow_http": endpoint is not None and endpoint.startswith("http://"),
         "connect_timeout": timedelta(seconds=2),
@@ -179,7 +182,7 @@ def _options(endpoint: str | None, seconds: float, silence: float) -> ClientConf
 
 
 def _retries(seconds: float) -> RetryConfig:
-    """Options of retries: no failure is tried again that came after so long [s], as silence does."""
+    """Return options of retries: no failure is tried again that came after so long [s], as silence does."""
     return {
         "max_retries": 2,
         "retry_timeout": timedelta(seconds=seconds),
@@ -192,7 +195,7 @@ def _retries(seconds: float) -> RetryConfig:
 
 
 def _reason(error: Exception) -> str:
-    """Why a bucket cannot be used, without any address or key."""
+    """Return why a bucket cannot be used, without any address or key."""
     text = str(error)
     code = match[1] if (match := _CODE.search(text)) else None
     if code == "NoSuchBucket":

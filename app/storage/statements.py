@@ -71,7 +71,7 @@ class Statement:
         return rows
 
     def scalar(self, session: Session, values: Values | None = None) -> int | None:
-        """The number in the first column of the first row; None if there is no row."""
+        """Return the number in the first column of the first row; None if there is no row."""
         for row in self.run(session, values):
             number: int | None = row[0]
             return number
@@ -129,7 +129,7 @@ class _Compiled:
     reading: dict[int, _Convert]
 
     def parameters(self, values: Values) -> list[object]:
-        """The parameters of one execution."""
+        """Return the parameters of one execution."""
         row = list(map({**self.constants, **values}.__getitem__, self.places))
         for n, convert in self.writing.items():
             if row[n] is not None:
@@ -138,5 +138,5 @@ class _Compiled:
 
 
 def translated(text: str, parameters: object, error: sqlite3.Error) -> BaseException:
-    """The error as SQLAlchemy raises it."""
+    """Return the error as SQLAlchemy raises it."""
     return DBAPIError.instance(text, parameters, error, sqlite3.Error, dialect=_SQLITE)  # type: ignore[call-overload,no-any-return]

@@ -23,7 +23,7 @@ def insert_new(session: Session, row: Base) -> bool:
 
 
 def insert_new_values(session: Session, table: FromClause, values: Values) -> bool:
-    """Likewise, for a row that is given as the values of its columns."""
+    """Insert a row given as the values of its columns unless its key exists; return whether it did."""
     return bool(_insertion(table, tuple(values), _dialect(session)).run(session, values))
 
 
@@ -34,7 +34,7 @@ def upsert(session: Session, row: Base) -> None:
 
 
 def upsert_values(session: Session, table: FromClause, values: Values) -> None:
-    """Likewise, for a row that is given as the values of its columns."""
+    """Insert a row given as the values of its columns, or set these columns of the row of its key."""
     dialect = "sqlite" if DRIVER in session.info else _dialect(session)
     _replacement(table, tuple(values), dialect).run(session, values)
 
@@ -60,6 +60,6 @@ def _replacement(table: FromClause, names: tuple[str, ...], dialect: str) -> Sta
 
 
 def _insert(table: FromClause, dialect: str) -> postgresql.Insert | sqlite.Insert:
-    """The insertion of the database's own kind: the standard knows no conflicts."""
+    """Return the insertion of the database's own kind: the standard knows no conflicts."""
     assert isinstance(table, Table)
     return sqlite.insert(table) if dialect == "sqlite" else postgresql.insert(table)

@@ -45,7 +45,7 @@ class Opened:
 
 
 def stamp_of(file: BufferedReader) -> Stamp:
-    """The stamp of an open file."""
+    """Return the stamp of an open file."""
     seen = os.fstat(file.fileno())
     return Stamp(seen.st_ino, seen.st_size, seen.st_mtime_ns, seen.st_ctime_ns)
 

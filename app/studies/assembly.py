@@ -11,7 +11,7 @@ from app.studies.service import Studies
 
 
 def assemble_studies(parts: Parts, designs: Designs) -> Studies:
-    """The service of studies, its handler registered."""
+    """Return the service of studies, its handler registered."""
     conclude = Concluding(Building(parts, designs))
     healing = Healing(parts, conclude)
     handler = Studying(parts, conclude, healing.heal)

@@ -11,7 +11,7 @@ from templates.core.errors import FaultyText
 
 
 def measured_in(designs: Designs, document: JsonObject) -> dict[str, float]:
-    """The measures [SI] that relations of a document use, as far as they are known."""
+    """Return the measures [SI] that relations of a document use, as far as they are known."""
     if not document.get("models"):
         return {}
     calculation = designs.prepare(document)[1]
@@ -20,7 +20,7 @@ def measured_in(designs: Designs, document: JsonObject) -> dict[str, float]:
 
 
 def _used(calculation: Calculation) -> set[Reference]:
-    """The measures and results of analyses that relations name, but for tables."""
+    """Return the measures and results of analyses that relations name, but for tables."""
     blocks = calculation.graph.blocks
     used = {reference for cell in calculation.graph.cells() for reference in cell.uses.values()}
     models = {

@@ -36,12 +36,12 @@ class Command:
 
     @property
     def lives(self) -> bool:
-        """Whether its process still runs."""
+        """Return whether its process still runs."""
         return self._process is not None and self._process.lives
 
     @property
     def pid(self) -> int:
-        """The number of its process; 0 if it was not started."""
+        """Return the number of its process; 0 if it was not started."""
         return self._process.pid if self._process else 0
 
     def start(self) -> None:
@@ -82,7 +82,7 @@ class Server(Command):
 
     @property
     def url(self) -> str:
-        """The address at which it answers."""
+        """Return the address at which it answers."""
         return f"http://{LOOPBACK}:{self.port}"
 
     def ready(self, others: Sequence[Command] = (), seconds: float = START) -> None:
@@ -107,7 +107,7 @@ class Scheduler(Command):
 
     @property
     def address(self) -> str:
-        """The address that `CRANKWRIGHT_ENGINE` names."""
+        """Return the address that `CRANKWRIGHT_ENGINE` names."""
         return f"tcp://{LOOPBACK}:{self.port}"
 
     def ready(self) -> None:

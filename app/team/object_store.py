@@ -50,12 +50,12 @@ class ObjectStore:
 
     @property
     def endpoint(self) -> str:
-        """Its address."""
+        """Return its address."""
         return f"http://{LOOPBACK}:{self.port}"
 
     @property
     def pid(self) -> int:
-        """The number of its process."""
+        """Return the number of its process."""
         return self._process.pid
 
     def create(self, bucket: str, *, versioned: bool = False) -> str:

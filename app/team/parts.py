@@ -37,12 +37,12 @@ class Team:
 
     @property
     def url(self) -> str:
-        """The URL of its database."""
+        """Return the URL of its database."""
         return self.environment["CRANKWRIGHT_DATABASE_URL"]
 
 
 def missing() -> list[str]:
-    """The parts that are not installed, a sentence each with the command that installs it."""
+    """Return the parts that are not installed, a sentence each with the command that installs it."""
     lacking = [] if postgres_program("initdb") else [postgres.MISSING]
     if absent := [what for module, what in EXTRA.items() if find_spec(module) is None]:
         lacking.append(f"{', '.join(absent)}: pip install 'crankwright[team]'")

@@ -58,16 +58,16 @@ class Cluster:
 
     @property
     def pid(self) -> int:
-        """The number of the first of its processes; 0 if it does not run."""
+        """Return the number of the first of its processes; 0 if it does not run."""
         return self._process.pid if self._process else 0
 
     @property
     def lives(self) -> bool:
-        """Whether its first process still runs."""
+        """Return whether its first process still runs."""
         return self._process is not None and self._process.lives
 
     def url(self, database: str = "postgres") -> str:
-        """The SQLAlchemy URL of a database."""
+        """Return the SQLAlchemy URL of a database."""
         return f"postgresql+psycopg://{USER}@{LOOPBACK}:{self.port}/{database}"
 
     def create(self, database: str, template: str = "template1") -> str:

@@ -23,7 +23,7 @@ _LONGEST = 400  # characters of a line of a log
 
 
 def free_port() -> int:
-    """A TCP port of loopback on which nothing listens."""
+    """Return a TCP port of loopback on which nothing listens."""
     with socket.socket() as probe:
         probe.bind((LOOPBACK, 0))
         port: int = probe.getsockname()[1]
@@ -80,12 +80,12 @@ class Tied:
 
     @property
     def pid(self) -> int:
-        """The number of the process, and of its group."""
+        """Return the number of the process, and of its group."""
         return self._process.pid
 
     @property
     def lives(self) -> bool:
-        """Whether the process still runs."""
+        """Return whether the process still runs."""
         return self._process.poll() is None
 
     def until(self, answers: Callable[[], bool], seconds: float = START) -> None:
@@ -137,7 +137,7 @@ class Tied:
         return self._process.wait()
 
     def said(self, lines: int = 5) -> str:
-        """The end of what it wrote, in words."""
+        """Return the end of what it wrote, in words."""
         written = [
             line[-_LONGEST:] for line in self.log.read_text(errors="replace").strip().splitlines()[-lines:]
         ]
@@ -147,5 +147,5 @@ class Tied:
 
 
 def _path() -> str:
-    """The module path of this process for another, which may stand in another folder."""
+    """Return the module path of this process for another, which may stand in another folder."""
     return os.pathsep.join(filter(None, sys.path))

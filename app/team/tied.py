@@ -27,7 +27,7 @@ def main(reader: int, user: str, command: list[str]) -> None:
 
 
 def _others(reader: int) -> list[int]:
-    """The descriptors of the pipe that `hang_on` has opened beside the reader."""
+    """Return the descriptors of the pipe that `hang_on` has opened beside the reader."""
     pipe = os.stat(f"/proc/self/fd/{reader}").st_ino
     descriptors = []
     for name in os.listdir("/proc/self/fd"):

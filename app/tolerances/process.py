@@ -10,7 +10,7 @@ from app.tolerances.schemas import ToleranceAnalysis
 
 
 def analysed(task: DesignTask, revision: int, body: str) -> ToleranceAnalysis:
-    """The whole answer to a body [JSON text] about a revision, in SI units.
+    """Return the whole answer to a body [JSON text] about a revision, in SI units.
 
     Raises
     ------

@@ -54,7 +54,7 @@ def is_forked(preload: Sequence[str]) -> bool:
 
 
 def fork_server(preload: Sequence[str], environment: Mapping[str, str]) -> ForkServer:
-    """The fork server that was started ahead for these modules, else a new one."""
+    """Return the fork server that was started ahead for these modules, else a new one."""
     return _started.pop(tuple(preload), None) or ForkServer(preload, environment)
 
 

@@ -88,7 +88,10 @@ class Worker(Batch, Protocol):
     """Runs functions one by one, each on its own, from any number of threads."""
 
     def answers(self) -> bool:
-        """True if a function would find a process that is alive; if none is, one is started. Never blocks."""
+        """Return whether a function would find a process that is alive.
+
+        If none is, one is started. Never blocks.
+        """
         ...
 
 

@@ -30,15 +30,15 @@ class Inline:
             return function(*args)
 
     def batch(self, lane: Lane = GEOMETRY) -> Self:
-        """All run in the thread that asks; see `BatchWorker.batch`."""
+        """Run all functions in the calling thread and return their results; see `BatchWorker.batch`."""
         return self
 
     def capacity(self, lane: Lane) -> int:
-        """As many as there are threads that ask."""
+        """Return no bound: every calling thread runs its own function."""
         return UNLIMITED
 
     def answers(self) -> bool:
-        """Its thread is that of the caller."""
+        """Return True: the caller's thread runs everything."""
         return True
 
     def close(self) -> None:

@@ -86,7 +86,10 @@ class JobProcess:
         _ = self._pid
 
     def is_born(self) -> bool:
-        """True if the forkserver has forked the process; reads nothing, so its owner may use it meanwhile."""
+        """Return whether the forkserver has forked the process.
+
+        Reads nothing, so its owner may use it meanwhile.
+        """
         try:
             return "_pid" in self.__dict__ or self._status.poll()
         except OSError:  # it has got a job and is gone
@@ -143,7 +146,7 @@ class Process(Protocol):
 
     @property
     def pid(self) -> int:
-        """Its process id."""
+        """Return its process id."""
 
     def poll(self) -> int | None:
         """Return the exit code; None while it lives."""

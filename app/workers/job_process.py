@@ -149,11 +149,11 @@ def _has_grown(limits: Limits) -> bool:
 
 @cache
 def _mapped_at_start() -> int:
-    """The address space before the first request [bytes]."""
+    """Return the address space before the first request [bytes]."""
     return _mapped_bytes()
 
 
 def _mapped_bytes() -> int:
-    """The address space that the process takes [bytes]."""
+    """Return the address space that the process takes [bytes]."""
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     return pages * resource.getpagesize()

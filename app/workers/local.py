@@ -62,7 +62,7 @@ class LocalProcesses:
         return Batch(self.started, self)
 
     def capacity(self, lane: Lane) -> int:
-        """The queue has as many threads as this machine shall run jobs."""
+        """Return no bound: the queue has as many threads as this machine runs jobs."""
         return UNLIMITED
 
     def answers(self) -> bool:
@@ -87,7 +87,7 @@ class LocalProcesses:
             self._kept.clear()
 
     def lend(self) -> "Used | None":
-        """The process that an earlier job has left, if one waits."""
+        """Return the process that an earlier job has left, if one waits."""
         with self._lock:
             return self._kept.pop() if self._kept else None
 
@@ -196,7 +196,7 @@ class Batch:
             process.kill()
 
     def _lent(self) -> JobProcess | None:
-        """The process of an earlier batch, if all that this one runs may share it."""
+        """Return the process of an earlier batch, if all that this one runs may share it."""
         lent = self._keeper.lend() if self._keeper is not None and self._is_shared else None
         if lent is None:
             return None
@@ -214,7 +214,10 @@ class Batch:
         on_progress: Reporter | None,
         cancelled: threading.Event | None,
     ) -> Outcome:
-        """The outcome of a process; it is kept if it returned a result and may run another function."""
+        """Return the outcome of a process.
+
+        It is kept if it returned a result and may run another function.
+        """
         outcome = process.finish(limits, on_progress, cancelled)
         self._count += 1
         if isinstance(outcome, Returned) and process.reusable and self._count < MOST_IN_BATCH:

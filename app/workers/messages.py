@@ -27,11 +27,11 @@ class Packed:
     pieces: tuple[PickleBuffer | bytes, ...] = ()
 
     def unpacked(self) -> object:
-        """The message."""
+        """Return the message."""
         return pickle.loads(self.message, buffers=self.pieces)
 
     def __reduce_ex__(self, protocol: SupportsIndex) -> tuple[object, ...]:
-        """Within another message, what is large goes beside it and is not copied."""
+        """Return the parts to pickle; within another message, large parts go beside it and are not copied."""
         message = PickleBuffer(self.message) if len(self.message) > PIECE else self.message
         return Packed, (message, tuple(map(PickleBuffer, self.pieces)))
 
@@ -52,7 +52,7 @@ class Request:
         limits: Limits,
         reusable: bool = False,
     ) -> Self:
-        """The request to call a function; raises what pickle raises."""
+        """Return the request to call a function; raises what pickle raises."""
         return cls(pack((function, args)), limits, reusable)
 
 
@@ -72,7 +72,7 @@ class Returned:
     reusable: bool = False
 
     def result(self) -> object:
-        """The result of the function."""
+        """Return the result of the function."""
         return self.value.unpacked()
 
 

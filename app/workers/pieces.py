@@ -21,7 +21,7 @@ class Pieces:
 
     @classmethod
     def of(cls, data: bytes) -> Self:
-        """The bytes in pieces, not copied."""
+        """Return the bytes in pieces, not copied."""
         if len(data) <= PIECE:
             return cls((data,))
         view = memoryview(data)
@@ -34,7 +34,7 @@ class Pieces:
         return iter(self.parts)
 
     def joined(self) -> bytes:
-        """All bytes as one object."""
+        """Return all bytes as one object."""
         if len(self.parts) == 1 and isinstance(self.parts[0], bytes):
             return self.parts[0]
         return b"".join(self.parts)

@@ -26,7 +26,7 @@ class Workers:
 
 
 def why_silent_here() -> str:
-    """Why no process of this machine answers."""
+    """Return why no process of this machine answers."""
     return "they are being started, or hang"
 
 

@@ -16,7 +16,7 @@ NAME = r"^[^\x00-\x1f\x7f]*[^\x00-\x20\x7f][^\x00-\x1f\x7f]*$"
 
 
 def storable(text: str) -> str:
-    """A text that the database can keep.
+    """Return a text that the database can keep.
 
     Raises
     ------
@@ -32,7 +32,7 @@ def storable(text: str) -> str:
 
 
 def legible(name: str) -> str:
-    """A name of a person that can be read.
+    """Return a name of a person that can be read.
 
     Raises
     ------
@@ -60,7 +60,7 @@ EDITED = EXAMPLE.replace("> 0;", "> 0; <= 2 m;")
 
 
 def _examples(**example: JsonValue) -> ConfigDict:
-    """The configuration of a body with an example that can be sent as it is."""
+    """Return the configuration of a body with an example that can be sent as it is."""
     return ConfigDict(extra="forbid", strict=True, json_schema_extra={"examples": [{**example}]})
 
 

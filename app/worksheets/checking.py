@@ -33,7 +33,7 @@ ROUNDS = 4
 
 
 def checked(text: str, id: str | None) -> bytes:
-    """The answer to `check` as JSON.
+    """Return the answer to `check` as JSON.
 
     Where statements are faulty, the lines show what the others give without them.
     """
@@ -59,7 +59,7 @@ def _faulty(text: str, refused: SheetRefused) -> SheetCheck:
 
 
 def without_faults(text: str, refused: SheetRefused) -> Sheet | None:
-    """The sheet that the sound statements make, each in its line; None where even these make none.
+    """Return the sheet that the sound statements make, each in its line; None where even these make none.
 
     Statements that use a faulty one are faulty without it, so the text is read at most `ROUNDS` times more.
     """
@@ -73,7 +73,7 @@ def without_faults(text: str, refused: SheetRefused) -> Sheet | None:
 
 
 def _blanked(text: str, refused: SheetRefused) -> str:
-    """A text with empty lines in the place of its faulty statements."""
+    """Return a text with empty lines in the place of its faulty statements."""
     text = normal(text)
     lines, faulty = text.split("\n"), {fault.line for fault in refused.faults}
     for chunk in chunks_of(text):
@@ -134,7 +134,7 @@ def _example(cls: type[Template]) -> _Example:
 
 
 def _values(evaluation: Evaluation) -> dict[str, _Result]:
-    """Inputs and outputs of an evaluation by name, as answers hold them."""
+    """Return inputs and outputs of an evaluation by name, as answers hold them."""
     answer = rendering.evaluation(evaluation)
     return {name: _shown(**shown) for name, shown in {**answer["inputs"], **answer["outputs"]}.items()}
 

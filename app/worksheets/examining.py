@@ -78,7 +78,7 @@ def _unusable(cls: type[Template]) -> Iterator[str]:
 def as_released(
     source: SheetSource, digest: str | None, golden: Mapping[str, object] | None
 ) -> type[Template] | str:
-    """The class of a released text, or why it is not that of its release any more."""
+    """Return the class of a released text, or why it is not that of its release any more."""
     try:
         cls = class_of(source)
     except TemplateError as error:
@@ -93,6 +93,6 @@ def as_released(
 
 
 def title_of(text: str) -> str:
-    """The first heading of a text, readable or not."""
+    """Return the first heading of a text, readable or not."""
     headings = (line.lstrip("# ").strip() for line in text.splitlines() if line.startswith("#"))
     return next((heading for heading in headings if heading), "")[:LONGEST_TITLE]

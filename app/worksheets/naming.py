@@ -35,7 +35,7 @@ def require_free(id: str, catalogues: Catalogues) -> None:
 
 
 def signed(typed: str | None) -> tuple[str | None, str | None]:
-    """The author of an action: name and id of a principal who has signed in, else a typed name."""
+    """Return the author of an action: name and id of a principal who has signed in, else a typed name."""
     who = acting()
     return (typed, None) if who.id in BUILT_IN else (who.name, who.id)
 

@@ -48,7 +48,7 @@ class Published:
 
     @property
     def broken(self) -> dict[Key, str]:
-        """Why released versions are broken."""
+        """Return why released versions are broken."""
         return {key: read for key, (_, read) in self._read.items() if isinstance(read, str)}
 
     def start(self) -> None:
@@ -78,7 +78,7 @@ class Published:
             self.catalogues.publish(self._sheets(), self.draft)
 
     def draft(self, id: str, version: int) -> type[Template]:
-        """The draft of a worksheet as it is now.
+        """Return the draft of a worksheet as it is now.
 
         Raises
         ------
@@ -120,7 +120,7 @@ def _remedy(state: repository.State) -> str:
 
 
 def _read_again(rows: Sequence[Row], seconds: float) -> dict[Key, tuple[str, ReleasedSheet | str]]:
-    """Releases with the edit that was read, as many as the time [s] allows, one at least."""
+    """Return releases with the edit that was read, as many as the time [s] allows, one at least."""
     read: dict[Key, tuple[str, ReleasedSheet | str]] = {}
     begun = time.monotonic()
     for row in rows:
@@ -131,7 +131,7 @@ def _read_again(rows: Sequence[Row], seconds: float) -> dict[Key, tuple[str, Rel
 
 
 def _verified(row: Row) -> ReleasedSheet | str:
-    """A released version, or why it is broken."""
+    """Return a released version, or why it is broken."""
     source = SheetSource(row.id, row.number, row.text, row.withdrawn)
     if isinstance(released := as_released(source, row.digest, row.record), str):
         logger.error("Worksheet %s version %d is broken: %s", row.id, row.number, released)

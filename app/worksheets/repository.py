@@ -28,7 +28,7 @@ class State(NamedTuple):
 
 
 def newest(session: Session, id: str) -> Row:
-    """The newest version of a worksheet.
+    """Return the newest version of a worksheet.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def newest(session: Session, id: str) -> Row:
 
 
 def version(session: Session, id: str, number: int) -> Row:
-    """One version of a worksheet.
+    """Return one version of a worksheet.
 
     Raises
     ------
@@ -55,12 +55,12 @@ def version(session: Session, id: str, number: int) -> Row:
 
 
 def versions(session: Session, id: str) -> list[Row]:
-    """All versions of a worksheet, ascending."""
+    """Return all versions of a worksheet, ascending."""
     return list(session.scalars(select(Row).where(Row.id == id).order_by(Row.number)))
 
 
 def page(session: Session, limit: int, after: str | None) -> list[Row]:
-    """The newest versions in the order of their ids, one more than `limit`."""
+    """Return the newest versions in the order of their ids, one more than `limit`."""
     last = select(Row.id, func.max(Row.number).label("number")).group_by(Row.id).subquery()
     rows = select(Row).join(last, and_(Row.id == last.c.id, Row.number == last.c.number))
     if after is not None:
@@ -69,7 +69,7 @@ def page(session: Session, limit: int, after: str | None) -> list[Row]:
 
 
 def states(session: Session) -> tuple[State, ...]:
-    """The present states of all versions."""
+    """Return the present states of all versions."""
     rows = select(Row.id, Row.number, Row.state, Row.edit).order_by(Row.id, Row.number)
     return tuple(State(*row) for row in session.execute(rows))
 

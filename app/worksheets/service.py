@@ -48,7 +48,7 @@ class Worksheets:
         self.database, self.catalogues, self.pool, self.published = database, catalogues, pool, published
 
     def create(self, body: SheetIn, once: Once, imported: Imported | None = None) -> Row:
-        """A new worksheet, a draft.
+        """Return a new worksheet, a draft.
 
         Raises
         ------
@@ -82,7 +82,7 @@ class Worksheets:
         return self._written(unit)
 
     def change(self, id: str, body: SheetPatch, expected: str | None, once: Once) -> Row:
-        """An edit: a draft again, or the draft of the next version if this one is released.
+        """Return an edit: a draft again, or the draft of the next version if this one is released.
 
         Raises
         ------
@@ -210,7 +210,7 @@ class Worksheets:
         self.published.look()
 
     def newest(self, id: str, expected: str | None = None) -> Row:
-        """The newest version of a worksheet.
+        """Return the newest version of a worksheet.
 
         Raises
         ------
@@ -225,7 +225,7 @@ class Worksheets:
         return row
 
     def version(self, id: str, number: int) -> Row:
-        """One version of a worksheet.
+        """Return one version of a worksheet.
 
         Raises
         ------
@@ -236,7 +236,7 @@ class Worksheets:
             return repository.version(session, id, number)
 
     def calculated(self, client: str, function: Callable[[*Ts], T], *args: *Ts) -> T:
-        """The result of a function of a text, in a calculation process.
+        """Return the result of a function of a text, in a calculation process.
 
         Raises
         ------
@@ -305,7 +305,10 @@ def _draft(id: str, number: int, text: str, reading: Examined) -> Row:
 
 
 def _edited(draft: Row) -> dict[str, object]:
-    """The changes of an edit to the row of a version; who reviewed the old text did not review this one."""
+    """Return the changes of an edit to the row of a version.
+
+    Who reviewed the old text did not review this one.
+    """
     names = ("text", "title", "language", "digest", "faults", "author", "author_principal")
     unsigned: dict[str, object] = {
         "state": "draft",

@@ -14,7 +14,7 @@ Broken = Mapping[Key, str]
 
 
 def sheet(row: Row, versions: Sequence[Row], broken: Broken) -> Sheet:
-    """One version with its text, and all versions of its worksheet."""
+    """Return one version with its text, and all versions of its worksheet."""
     reason = broken.get((row.id, row.number))
     return Sheet.model_validate(
         {
@@ -43,7 +43,7 @@ def sheet(row: Row, versions: Sequence[Row], broken: Broken) -> Sheet:
 
 
 def summary(row: Row, broken: Broken) -> SheetSummary:
-    """A worksheet in a list."""
+    """Return a worksheet in a list."""
     return SheetSummary(
         id=row.id,
         version=row.number,
@@ -68,6 +68,6 @@ def _version(row: Row, broken: Broken) -> SheetVersion:
 
 
 def state(row: Row, broken: Broken) -> State:
-    """The state of a version: as stored, unless it is broken."""
+    """Return the state of a version: as stored, unless it is broken."""
     stored: State = row.state  # type: ignore[assignment] # only `app.worksheets.service` writes it
     return "broken" if (row.id, row.number) in broken else stored

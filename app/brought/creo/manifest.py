@@ -58,7 +58,7 @@ class Driven(Bounded):
         return self
 
     def described(self) -> Parameter:
-        """The entry as a parameter of the model."""
+        """Return the entry as a parameter of the model."""
         kind, key = ("dimension", self.dimension) if self.dimension else ("parameter", self.parameter)
         return Parameter(
             name=self.name,
@@ -101,13 +101,13 @@ class Manifest(Bounded):
         return self
 
     def described(self, file: str, file_name: str) -> Description:
-        """The description of the model; `file` is the hash of the manifest."""
+        """Return the description of the model; `file` is the hash of the manifest."""
         parameters = tuple(one.described() for one in self.parameters)
         return Description("creo", file, file_name, self.title.rstrip(". "), "Creo by CREOSON", parameters)
 
 
 def read(content: bytes) -> Manifest:
-    """A manifest from its JSON.
+    """Return a manifest from its JSON.
 
     Raises
     ------

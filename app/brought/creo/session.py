@@ -46,7 +46,7 @@ class Creoson:
 
 
 def unreachable(reason: str) -> ProgramMissing:
-    """The refusal where Creo does not answer, with what to do."""
+    """Return the refusal where Creo does not answer, with what to do."""
     return ProgramMissing(
         "creo_unreachable", f"Creo cannot be used: {reason}. Start Creo and CREOSON, then retry"
     )
@@ -190,7 +190,7 @@ class CreoDrawing:
 
 
 def _volume(properties: Fields, names: tuple[str, ...]) -> float:
-    """The volume in the unit of the model, cubed."""
+    """Return the volume in the unit of the model, cubed."""
     volume = properties.get("volume")
     if isinstance(volume, bool) or not isinstance(volume, int | float) or not 0 < volume < 1e18:
         raise GeometryError(

@@ -40,12 +40,12 @@ def migrate(url: str) -> None:
 
 
 def schema_of(connection: Connection) -> str | None:
-    """The version of a database's schema; None of an empty database."""
+    """Return the version of a database's schema; None of an empty database."""
     return MigrationContext.configure(connection).get_current_revision()
 
 
 def known_schemas() -> list[str]:
-    """The versions that this program can bring up to date, newest first; the first is its own."""
+    """Return the versions that this program can bring up to date, newest first; the first is its own."""
     scripts = ScriptDirectory(str(Path(__file__).parent)).walk_revisions()
     return [script.revision for script in scripts]
 

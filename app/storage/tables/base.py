@@ -34,11 +34,11 @@ class JsonText(TypeDecorator[plain.Json]):
     cache_ok = True
 
     def process_bind_param(self, value: plain.Json, dialect: Dialect) -> str | None:
-        """From Python to the column."""
+        """Return the JSON text of a Python value."""
         return None if value is None else canonical_json(value)
 
     def process_result_value(self, value: str | None, dialect: Dialect | None = None) -> plain.Json:
-        """From the column to Python; text that is not JSON was not written by this program."""
+        """Return the Python value of a JSON text; any other text was not written by this program."""
         try:
             return None if value is None else json.loads(value)
         except ValueError as error:

@@ -83,15 +83,15 @@ class RevisionModelRow(Base):
 
     @property
     def variant(self) -> str | None:
-        """The variant that the model belongs to; None of a model of the design itself."""
+        """Return the variant that the model belongs to; None of a model of the design itself."""
         return variant_of(self.name)
 
     @property
     def own_name(self) -> str:
-        """The name of the model within the design or the variant."""
+        """Return the name of the model within the design or the variant."""
         return self.name.rpartition(".")[2]
 
 
 def variant_of(model: str) -> str | None:
-    """The variant in the name of a model, such as `main_2.shell`; None where it names none."""
+    """Return the variant in the name of a model, such as `main_2.shell`; None where it names none."""
     return model.rpartition(".")[0] or None

@@ -33,7 +33,7 @@ class DaskWorker:
 
     @classmethod
     def of(cls, settings: Settings) -> DaskWorker:
-        """The worker by the settings of a server; it connects in the background."""
+        """Return the worker by the settings of a server; it connects in the background."""
         configure()
         return cls(Cluster(settings.engine, security(settings), program()))
 
@@ -63,7 +63,7 @@ class DaskWorker:
         return self._cluster.size(GEOMETRY) > 0
 
     def why_silent(self) -> str:
-        """Why there is none, if there is none."""
+        """Return why there is none, if there is none."""
         return self._cluster.why_silent()
 
     def close(self) -> None:

@@ -25,7 +25,7 @@ _PACKAGES = (Path(__file__).parents[2], Path(cad.__file__).parent, Path(template
 
 @cache
 def program() -> str:
-    """A digest of the files of this program, the recipe of solids among them, and of what it stands on."""
+    """Return a digest of this program's files, the recipe of solids among them, and of its libraries."""
     libraries = [(name, version(name)) for name in LIBRARIES]
     digest = hashlib.sha256(json.dumps([sys.version_info[:2], libraries]).encode())
     for name, file in _files():
@@ -36,7 +36,7 @@ def program() -> str:
 
 
 def label(lane: Lane, of: str) -> str:
-    """The resource that a machine offers for a lane, and a job of it asks for, by the digest of a program."""
+    """Return the Dask resource of a lane for a program's digest: machines offer it, and jobs ask for it."""
     return f"{lane}-{of[:12]}"
 
 

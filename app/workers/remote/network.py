@@ -28,7 +28,10 @@ def configure() -> None:
 
 
 def security(settings: Settings) -> Security:
-    """The certificates of this process; both ends of a connection prove who they are, or there is none."""
+    """Return the certificates of this process.
+
+    Both ends of a connection prove who they are, or there is none.
+    """
     if settings.dask_ca is None:
         return Security(require_encryption=False)
     pair = {"cert": str(settings.dask_cert), "key": str(settings.dask_key)}

@@ -38,7 +38,10 @@ class CarriesOut(Protocol):
 
 
 def carry_out(key: str, order: Order, topic: str) -> Outcome:
-    """The one function that Dask runs, in a thread of its worker; it reports progress under a topic."""
+    """Return the one function that Dask runs, in a thread of its worker.
+
+    It reports progress under a topic.
+    """
     return cast(CarriesOut, get_worker()).carry_out(key, order, topic)
 
 
@@ -51,7 +54,7 @@ class Places:
 
 
 def places(labels: Mapping[Lane, str], own: str, dask_scheduler: Scheduler) -> dict[Lane, dict[str, Places]]:
-    """The places of each lane by the address of the machine; runs in the scheduler.
+    """Return the places of each lane by the address of the machine; runs in the scheduler.
 
     A machine that is paused or says farewell has none: it takes no more tasks. `own` is part of the
     keys of tasks of who asks, and counts them itself without delay.

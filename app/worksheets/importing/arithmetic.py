@@ -17,35 +17,35 @@ class Arithmetic(Writer):
     """Writes operators."""
 
     def times(self, left: Node, right: Node) -> Term:
-        """A product of two trees."""
+        """Return a product of two trees."""
         return self.product(self.term(left), self.term(right))
 
     def over(self, left: Node, right: Node) -> Term:
-        """A quotient of two trees."""
+        """Return a quotient of two trees."""
         return self.quotient(self.term(left), self.term(right))
 
     def plus(self, left: Node, right: Node) -> Term:
-        """A sum."""
+        """Return a sum."""
         return binary(self.value(left), "+", self.value(right), SUM)
 
     def minus(self, left: Node, right: Node) -> Term:
-        """A difference."""
+        """Return a difference."""
         return binary(self.value(left), "-", self.value(right), SUM)
 
     def negative(self, part: Node) -> Term:
-        """The negative of a tree."""
+        """Return the negative of a tree."""
         return negative(self.value(part))
 
     def percent(self, part: Node) -> Term:
-        """A hundredth of a tree."""
+        """Return a hundredth of a tree."""
         return binary(self.value(part), "/", number(100), PRODUCT)
 
     def vectorized(self, part: Node) -> Term:
-        """A tree whose operators go item by item."""
+        """Return a tree whose operators go item by item."""
         return replace(self, is_vectorised=True).term(part)
 
     def product(self, left: Term, right: Term) -> Term:
-        """A product, which of two vectors is their scalar product."""
+        """Return a product, which of two vectors is their scalar product."""
         result = binary(left, "*", right, PRODUCT)
         if left.is_vector and right.is_vector and not self.is_vectorised:
             if left.is_row == right.is_row and left.is_row:
@@ -56,13 +56,13 @@ class Arithmetic(Writer):
         return result
 
     def quotient(self, left: Term, right: Term) -> Term:
-        """A quotient."""
+        """Return a quotient."""
         if right.is_vector and not self.is_vectorised:
             raise Untranslatable("division by a vector", "vectorise it, or write it item by item")
         return binary(left, "/", right, PRODUCT)
 
     def power(self, base: Node, exponent: Node) -> Term:
-        """A power; of a vector its square alone, which is a scalar product."""
+        """Return a power; of a vector its square alone, which is a scalar product."""
         over = self.value(exponent)
         if base.tag == "id" and key_of(base) == "e" and "e" not in self.scope:
             return called("exp", over)
@@ -76,7 +76,7 @@ class Arithmetic(Writer):
         return raised(under, over)
 
     def root(self, degree: list[Node], part: Term) -> Term:
-        """A root of any degree."""
+        """Return a root of any degree."""
         if part.is_vector and not self.is_vectorised:
             raise Untranslatable("root of a vector", "vectorise it, or write it item by item")
         if not degree or degree[0].tag == "placeholder":
@@ -85,13 +85,13 @@ class Arithmetic(Writer):
         return raised(part, binary(number(1), "/", by, PRODUCT))
 
     def size(self, part: Term) -> Term:
-        """An absolute value, or the length of a vector."""
+        """Return an absolute value, or the length of a vector."""
         if part.is_vector and not self.is_vectorised:
             return called("sqrt", reduced("sum", raised(part, number(2))))
         return called("abs", part)
 
     def factorial(self, part: Term) -> Term:
-        """A factorial, as a number."""
+        """Return a factorial, as a number."""
         if part.number is None or part.number != int(part.number) or not 0 <= part.number <= 18:
             raise Untranslatable("factorial", "write its value")
         return number(math.factorial(int(part.number)))
@@ -102,7 +102,7 @@ def _is_plain(text: str) -> bool:
 
 
 def _fraction(node: Node) -> Term | None:
-    """A quotient of two plain numbers, which an exponent may be."""
+    """Return a quotient of two plain numbers, which an exponent may be."""
     while node.tag == "parens" and node.parts:
         node = node.parts[0]
     if node.tag != "apply" or len(node.parts) != 3 or node.parts[0].tag != "div":

@@ -18,7 +18,7 @@ class Calls(Writer):
     """Writes calls."""
 
     def call(self, operator: Node, arguments: list[Node]) -> Term:
-        """A call of a function by its name."""
+        """Return a call of a function by its name."""
         key = key_of(operator)
         meant = self.scope.get(key)
         match meant:
@@ -99,7 +99,7 @@ class Calls(Writer):
         return self._written_out(function, parts)
 
     def _written_out(self, function: Function, parts: list[Term]) -> Term:
-        """The body of a function with its arguments in the place of its parameters."""
+        """Return the body of a function with its arguments in the place of its parameters."""
         inner: Scope = dict(function.scope)
         for key, part in zip(function.parameters, parts, strict=True):
             inner[key] = Written(part)

@@ -24,14 +24,14 @@ class Conditions(Writer):
     """Writes conditions and cases."""
 
     def value(self, node: Node) -> Term:
-        """A quantity; a condition counts 1 where it holds and 0 where not."""
+        """Return a quantity; a condition counts 1 where it holds and 0 where not."""
         term = self.term(node)
         if not term.is_truth:
             return term
         return Term(f"if {term.text} then 1 else 0", LOOSE).shaped(term)
 
     def condition(self, node: Node) -> Term:
-        """A tree as a condition; of a number, whether it is not 0."""
+        """Return a tree as a condition; of a number, whether it is not 0."""
         if node.tag == "parens" and node.parts:
             return self.condition(node.parts[0])
         sign = node.parts[0].tag if node.tag == "apply" and node.parts else ""
@@ -61,13 +61,13 @@ class Conditions(Writer):
         return f"{meant.name} is {meant.words[text.text]}"
 
     def either(self, test: Term, one: Node, other: Node) -> Term:
-        """One of two values, by a condition."""
+        """Return one of two values, by a condition."""
         then, otherwise = self.value(one), self.value(other)
         text = f"if {test.text} then {then.bound(SUM)} else {otherwise.text}"
         return Term(text, LOOSE).shaped(test, then, otherwise)
 
     def program(self, parts: list[Node]) -> Term:
-        """Definitions of local names, and then a value: each name is replaced by its expression."""
+        """Return definitions of local names, and then a value: each name is replaced by its expression."""
         parts = [part for part in parts if part.tag != "placeholder"]
         inner: Scope = dict(self.scope)
         for place, part in enumerate(parts):
@@ -86,7 +86,7 @@ class Conditions(Writer):
         raise Untranslatable("program without a value", "write one formula")
 
     def chain(self, parts: list[Node]) -> Term:
-        """Conditions one after another; the last is `else`, or there is no value."""
+        """Return conditions one after another; the last is `else`, or there is no value."""
         branches: list[tuple[Node, Node]] = []
         waiting = list(parts)
         while waiting:

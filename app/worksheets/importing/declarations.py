@@ -41,7 +41,7 @@ class Declarations:
     bound: Mapping[str, Sort] = field(default_factory=dict)
 
     def sort(self, text: str, bound: Mapping[str, Sort] | None = None) -> Sort:
-        """The sort of an expression.
+        """Return the sort of an expression.
 
         Parameters
         ----------
@@ -67,14 +67,14 @@ class Declarations:
         return result
 
     def name(self, text: str) -> Part:
-        """The meaning of a name."""
+        """Return the meaning of a name."""
         sort = self.bound.get(text) or self.sorts.get(text)
         if sort is None:
             raise FaultyText("unknown_name", f"{text[:40]} is not declared")
         return Name(text), sort
 
     def function(self, name: str) -> Call | None:
-        """A function that has a line."""
+        """Return a function that has a line."""
         if name not in self.functions:
             return None
         count, result = self.functions[name]
@@ -100,7 +100,7 @@ def _remedy(code: str) -> str:
 
 
 def sort_of(text: str, axis: str = "") -> Sort:
-    """The sort of a value that is declared in a unit."""
+    """Return the sort of a value that is declared in a unit."""
     return Sort(Kind(unit(text).base), 0.0, axis=axis)
 
 
@@ -113,7 +113,9 @@ def fits(text: str, sort: Sort) -> bool:
 
 
 def unit_for(sort: Sort, wanted: Sequence[str]) -> str:
-    """The unit in which a value is declared: the first wanted one that fits, else a usual one, else SI.
+    """Return the unit in which a value is declared.
+
+    The first wanted one that fits, else a usual one, else SI.
 
     Raises
     ------

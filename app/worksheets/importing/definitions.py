@@ -56,11 +56,11 @@ class Definitions(ListDefinitions):
                 self.scope[key] = Failed(number)
 
     def in_block(self, region: Original) -> list[Outcome]:
-        """The regions of the same solve block."""
+        """Return the regions of the same solve block."""
         return [o for o in self.outcomes.values() if o.original.block == region.block]
 
     def equation(self, region: Original) -> str:
-        """A constraint as far as it can be written, for a remedy."""
+        """Return a constraint as far as it can be written, for a remedy."""
         try:
             return Expressions(self, self.scope).condition(region.math).text if region.math else ""
         except (Untranslatable, Unnamed):
@@ -166,11 +166,11 @@ class _Trial:
         self.axis = sheet.axis
 
     def function(self, function: Function, arguments: Sequence[Term]) -> str | None:
-        """A name that nothing has."""
+        """Return a name that nothing has."""
         return "call"
 
     def curve(self, across: Term, up: Term) -> str:
-        """A name that nothing has."""
+        """Return a name that nothing has."""
         return "curve"
 
 
@@ -195,7 +195,7 @@ def _label_units(math: Node, scope: Scope) -> None:
 
 
 def _defined(target: Node) -> Iterator[str]:
-    """The names that a definition gives a meaning."""
+    """Yield the names that a definition gives a meaning."""
     match target.tag, target.parts:
         case "id", _:
             yield key_of(target)

@@ -47,7 +47,7 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
     """Writes expressions at one place of a sheet."""
 
     def term(self, node: Node) -> Term:
-        """The expression of a tree.
+        """Return the expression of a tree.
 
         Raises
         ------
@@ -79,7 +79,7 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
         return replace(term, text=plain)
 
     def named(self, node: Node) -> Term:
-        """The term for which a name stands."""
+        """Return the term for which a name stands."""
         key, label = key_of(node), node.attributes.get("labels", "")
         if label == "UNIT":
             return self._unit(key)
@@ -103,7 +103,7 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
         return Term(f"{number(unit.number).text} {unit.unit}", POWER)
 
     def applied(self, node: Node) -> Term:
-        """An operator or a function, applied to what it takes."""
+        """Return an operator or a function, applied to what it takes."""
         operator, parts = node.parts[0], list(node.parts[1:])
         sign = operator.tag
         if sign in REFUSED and sign not in ("transpose", "determinant"):

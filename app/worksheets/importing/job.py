@@ -25,7 +25,7 @@ class Imported:
 
 
 def read_sheet(content: bytes) -> OriginalSheet:
-    """The regions of a file of either kind.
+    """Return the regions of a file of either kind.
 
     Raises
     ------
@@ -36,7 +36,7 @@ def read_sheet(content: bytes) -> OriginalSheet:
 
 
 def imported(content: bytes, title: str) -> Imported:
-    """A file as a worksheet, each of its regions accounted for.
+    """Return a file as a worksheet, each of its regions accounted for.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def imported(content: bytes, title: str) -> Imported:
 
 
 def _title(outcomes: list[Outcome], other: str) -> str:
-    """The first text of the sheet if it is short enough for a title; else another."""
+    """Return the first text of the sheet if it is short enough for a title; else another."""
     first = next((o for o in outcomes if o.original.kind == "text" and o.original.text), None)
     if first is not None and len(first.original.text) <= LONGEST_TITLE and "\n" not in first.original.text:
         if first is outcomes[0]:

@@ -16,7 +16,7 @@ class Lists(Writer):
     """Writes lists."""
 
     def matrix(self, node: Node) -> Term:
-        """A vector as a list; other matrices are refused."""
+        """Return a vector as a list; other matrices are refused."""
         parts = [part for part in node.parts if part.tag != "display"]
         rows, columns = node.attributes.get("rows"), node.attributes.get("cols")
         if "1" not in (rows, columns) or not parts:
@@ -33,13 +33,13 @@ class Lists(Writer):
         return term if self.keep is None else self.keep(term)
 
     def transposed(self, part: Term) -> Term:
-        """A vector as a row, or a row as a vector."""
+        """Return a vector as a row, or a row as a vector."""
         if not part.is_vector:
             raise Untranslatable("matrix", "write its items as lists")
         return replace(part, is_row=not part.is_row)
 
     def item(self, whole: Node, index: Node) -> Term:
-        """An item of a list, or its items along a range."""
+        """Return an item of a list, or its items along a range."""
         if index.tag == "sequence":
             raise Untranslatable("item of a matrix", "write its rows or columns as lists")
         term, at = self.term(whole), self.term(index)
@@ -57,7 +57,7 @@ class Lists(Writer):
         return Term(f"{term.text}[{place}]")
 
     def _along(self, term: Term, at: Term) -> Term:
-        """The items of a list along a range that names each of them."""
+        """Return the items of a list along a range that names each of them."""
         assert term.axis is not None
         assert at.axis is not None
         numbers = at.axis.numbers
@@ -68,7 +68,7 @@ class Lists(Writer):
         return replace(term, is_vector=False, is_row=False, axis=replace(at.axis, start=term.axis.start))
 
     def summed(self, parts: list[Node]) -> Term:
-        """A sum over an index, or of a list."""
+        """Return a sum over an index, or of a list."""
         function = next((part for part in parts if part.tag == "lambda"), None)
         bounds = {part.tag: part.parts[0] for part in parts if part.parts and part.tag.endswith("Bound")}
         if function is None or len(function.parts) != 2:

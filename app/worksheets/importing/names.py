@@ -24,7 +24,7 @@ _TEX = frozenset(
 
 
 def key_of(node: Node) -> str:
-    """A name as Mathcad distinguishes it: its letters, with its subscript in braces."""
+    """Return a name as Mathcad distinguishes it: its letters, with its subscript in braces."""
     letters = []
     for piece in node.pieces:
         if isinstance(piece, str):
@@ -37,7 +37,7 @@ def key_of(node: Node) -> str:
 
 
 def look(key: str) -> str:
-    """A name as a reader sees it: `f_ck` of `f_{ck}`."""
+    """Return a name as a reader sees it: `f_ck` of `f_{ck}`."""
     return key.replace("{", "").replace("}", "")
 
 
@@ -48,7 +48,7 @@ class Names:
         self._used = set(reserved)
 
     def take(self, key: str) -> str:
-        """A name for something that Mathcad calls `key`; the second of one name is `x_2`."""
+        """Return a name for something that Mathcad calls `key`; the second of one name is `x_2`."""
         wanted = legal(key)
         count, name = 1, wanted
         while name in self._used:
@@ -59,7 +59,7 @@ class Names:
 
 
 def legal(key: str) -> str:
-    """A name of letters, digits and underscores, which begins with a letter."""
+    """Return a name of letters, digits and underscores, which begins with a letter."""
     spelled = "".join(_spelled(letter) for letter in look(key))
     plain = re.sub(r"_+", "_", re.sub(r"[^A-Za-z0-9_]+", "_", spelled)).strip("_")[:LONGEST].strip("_")
     if not plain:
@@ -81,7 +81,10 @@ _SUBSCRIPT = re.compile(r"[A-Za-z0-9,*+ ]{1,20}")
 
 
 def symbol(key: str) -> str:
-    r"""LaTeX of a name with its subscript, such as `\sigma_{c2}`; empty where it cannot be written so."""
+    r"""Return LaTeX of a name with its subscript, such as `\sigma_{c2}`.
+
+    Empty where it cannot be written so.
+    """
     head, _, below = key.partition("_{")
     head, below = head.strip(), below.replace("{", "").replace("}", "")
     letter = f"\\{GREEK[head]}" if head in _TEX else head if re.fullmatch("[A-Za-z]", head) else ""

@@ -51,6 +51,6 @@ class Outcome:
 
 
 def one_line(text: str) -> str:
-    """Text fit for a remark: one line, no signs that control anything."""
+    """Return the text fit for a remark: one line, no signs that control anything."""
     plain = "".join(sign if sign.isprintable() else " " for sign in text)
     return " ".join(plain.split())[:200]

@@ -71,11 +71,11 @@ class Package:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names of the parts."""
+        """Return the names of the parts."""
         return tuple(part.filename for part in self._parts)
 
     def read(self, name: str) -> bytes | None:
-        """The content of a part, or None if there is none of this name.
+        """Return the content of a part, or None if there is none of this name.
 
         Raises
         ------

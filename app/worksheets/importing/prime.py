@@ -89,7 +89,7 @@ class _Reader:
     count: int = field(default=0)
 
     def regions(self, node: Node, block: str = "") -> Iterator[Original]:
-        """The regions within an element, and within the areas and solve blocks among them."""
+        """Yield the regions within an element, and within the areas and solve blocks among them."""
         for group in (part for part in node.parts if part.tag == "regions"):
             for region in group.parts:
                 if region.tag == "region" and region.parts:
@@ -130,7 +130,7 @@ class _Reader:
         )
 
     def _text(self, body: Node) -> str:
-        """The words of a text region; they stand in a package of its own."""
+        """Return the words of a text region; they stand in a package of its own."""
         content = self.package.read(self.targets.get(body.attributes.get("item-idref", ""), ""))
         if content is None or not is_package(content):
             return body.whole_text.strip()

@@ -50,7 +50,7 @@ class Scaled:
     powers: tuple[tuple[str, Fraction], ...] = ()
 
     def times(self, other: Scaled, power: int = 1) -> Scaled:
-        """The product with a power of another."""
+        """Return the product with a power of another."""
         powers = dict(self.powers)
         for name, exponent in other.powers:
             powers[name] = powers.get(name, Fraction(0)) + exponent * power
@@ -58,13 +58,13 @@ class Scaled:
         return Scaled(self.number * float(other.number) ** power, kept)
 
     def raised(self, power: Fraction) -> Scaled:
-        """A power of the quantity."""
+        """Return a power of the quantity."""
         powers = tuple((name, exponent * power) for name, exponent in self.powers)
         return Scaled(float(self.number) ** float(power), powers)
 
     @property
     def unit(self) -> str:
-        """The units as text, `kN*m` or `kg/(m*s**2)`; `1` where there are none.
+        """Return the units as text, `kN*m` or `kg/(m*s**2)`; `1` where there are none.
 
         Raises
         ------
@@ -88,7 +88,7 @@ class Scaled:
 
     @property
     def si(self) -> float:
-        """The factor to SI."""
+        """Return the factor to SI."""
         factors = (float(unit(name).factor ** float(power)) for name, power in self.powers)
         return float(self.number) * math.prod(factors)
 
@@ -98,7 +98,7 @@ def _factor(name: str, power: int) -> str:
 
 
 def unit_named(name: str) -> Scaled | None:
-    """Mathcad's unit of this name in ours; None if there is none."""
+    """Return Mathcad's unit of this name in ours; None if there is none."""
     if name == "g":
         return Scaled(9.80665, (("m", Fraction(1)), ("s", Fraction(-2))))
     size, ours = _SIZES.get(name, (1.0, _OURS.get(name, name)))
@@ -110,7 +110,7 @@ def unit_named(name: str) -> Scaled | None:
 
 
 def scaled(node: Node, is_unit: bool = False) -> Scaled | None:
-    """A tree of numbers and units alone, as one quantity; None where anything else is in it.
+    """Return a tree of numbers and units alone, as one quantity; None where anything else is in it.
 
     `is_unit` says that plain names are units, as where Mathcad asks for the unit of a result.
     """
@@ -168,7 +168,7 @@ class Result:
 
 
 def result_of(cached: Node, asked: Node | None, carries_units: bool) -> Result | None:
-    """A stored result as numbers in SI; None for texts, matrices, complex numbers and infinity.
+    """Return a stored result as numbers in SI; None for texts, matrices, complex numbers and infinity.
 
     Parameters
     ----------
@@ -234,7 +234,10 @@ def is_infinite(text: str) -> bool:
 
 
 def close(ours: Iterable[float], theirs: Iterable[float], within: float = 1e-9) -> bool:
-    """True if values agree, relative to the greatest of them: a zero of a list is judged by its items."""
+    """Return whether values agree, relative to the greatest of them.
+
+    A zero of a list is judged by its items.
+    """
     one, other = list(ours), list(theirs)
     if len(one) != len(other) or not all(map(math.isfinite, one)):
         return False

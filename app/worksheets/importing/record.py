@@ -55,12 +55,12 @@ class ImportRecord(SheetRecord):
 
 
 def record_of(row: Row) -> ImportRecord | None:
-    """The record of a version; None if somebody typed it. Nothing but an import writes records."""
+    """Return the record of a version; None if somebody typed it. Nothing but an import writes records."""
     return cast("ImportRecord | None", row.imported)
 
 
 def recorded(sheet: OriginalSheet, outcomes: Sequence[Outcome], text: str) -> SheetRecord:
-    """The record of an import, fit for JSON."""
+    """Return the record of an import, fit for JSON."""
     lines = {_plain(line): number for number, line in reversed(list(enumerate(text.split("\n"), 1)))}
     owners = {o.name: o for o in outcomes if o.name and o.lines}
     return {
@@ -101,7 +101,7 @@ def _finite(value: float) -> float | None:
 
 
 def unresolved(record: SheetRecord, text: str) -> list[RegionRecord]:
-    """The regions of a record that forbid a release of this text."""
+    """Return the regions of a record that forbid a release of this text."""
     present = {_plain(line) for line in text.split("\n")}
     return [region for region in record["regions"] if _stands(region, present)]
 

@@ -52,7 +52,7 @@ class OriginalSheet:
 
 
 def coordinate(text: str | None) -> float:
-    """A place on the page; 0 where it is missing or no number."""
+    """Return a place on the page; 0 where it is missing or no number."""
     try:
         value = float(text or 0)
     except ValueError:

@@ -20,7 +20,7 @@ class Value:
     region: str = ""
 
     def term(self) -> Term:
-        """The name as an expression."""
+        """Return the name as an expression."""
         return Term(
             self.name, axis=self.axis, is_vector=self.is_vector, is_row=self.is_row, number=self.number
         )
@@ -34,7 +34,7 @@ class Range:
     axis: Axis
 
     def term(self) -> Term:
-        """The name as an expression."""
+        """Return the name as an expression."""
         return Term(self.name, axis=self.axis)
 
 

@@ -45,11 +45,14 @@ class Statements:
         self.now: Outcome | None = None
 
     def axis(self, length: int) -> Axis:
-        """The axis of the vectors of a length."""
+        """Return the axis of the vectors of a length."""
         return Axis(f"items_{length}", length, self.origin)
 
     def function(self, function: Function, arguments: Sequence[Term]) -> str | None:
-        """The name of the statement of a function for arguments of these units; written at its first call."""
+        """Return the name of the statement of a function for arguments of these units.
+
+        Written at its first call.
+        """
         sorts = [self.declared.sort(part.text, self.declared.bound) for part in arguments]
         units = tuple(
             "1" if part.is_truth else _parameter_unit(sort)
@@ -82,7 +85,7 @@ class Statements:
         return name
 
     def curve(self, across: Term, up: Term) -> str:
-        """The name of a curve through the points of two lists that are written out."""
+        """Return the name of a curve through the points of two lists that are written out."""
         assert self.now is not None
         points = list(zip(items_in(across), items_in(up), strict=False))
         if len(points) < 2 or across.axis is None or up.axis is None or across.axis.length != up.axis.length:
@@ -102,7 +105,7 @@ class Statements:
         return name
 
     def expression(self, node: Node) -> Term:
-        """The expression of a tree; lists within it get lines of their own."""
+        """Return the expression of a tree; lists within it get lines of their own."""
         at = Expressions(self, self.scope)
         if node.tag in ("matrix", "parens", "transpose"):
             return at.value(node)
@@ -110,7 +113,7 @@ class Statements:
         return at.quantity(node) or at.value(node)
 
     def _keep(self, term: Term) -> Term:
-        """A list within a formula gets a line of its own: only lists over one axis meet."""
+        """Declare a list within a formula in a line of its own, and return its name."""
         assert self.now is not None
         sort = self.declared.sort(term.text, None)
         unit, name = unit_for(sort, []), self.names.take("items")
@@ -151,12 +154,12 @@ class Statements:
         return value
 
     def _symbol(self, key: str, name: str) -> str:
-        """A clause where the name has lost the look that it had."""
+        """Return a clause where the name has lost the look that it had."""
         text = symbol(key)
         return f' (symbol "{text}")' if text and (name != look(key)) else ""
 
     def words_for(self, name: str) -> str:
-        """Words that no other quantity has; they make its name in the interface."""
+        """Return words that no other quantity has; they make its name in the interface."""
         words, count = name, 1
         while words.casefold() in self._words:
             count += 1
@@ -165,7 +168,7 @@ class Statements:
         return words
 
     def asked(self, value: Node, literal: Scaled | None = None) -> list[str]:
-        """Units to declare a value in: that which the region asks for, that in which it is typed."""
+        """Return units to declare a value in: that which the region asks for, that in which it is typed."""
         asked = value.first("unitOverride") if value.tag == "eval" else None
         scales = [scaled(asked.parts[0], is_unit=True)] if asked is not None and asked.parts else []
         units = []
@@ -198,12 +201,12 @@ class Statements:
 
 
 def without_result(node: Node) -> Node:
-    """The calculation of a region, without the place of its result."""
+    """Return the calculation of a region, without the place of its result."""
     return node.parts[0] if node.tag == "eval" and node.parts else node
 
 
 def _structural(sheet: OriginalSheet) -> Iterator[str]:
-    """Names that say how long lists are: their values are fixed when the sheet is imported."""
+    """Yield names that say how long lists are: their values are fixed when the sheet is imported."""
     for region in sheet.regions:
         if region.math is None:
             continue
@@ -221,7 +224,7 @@ def _parameter_unit(sort: Sort) -> str:
 
 
 def items_in(term: Term) -> list[str]:
-    """The items of a list that is written out; none of another."""
+    """Return the items of a list that is written out; none of another."""
     if not term.text.startswith("["):
         return []
     items, depth, start = [], 0, 1

@@ -49,11 +49,11 @@ class Term:
             raise Untranslatable("formula of more than 1,800 characters", remedy)
 
     def bound(self, least: int) -> str:
-        """The text, in parentheses where it binds more loosely than its place needs."""
+        """Return the text, in parentheses where it binds more loosely than its place needs."""
         return self.text if self.tight >= least else f"({self.text})"
 
     def shaped(self, *others: Term) -> Term:
-        """The same text with the shape that it gets from what it is made of."""
+        """Return the same text with the shape that it gets from what it is made of."""
         lists = [(part, part.axis) for part in others if part.axis is not None]
         if not lists:
             return self
@@ -66,41 +66,41 @@ class Term:
 
 
 def binary(left: Term, sign: str, right: Term, tight: int) -> Term:
-    """An operator between two expressions; sums and products go on from the left."""
+    """Return an operator between two expressions; sums and products go on from the left."""
     text = f"{left.bound(tight)} {sign} {right.bound(tight + 1)}"
     return Term(text, tight, number=_folded(left.number, sign, right.number)).shaped(left, right)
 
 
 def power(base: Term, exponent: Term) -> Term:
-    """A power; its exponent may be a signed number without parentheses."""
+    """Return a power; its exponent may be a signed number without parentheses."""
     text = f"{base.bound(ATOM)}**{exponent.bound(ATOM)}"
     return Term(text, POWER, number=_folded(base.number, "**", exponent.number)).shaped(base, exponent)
 
 
 def negative(part: Term) -> Term:
-    """The negative of an expression."""
+    """Return the negative of an expression."""
     number = None if part.number is None else -part.number
     return Term(f"-{part.bound(POWER)}", SIGNED, number=number).shaped(part)
 
 
 def called(name: str, *parts: Term) -> Term:
-    """A function of expressions, item by item where they are lists."""
+    """Return a function of expressions, item by item where they are lists."""
     return Term(f"{name}({', '.join(part.text for part in parts)})").shaped(*parts)
 
 
 def reduced(name: str, part: Term) -> Term:
-    """A function that makes one value of a list."""
+    """Return a function that makes one value of a list."""
     return Term(f"{name}({part.text})")
 
 
 def number(value: float) -> Term:
-    """A plain number."""
+    """Return a plain number."""
     text = repr(float(value)).removesuffix(".0")
     return Term(text, SIGNED if value < 0 else ATOM, number=float(value))
 
 
 def listed(items: tuple[Term, ...], axis: Axis) -> Term:
-    """A list of single values, as a vector."""
+    """Return a list of single values, as a vector."""
     return Term(f"[{', '.join(item.text for item in items)}]", ATOM, axis, is_vector=True)
 
 

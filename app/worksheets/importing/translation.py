@@ -17,7 +17,7 @@ LONGEST_PROSE = 1_000
 
 
 def translated(sheet: OriginalSheet) -> list[Outcome]:
-    """The outcome of every region, not yet compared with Mathcad's results."""
+    """Return the outcome of every region, not yet compared with Mathcad's results."""
     work = Definitions(sheet)
     outcomes = [Outcome(region) for region in sheet.regions]
     work.outcomes = {id(outcome.original): outcome for outcome in outcomes}

@@ -30,20 +30,20 @@ class Node:
 
     @property
     def text(self) -> str:
-        """The text that stands in this element itself."""
+        """Return the text that stands in this element itself."""
         return "".join(piece for piece in self.pieces if isinstance(piece, str))
 
     @property
     def whole_text(self) -> str:
-        """The text of this element and of all within it."""
+        """Return the text of this element and of all within it."""
         return "".join(piece if isinstance(piece, str) else piece.whole_text for piece in self.pieces)
 
     def first(self, tag: str) -> Node | None:
-        """The first part of a name."""
+        """Return the first part of a name."""
         return next((part for part in self.parts if part.tag == tag), None)
 
     def all(self, tag: str) -> Iterator[Node]:
-        """All elements of a name, in the order of the document, this one included."""
+        """Yield all elements of a name, in the order of the document, this one included."""
         waiting = [self]
         while waiting:
             node = waiting.pop()
@@ -53,7 +53,7 @@ class Node:
 
 
 def read(content: bytes, name: str) -> Node:
-    """The root of a document.
+    """Return the root of a document.
 
     Raises
     ------

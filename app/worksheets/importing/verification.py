@@ -26,12 +26,12 @@ _SAID = re.compile(r'"[^"\n]*"|\[[^\[\]\n]*\](?= (?:=|over|")|[,)])')
 
 
 def text_of(title: str, outcomes: Iterable[Outcome]) -> str:
-    """The text of the worksheet: its title, then the lines of the regions in the order of the page."""
+    """Return the text of the worksheet: its title, then the lines of the regions in the order of the page."""
     return "\n".join(line for line, _ in _lines(title, outcomes)) + "\n"
 
 
 def verified(title: str, outcomes: Sequence[Outcome]) -> str:
-    """The text of a worksheet without faults; each outcome is held against Mathcad's result.
+    """Return the text of a worksheet without faults; each outcome is held against Mathcad's result.
 
     Regions whose lines the language refuses become remarks, and so do those that need them.
     """
@@ -43,7 +43,7 @@ def verified(title: str, outcomes: Sequence[Outcome]) -> str:
 
 
 def _readable(title: str, outcomes: Sequence[Outcome]) -> Sheet | None:
-    """The worksheet, once what the language refuses has become remarks; None if it takes too long."""
+    """Return the worksheet, once what the language refuses has become remarks; None if it takes too long."""
     gone: dict[str, str] = {}  # names without a line, by the region that had it
     for _ in range(MOST_ROUNDS):
         lines = list(_lines(title, outcomes))
@@ -65,7 +65,7 @@ def _lines(title: str, outcomes: Iterable[Outcome]) -> Iterator[tuple[str, Outco
 
 
 def _owners(lines: Iterable[tuple[str, Outcome | None]]) -> dict[int, Outcome]:
-    """Outcomes by the numbers of their lines."""
+    """Return outcomes by the numbers of their lines."""
     owners, number = dict[int, Outcome](), 1
     for line, outcome in lines:
         height = line.count("\n") + 1
@@ -103,13 +103,13 @@ def _block_followers(owners: Mapping[int, Outcome], gone: dict[str, str]) -> Non
 
 
 def _declared(outcome: Outcome) -> list[str]:
-    """The names that the lines of a region declare."""
+    """Return the names that the lines of a region declare."""
     matches = (_NAME.search(_KIND.sub("", line)) for line in outcome.lines if not line.startswith((">", "/")))
     return [match[0] for match in matches if match]
 
 
 def _used(outcome: Outcome) -> Iterator[str]:
-    """The names in the lines of a region, but for those in words and in declared units."""
+    """Yield the names in the lines of a region, but for those in words and in declared units."""
     for line in outcome.lines:
         if not line.startswith((">", "/")):
             yield from _NAME.findall(_SAID.sub(" ", line))
@@ -136,7 +136,7 @@ def _compare(outcome: Outcome, template: Template | None) -> None:
 
 
 def _value(template: Template | None, name: str) -> Iterator[float]:
-    """A value of the worksheet in SI, item by item; NaN where there is none."""
+    """Yield a value of the worksheet in SI, item by item; NaN where there is none."""
     with np.errstate(all="ignore"):
         try:
             value = getattr(template, name)

@@ -9,13 +9,13 @@ from app.worksheets.schemas.imports import SheetImport, SheetOrigin
 
 
 def origin(row: Row) -> SheetOrigin | None:
-    """The source of an imported version, in short; None if somebody typed it."""
+    """Return the source of an imported version, in short; None if somebody typed it."""
     record = record_of(row)
     return SheetOrigin.model_validate(_short(row, record)) if record is not None else None
 
 
 def imported(row: Row) -> SheetImport:
-    """Every region of the sheet that a version was imported from.
+    """Return every region of the sheet that a version was imported from.
 
     Raises
     ------

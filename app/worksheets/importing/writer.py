@@ -23,13 +23,16 @@ class Sheets(Protocol):
     is_labelled: bool
 
     def function(self, function: Function, arguments: Sequence[Term]) -> str | None:
-        """The name of a function's statement for these arguments; None where it must be written out."""
+        """Return the name of a function's statement for these arguments.
+
+        None where it must be written out.
+        """
 
     def curve(self, across: Term, up: Term) -> str:
-        """The name of a curve through points."""
+        """Return the name of a curve through points."""
 
     def axis(self, length: int) -> Axis:
-        """The axis of the vectors of a length."""
+        """Return the axis of the vectors of a length."""
 
 
 @dataclass
@@ -48,11 +51,11 @@ class Writer:
     keep: Callable[[Term], Term] | None = None
 
     def within(self, scope: Scope) -> Self:
-        """The same with other meanings of names."""
+        """Return the same with other meanings of names."""
         return replace(self, scope=scope)
 
     def term(self, node: Node) -> Term:
-        """The expression of a tree.
+        """Return the expression of a tree.
 
         Raises
         ------
@@ -64,19 +67,19 @@ class Writer:
         raise NotImplementedError
 
     def value(self, node: Node) -> Term:
-        """A quantity; a condition counts 1 where it holds and 0 where not."""
+        """Return a quantity; a condition counts 1 where it holds and 0 where not."""
         raise NotImplementedError
 
     def condition(self, node: Node) -> Term:
-        """A tree as a condition; of a number, whether it is not 0."""
+        """Return a tree as a condition; of a number, whether it is not 0."""
         raise NotImplementedError
 
     def either(self, test: Term, one: Node, other: Node) -> Term:
-        """One of two values, by a condition."""
+        """Return one of two values, by a condition."""
         raise NotImplementedError
 
     def quantity(self, node: Node) -> Term | None:
-        """A tree of numbers and units alone as one quantity."""
+        """Return a tree of numbers and units alone as one quantity."""
         scale = scaled(node)
         if scale is None or not scale.powers:
             return None
@@ -85,5 +88,5 @@ class Writer:
         return Term(sign.text if unit == "1" else f"{sign.text} {unit}", min(sign.tight, POWER))
 
     def argument(self, node: Node) -> Term:
-        """A quantity as it is typed, or any value."""
+        """Return a quantity as it is typed, or any value."""
         return self.quantity(node) or self.value(node)

@@ -15,7 +15,6 @@ from templates.core.judging.comparison import (
     UNDECIDED,
     WORST_FIRST,
     compare,
-    judge_rows,
 )
 from templates.core.judging.criterion import Described, read_criterion
 from templates.core.judging.judgement import sentence
@@ -65,7 +64,7 @@ def test_analytic_verdict_of_a_film(value, error, verdict, needs):
     result = of_film(value, error)
     assert result.verdict == verdict
     assert result.needs == (None if needs is None else pytest.approx(needs))
-    assert WORST_FIRST[judge_rows(FILM, {"film": um([value], np.array([error]))})[0]] == verdict
+    assert WORST_FIRST[compare(FILM, {"film": um([value], np.array([error]))}).rows()[0]] == verdict
 
 
 @pytest.mark.parametrize(
@@ -237,7 +236,7 @@ def test_analytic_verdict_against_an_uncertain_limit(value, low, high, verdict):
     """The limit lies between limit/(1 + e) and limit/(1 - e)."""
     criterion = read_criterion("film", "film <= limit", KNOWN)
     error = (high - low) / (high + low)
-    assert judge_rows(criterion, {"film": um(value), "limit": um(low * (1 + error), error)}) == verdict
+    assert compare(criterion, {"film": um(value), "limit": um(low * (1 + error), error)}).rows() == verdict
 
 
 def test_why_a_limit_whose_error_is_not_known_decides_nothing():
@@ -263,8 +262,10 @@ def test_property_scalars_and_arrays_agree():
     random = np.random.default_rng(seeded(2))
     value = random.choice([-3.0, -1.0, 0.0, 1.0, 2.7, 3.0, 3.3, 4.0, NAN], size=400)
     error = random.choice([0.0, 0.1, 0.5, 1.0, 3.0, NAN], size=400)
-    rows = judge_rows(FILM, {"film": um(value, error)})
-    single = [judge_rows(FILM, {"film": um(float(v), float(e))}) for v, e in zip(value, error, strict=True)]
+    rows = compare(FILM, {"film": um(value, error)}).rows()
+    single = [
+        compare(FILM, {"film": um(float(v), float(e))}).rows() for v, e in zip(value, error, strict=True)
+    ]
     assert rows.tolist() == single
     assert set(single) == {MET, NOT_MET, UNDECIDED, NOT_CHECKED}
 
@@ -274,7 +275,7 @@ def test_property_a_verdict_holds_for_every_truth_of_the_stated_error():
     truth = 3e-6 * (1 + random.normal(scale=0.1, size=3000))
     error = random.uniform(0, 0.3, size=3000)
     value = truth * (1 + error * random.uniform(-1, 1, size=3000))
-    rows = judge_rows(FILM, {"film": Estimate(value, error)})
+    rows = compare(FILM, {"film": Estimate(value, error)}).rows()
     assert (truth[rows == MET] >= 3e-6 * (1 - 1e-12)).all()
     assert (truth[rows == NOT_MET] < 3e-6 * (1 + 1e-12)).all()
     assert (rows == UNDECIDED).any()
