@@ -71,7 +71,6 @@ if TYPE_CHECKING:
     from app.observation.traces import Traces
 
 
-from app.designs.service import Designs
 from app.studies.conclude import Concluding
 from app.studies.repair import ChunkRepair
 from app.studies.run import STUDY, Studying
@@ -256,11 +255,11 @@ def register_jobs(
 
 
 def assemble_studies(services: StudyServices, designs: Designs) -> Studies:
-    """The service of studies, its handler registered."""
+    """Return the service of studies, its handler registered."""
     conclude = Concluding(Building(services, designs))
     repair = ChunkRepair(services, conclude)
     handler = Studying(services, conclude, repair.heal)
     services.jobs.register(STUDY, handler, handler.failed, lane=STUDY)
     return Studies(
-        services.database, services.store, services.jobs, services.catalogues, designs, healing.lost
+        services.database, services.store, services.jobs, services.catalogues, designs, repair.lost
     )

@@ -64,7 +64,7 @@ Errors = dict[str, Array]
 
 
 def film_errors(film: JournalFilm, truth: JournalFilm) -> Errors:
-    """Relative errors of every output that comes from a film, at the same load."""
+    """Return the relative errors of every output that comes from a film, at the same load."""
     couple, true_couple = (f.eps * f.So * np.sin(f.attitude) / 2 for f in (film, truth))
     torque = _relative(film.shear + couple, truth.shear + true_couple)
     thickness = _relative(1 - film.eps, 1 - truth.eps)
@@ -110,13 +110,13 @@ def _threshold(K: Array, B: Array) -> Array:
 
 
 def _relative(value: Array, true: Array) -> Array:
-    """Relative error; 0 where both vanish."""
+    """Return the relative error; 0 where both vanish."""
     with np.errstate(all="ignore"):
         return np.where(value == true, 0.0, np.abs(value / true - 1))
 
 
 def dense(first: list[float], second: list[float]) -> tuple[Array, Array]:
-    """FINER × FINER places in every cell, edges included, (cells, cells, FINER²)."""
+    """Return FINER × FINER places in every cell, edges included, (cells, cells, FINER²)."""
     share = np.linspace(0, 1, FINER)
     one = np.array([a + (b - a) * share for a, b in itertools.pairwise(first)])
     two = np.array([a * (b / a) ** share for a, b in itertools.pairwise(second)])
@@ -126,7 +126,7 @@ def dense(first: list[float], second: list[float]) -> tuple[Array, Array]:
 
 
 def closed_form(level: str, load: Callable[..., Array], own: dict[str, Array]) -> dict[str, Array]:
-    """The largest error of a closed form in each cell of its own eps, against the map."""
+    """Return the largest error of a closed form in each cell of its own eps, against the map."""
     eps, ratio = dense(EPS, WIDTH)
     eps = np.clip(eps, 1e-9, 1 - 1.001e-7)
     low, high = WIDTHS[level]
@@ -146,7 +146,7 @@ def closed_form(level: str, load: Callable[..., Array], own: dict[str, Array]) -
 
 
 def solved(level: str) -> dict[str, Array]:
-    """The largest error of a level near each cell, against the converged solutions, with a margin."""
+    """Return the largest error of a level near each cell, against the converged solutions, with a margin."""
     x, y, truth, matrices = converged(streamers=level == "mass_conserving")
     some = slice(FEWER_POINTS.get(level, x.size))
     x, y = x[some], y[some]
@@ -163,7 +163,10 @@ def solved(level: str) -> dict[str, Array]:
 
 
 def spread(x: Array, y: Array, error: Array) -> Array:
-    """Scattered errors as cells: the largest of the coarse cells that a cell touches, or next to them."""
+    """Return scattered errors as cells.
+
+    The largest of the coarse cells that a cell touches, or next to them.
+    """
     top, low, high = np.arctanh(ECCENTRICITY_LIMIT), np.log(WIDTH[0]), np.log(WIDTH[-1])
 
     def place(values: Array, first: float, last: float, cells: int) -> Array:
@@ -183,7 +186,7 @@ def spread(x: Array, y: Array, error: Array) -> Array:
 
 
 def paper() -> dict[str, Any]:
-    """The largest error of the fit of `oil_film` 1 in each cell of So and B/D, against the map.
+    """Return the largest error of the fit of `oil_film` 1 in each cell of So and B/D, against the map.
 
     `signed` is that of the film thickness with its sign: above 0 too thick, which is unsafe.
     """
@@ -203,7 +206,10 @@ def paper() -> dict[str, Any]:
 
 
 def cost(level: str) -> dict[str, float]:
-    """Processor seconds a point, alone and among many, at eps 0.8 and B/D 1: true on a busy machine too."""
+    """Return the processor seconds a point, alone and among many, at eps 0.8 and B/D 1.
+
+    True on a busy machine too.
+    """
     So, many = 3.5718, (FEWER_POINTS.get(level) and 20) or 20_000
 
     def seconds(count: int) -> float:
@@ -219,7 +225,7 @@ def cost(level: str) -> dict[str, float]:
 def content_of(
     cls: type[Template], truths: dict[str, str], axes: list[dict[str, Any]], levels: dict[str, Any]
 ) -> dict[str, Any]:
-    """The whole file."""
+    """Return the whole file."""
     return {
         "template": {"id": cls.id, "version": cls.version},
         "made_by": "python -m benchmarks.accuracy measure",
@@ -235,7 +241,7 @@ def content_of(
 
 
 def rounded(table: Array) -> list[list[float | None]]:
-    """Two digits, upwards; null where unknown."""
+    """Return two digits, upwards; null where unknown."""
     with np.errstate(all="ignore"):
         unit = 10.0 ** (np.floor(np.log10(np.maximum(table, 1e-12))) - 1)
     up = np.ceil(table / unit) * unit
@@ -250,7 +256,7 @@ def write(cls: type, content: dict[str, Any]) -> None:
 
 
 def axis(attribute: str, name: str, values: list[float]) -> dict[str, Any]:
-    """One axis of the tables: the edges of its cells."""
+    """Return one axis of the tables: the edges of its cells."""
     return {"attribute": attribute, "name": name, "values": values}
 
 

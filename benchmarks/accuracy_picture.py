@@ -62,7 +62,7 @@ def _against_cost(panel: Any, content: dict[str, Any]) -> None:
 
 
 def _error_map(panel: Any, level: str, content: dict[str, Any]) -> Any:
-    """Error of the film thickness over the plane; white where it was refused or not measured."""
+    """Return the error of the film thickness over the plane; white where it was refused or not measured."""
     from matplotlib.colors import LogNorm
 
     table = np.array(content["levels"][level]["errors"]["minimum_film_thickness"], dtype=float)

@@ -34,7 +34,7 @@ THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
 
 
 def figures(kind: str) -> list[Figure]:
-    """The figures of one kind of work."""
+    """Return the figures of one kind of work."""
     measured: list[Figure] = import_module(f"benchmarks.speed.{kind}").figures()
     return measured
 

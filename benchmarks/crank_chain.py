@@ -50,7 +50,7 @@ SPLIT_CASES = (((0.0, 120.0, 240.0), 30.0),)
 
 @cache
 def shaft(angles: tuple[float, ...], split: float = 0.0) -> WholeShaft:
-    """The shaft with pins at these angles, split by an angle [deg]."""
+    """Return the shaft with pins at these angles, split by an angle [deg]."""
     pins = {"value": list(angles), "unit": "deg"}
     if split == 0:
         return Crankshaft.from_quantities({**GIVEN, "pin_angles": pins}).drawn()
@@ -60,13 +60,16 @@ def shaft(angles: tuple[float, ...], split: float = 0.0) -> WholeShaft:
 
 @cache
 def one(level: Level = LEVEL, split: float = 0.0) -> ThrowMatrix:
-    """The matrices of its throw."""
+    """Return the matrices of its throw."""
     step, ends, pin = throw_step(shaft((0.0,), split), 0)
     return throw_matrix(step, ends, pin, level)
 
 
 def whole(angles: Sequence[float], level: Level, split: float = 0.0) -> tuple[System, list[str]]:
-    """Finite elements of all throws joined at mid-mains, which stay faces of the mesh; the mains' names."""
+    """Return finite elements of all throws joined at mid-mains, which stay faces of the mesh.
+
+    The mains' names.
+    """
     drawn = shaft(tuple(angles), split)
     pieces = []
     for k, angle in enumerate(angles):
@@ -91,7 +94,7 @@ def whole(angles: Sequence[float], level: Level, split: float = 0.0) -> tuple[Sy
 
 
 def solid_in(step: bytes) -> Any:
-    """The one solid of a STEP file, as Netgen reads it."""
+    """Return the one solid of a STEP file, as Netgen reads it."""
     with NamedTemporaryFile(suffix=".step") as file:
         file.write(step)
         file.flush()
@@ -99,7 +102,7 @@ def solid_in(step: bytes) -> Any:
 
 
 def response(system: System, mains: Sequence[str]) -> Response:
-    """The response to a unit torque at the loaded end, the named mains kept on the axis."""
+    """Return the response to a unit torque at the loaded end, the named mains kept on the axis."""
     force, _ = system.loads()
     guides = []
     for name in mains:
@@ -124,7 +127,7 @@ def response(system: System, mains: Sequence[str]) -> Response:
 
 
 def rotations(answer: Response, mains: Sequence[str]) -> list[float]:
-    """The rotations about z of the mains' sections, as means that a torque sees [rad]."""
+    """Return the rotations about z of the mains' sections, as means that a torque sees [rad]."""
     system = answer.system
     return [
         float(
@@ -138,7 +141,7 @@ def rotations(answer: Response, mains: Sequence[str]) -> list[float]:
 
 
 def compared(angles: Sequence[float], split: float = 0.0) -> Iterator[dict[str, Any]]:
-    """By how much the chain differs from the whole, free and guided: relative, of stiffness and frequency."""
+    """Return the relative differences of the chain from the whole, free and guided."""
     throws = [one(LEVEL, split)] * len(angles)
     chain = Chain(throws, [radians(angle) for angle in angles])
     system, mains = whole(angles, LEVEL, split)

@@ -97,7 +97,7 @@ class State:
 
 
 def document(parameters: Mapping[str, str]) -> dict[str, Any]:
-    """The design: the shaft, its frequency, and its throw in closed form."""
+    """Return the design: the shaft, its frequency, and its throw in closed form."""
     dimensions = [name for name in CLOSED if name in parameters]
     throw: dict[str, Any] = {name: f"= crank.{name}" for name in dimensions}
     train = {
@@ -123,7 +123,7 @@ def document(parameters: Mapping[str, str]) -> dict[str, Any]:
 
 
 def states(client: Client, base: Mapping[str, str], changes: Sequence[Mapping[str, str]]) -> list[State]:
-    """The shaft and its changes, each a revision of one design."""
+    """Return the shaft and its changes, each a revision of one design."""
     design = client.create(document(base))
     listed = [state(client, design)]
     for change in changes:
@@ -137,12 +137,12 @@ def states(client: Client, base: Mapping[str, str], changes: Sequence[Mapping[st
 
 
 def note_of(change: Mapping[str, str]) -> str:
-    """A change as the note of its revision."""
+    """Return a change as the note of its revision."""
     return ", ".join(f"{name} {value}" for name, value in change.items()) or "as drawn"
 
 
 def state(client: Client, design: Design) -> State:
-    """Results and measures of the design's newest revision, and the mode of its solid."""
+    """Return results and measures of the design's newest revision, and the mode of its solid."""
     revision = client.revision(design.id, design.revision)
     vibration, throw = revision.steps["vibration"], revision.steps["throw"]
     measured, crank = client.measurements(design.id)["crank"], revision.models["crank"]
@@ -161,14 +161,14 @@ def state(client: Client, design: Design) -> State:
 
 
 def _number(value: float | None) -> float:
-    """A value that the study needs."""
+    """Return a value that the study needs."""
     if value is None:
         raise ValueError("the service has no value for an output of the study")
     return value
 
 
 def _inertia(used: object) -> float:
-    """The first of the inertias that a step used."""
+    """Return the first of the inertias that a step used."""
     if not isinstance(used, UsedInput):
         raise ValueError("the step of the vibration waits for its inputs")
     return float(used.value[0])
@@ -186,7 +186,7 @@ def main() -> None:
 
 
 def gains(listed: Sequence[State], name: str) -> list[float]:
-    """By how much [%] each change has changed something."""
+    """Return by how much [%] each change has changed something."""
     base, *changed = (getattr(state, name) for state in listed)
     return [100 * (value / base - 1) for value in changed]
 
@@ -216,7 +216,7 @@ def draw(slender: Sequence[State], stout: Sequence[State], picture: bytes) -> No
 
 
 def table(listed: Sequence[State]) -> str:
-    """One row for each change, ours beside the paper's."""
+    """Return one row for each change, ours beside the paper's."""
     rows = [HEADS, ("---",) + ("---:",) * (len(HEADS) - 1)]
     columns = [gains(listed, name) for name in ("stiffness", "frequency", "mode", "recommended")]
     for i, change in enumerate(CHANGES):
@@ -231,7 +231,7 @@ def table(listed: Sequence[State]) -> str:
 
 
 def line(base: State) -> str:
-    """A shaft in numbers."""
+    """Return a shaft in numbers."""
     return (
         f"K = {base.stiffness / 1000:.1f} kN m/rad ± {100 * base.error:.1g} %, "
         f"I = {1000 * base.inertia:.3f}e-3 kg m², {base.mass:.2f} kg; "
@@ -240,7 +240,7 @@ def line(base: State) -> str:
 
 
 def page(slender: Sequence[State], stout: Sequence[State]) -> str:
-    """The page in Markdown, numbers filled in."""
+    """Return the page in Markdown, numbers filled in."""
     text = (Path(__file__).parent / "crank_study.txt").read_text(encoding="utf-8")
     return text.format(
         dimensions=fill(f"Dimensions: {listed(SLENDER)}.", WIDTH),
@@ -252,7 +252,7 @@ def page(slender: Sequence[State], stout: Sequence[State]) -> str:
 
 
 def listed(parameters: Mapping[str, str]) -> str:
-    """Parameters in words."""
+    """Return parameters in words."""
     return ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in parameters.items())
 
 

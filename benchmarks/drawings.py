@@ -35,13 +35,13 @@ STANDARD = {0.25: "6000", 4.0: "6330"}
 
 
 def latest() -> Iterator[type[CadModel]]:
-    """The newest version of every built-in model."""
+    """Return the newest version of every built-in model."""
     catalogue = models()
     return (catalogue.latest(id) for id in catalogue.ids)
 
 
 def sized(model: type[CadModel], factor: float) -> Build:
-    """The example of a model with all lengths multiplied.
+    """Return the example of a model with all lengths multiplied.
 
     Raises
     ------

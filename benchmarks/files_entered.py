@@ -42,12 +42,12 @@ class Files:
 
     @property
     def app(self) -> int:
-        """How many files of `app`."""
+        """Return how many files of `app`."""
         return len(self.by_package["app"])
 
     @property
     def templates(self) -> int:
-        """How many files of `templates`."""
+        """Return how many files of `templates`."""
         return len(self.by_package["templates"])
 
 

@@ -39,12 +39,15 @@ CASES = 1000
 
 
 def quantity(value: Any, unit: str) -> dict[str, Any]:
-    """The value as a user types it."""
+    """Return the value as a user types it."""
     return {"value": np.asarray(value, float).tolist(), "unit": unit}
 
 
 def big_end(step: float = 1.0, sizes: Array | None = None) -> dict[str, Any]:
-    """Inputs: the rod's load on the crankpin, seen from the engine, and the rod as a sleeve that swings."""
+    """Return inputs.
+
+    The rod's load on the crankpin, seen from the engine, and the rod as a sleeve that swings.
+    """
     angle = np.radians(np.arange(0, 720, step))
     tilt = np.arcsin(np.sin(angle) / ROD_RATIO)
     area, throw = np.pi / 4 * BORE**2, STROKE / 2
@@ -68,7 +71,7 @@ def big_end(step: float = 1.0, sizes: Array | None = None) -> dict[str, Any]:
 
 
 def least(function: Callable[[], object], repeats: int) -> float:
-    """Least wall time of several calls [s]."""
+    """Return the least wall time of several calls [s]."""
     times = []
     for _ in range(repeats):
         begin = perf_counter()
@@ -78,13 +81,13 @@ def least(function: Callable[[], object], repeats: int) -> float:
 
 
 def orbit_seconds(level: str) -> float:
-    """Wall time of the big end's orbit [s]."""
+    """Return the wall time of the big end's orbit [s]."""
     duty = OilFilmCycle.from_quantities(big_end()).at(level).duty
     return least(lambda: cycle_orbit(level, duty), 1 if level == "transient" else 20)
 
 
 def levels() -> dict[str, Any]:
-    """Every level on the big end at 1°, with its cost."""
+    """Return every level on the big end at 1°, with its cost."""
     by_level: dict[str, Any] = {}
     for level in OilFilmCycle.levels:
         answers = evaluate(OilFilmCycle, big_end(), level=level).outputs

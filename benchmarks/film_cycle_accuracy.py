@@ -46,13 +46,13 @@ ROD_RATIO = 4.0
 
 
 def firing(angle: Array, at: float, width: float, period: float) -> Array:
-    """A pressure that rises fast and falls slowly, 1 at its top, over a cycle."""
+    """Return a pressure that rises fast and falls slowly, 1 at its top, over a cycle."""
     late = (angle - at + period / 2) % period - period / 2
     return np.asarray(np.exp(-((late / np.where(late < 0, width / 3, width)) ** 2)))
 
 
 def big_end(S: float, ratio: float) -> Duty:
-    """Four-stroke: rod on crankpin, along the cylinder (x) and across it; the sleeve is the rod."""
+    """Return the load of a four-stroke engine, rod on crankpin, along (x) and across the cylinder."""
     angle = np.radians(np.arange(0.0, 720.0, 2.0))
     tilt = np.arcsin(np.sin(angle) / ROD_RATIO)
     along = (
@@ -64,14 +64,14 @@ def big_end(S: float, ratio: float) -> Duty:
 
 
 def main_bearing(S: float, ratio: float) -> Duty:
-    """Two-stroke: a share of the gas force, and a counterweight that turns."""
+    """Return the load of a two-stroke engine: a share of the gas force, and a counterweight that turns."""
     angle = np.radians(np.arange(0.0, 360.0, 2.0))
     x = 0.5 * np.cos(angle) + 0.15 * np.cos(2 * angle) - 2 * firing(angle, 0.15, 0.5, 2 * np.pi)
     return duty(angle, np.stack([x, 0.5 * np.sin(angle)]), np.zeros(1), S, ratio)
 
 
 def duty(angle: Array, load: Array, sleeve: Array, S: float, ratio: float) -> Duty:
-    """Dimensionless: the crank and the journal turn at 1, the largest load is S."""
+    """Return a dimensionless duty: the crank and the journal turn at 1, the largest load is S."""
     one = np.float64(1.0)
     F = load * S / np.hypot(*load).max()
     return Duty(angle, F[0], F[1], np.asarray(one), sleeve, np.zeros(()), np.asarray(one), np.asarray(one),
@@ -82,7 +82,7 @@ DUTIES = (big_end, main_bearing)
 
 
 def outputs(orbit: CycleOrbit, film: CycleFilm) -> dict[str, Array]:
-    """The outputs by which levels are compared, by API name."""
+    """Return the outputs by which levels are compared, by API name."""
     return {
         "minimum_film_thickness": np.asarray(1 - orbit.eps_max),
         "maximum_eccentricity": np.asarray(orbit.eps_max),
@@ -97,7 +97,7 @@ def outputs(orbit: CycleOrbit, film: CycleFilm) -> dict[str, Array]:
 
 
 def at_level(level: str, asked: Duty, marching: Marching = MARCHING) -> dict[str, Array]:
-    """Outputs at a level."""
+    """Return outputs at a level."""
     orbit = cycle_orbit(level, asked, marching)
     return outputs(orbit, cycle_film(level, asked, orbit))
 
@@ -109,7 +109,7 @@ def errors(values: dict[str, Array], truth: dict[str, Array]) -> dict[str, float
 
 
 def cell(S: float, ratio: float) -> dict[str, dict[str, float]]:
-    """The largest errors of every level in the middle of a cell."""
+    """Return the largest errors of every level in the middle of a cell."""
     cases: list[dict[str, dict[str, float]]] = []
     shortest = main_bearing(S, ratio)
     finest = {main_bearing: at_level("transient", shortest)}
@@ -129,14 +129,14 @@ def cell(S: float, ratio: float) -> dict[str, dict[str, float]]:
 
 
 def cells() -> Iterator[tuple[int, int, dict[str, dict[str, float]]]]:
-    """Every cell measured."""
+    """Yield every cell measured."""
     for i, (low, high) in enumerate(itertools.pairwise(LOADS)):
         for j, (narrow, wide) in enumerate(itertools.pairwise(WIDTHS)):
             yield i, j, cell(np.sqrt(low * high), np.sqrt(narrow * wide))
 
 
 def costs() -> dict[str, dict[str, float]]:
-    """Processor time of one point, of the big end in the middle of the plane [s]."""
+    """Return the processor time of one point, of the big end in the middle of the plane [s]."""
     seconds = {}
     for level in OilFilmCycle.levels:
         begin = process_time()
@@ -148,12 +148,12 @@ def costs() -> dict[str, dict[str, float]]:
 
 
 def rounded(value: float) -> float | None:
-    """Two digits; None where it was not found."""
+    """Return two digits; None where it was not found."""
     return None if not np.isfinite(value) else float(f"{value:.2g}")
 
 
 def unknown(table: dict[str, list[list[float | None]]]) -> dict[str, list[list[None]]]:
-    """Null in every cell: no ensemble supports a bound."""
+    """Return a table with null in every cell: no ensemble supports a bound."""
     return {name: [[None for _ in row] for row in cells] for name, cells in table.items()}
 
 

@@ -55,7 +55,7 @@ EVERY_BAND: Bands = frozenset(
 
 
 def drawn(seed: int, kind: str, number: int = 0) -> Iterator[tuple[int, RandomDuty]]:
-    """Numbered duties of a kind of supply, from one on."""
+    """Yield numbered duties of a kind of supply, from one on."""
     while True:
         names = KINDS[kind]
         duty = random_duty(seed, number, names[number // 2 % len(names)])
@@ -70,7 +70,7 @@ def drawn(seed: int, kind: str, number: int = 0) -> Iterator[tuple[int, RandomDu
 
 
 def well_placed(duty: RandomDuty, rng: np.random.Generator) -> RandomDuty | None:
-    """The duty with its hole where it is seldom under the load; None where twenty places are not."""
+    """Return the duty with its hole where it is seldom under the load; None where twenty places are not."""
     (pocket,) = duty.supply.pockets
     for centre in rng.uniform(-np.pi, np.pi, 20):
         supply = replace(duty.supply, pockets=(replace(pocket, centre=float(centre)),))
@@ -81,7 +81,7 @@ def well_placed(duty: RandomDuty, rng: np.random.Generator) -> RandomDuty | None
 
 
 def fed(duty: RandomDuty) -> FedDuty:
-    """The same as templates know it; everything is dimensionless: the crank turns at 1, F is S."""
+    """Return the same as templates know it; everything is dimensionless: the crank turns at 1, F is S."""
     load, one = duty.load, np.float64(1.0)
     journal, sleeve = load.w[0] + duty.sliding / 2, load.w[0] - duty.sliding / 2
     asked = Duty(load.angle, *load.S[:, 0], journal, sleeve, np.zeros(1), one, one, np.float64(duty.ratio))
@@ -94,7 +94,7 @@ def fed(duty: RandomDuty) -> FedDuty:
 
 
 def under_load(duty: RandomDuty) -> float:
-    """The share of the cycle for which the hole is under the load."""
+    """Return the share of the cycle for which the hole is under the load."""
     (pocket,) = duty.supply.pockets
     none, length = np.float64(np.nan), np.float64(pocket.half_length)
     hole = (length, np.float64(pocket.half_angle), np.float64(pocket.centre))
@@ -105,7 +105,7 @@ def under_load(duty: RandomDuty) -> float:
 
 
 def values(orbit: FedOrbit, film: CycleFilm) -> dict[str, Array]:
-    """The values by which levels are compared."""
+    """Return the values by which levels are compared."""
     compared = (
         1 - orbit.eps_max,
         orbit.eps_max,
@@ -119,7 +119,7 @@ def values(orbit: FedOrbit, film: CycleFilm) -> dict[str, Array]:
 
 
 def compared(kind: str, number: int, seed: int, duty: RandomDuty) -> Line:
-    """One duty at every level: a line of the record."""
+    """Return one duty at every level: a line of the record."""
     asked, begin = fed(duty), process_time()
     orbit = fed_orbit("supplied", asked)
     marched = orbit.marched
@@ -140,12 +140,12 @@ def compared(kind: str, number: int, seed: int, duty: RandomDuty) -> Line:
 
 
 def truth_file(line: Line) -> Path:
-    """Where the values of a march are kept on this machine."""
+    """Return where the values of a march are kept on this machine."""
     return TRUTHS / f"{line['march']}-{line['seed']}-{line['kind']}-{line['number']}.npz"
 
 
 def errors_of(duty: RandomDuty, truth: dict[str, Array]) -> dict[str, list[float | None]]:
-    """Errors of every cheap level, in the order of `OUTPUTS`."""
+    """Return errors of every cheap level, in the order of `OUTPUTS`."""
     asked, errors = fed(duty), {}
     for level in CHEAP:
         if level == "mobility_grooved" and not duty.fed_by.endswith("groove"):
@@ -157,24 +157,24 @@ def errors_of(duty: RandomDuty, truth: dict[str, Array]) -> dict[str, list[float
 
 
 def error(value: Array, truth: Array) -> float:
-    """Relative to what was found; NaN where nothing was."""
+    """Return the error relative to the value found; NaN where there is none."""
     return float(np.abs(value - truth).max() / np.abs(value).max())
 
 
 def digits(value: Any) -> float | None:
-    """Four digits; None where there is no value."""
+    """Return four digits; None where there is no value."""
     return float(f"{float(value):.4g}") if np.isfinite(value) else None
 
 
 def recorded() -> list[Line]:
-    """All lines of the record."""
+    """Return all lines of the record."""
     if not KEPT.exists():
         return []
     return [json.loads(line) for line in KEPT.read_text(encoding="utf-8").splitlines()]
 
 
 def kept() -> list[Line]:
-    """The lines of this march."""
+    """Return the lines of this march."""
     return [line for line in recorded() if line.get("march") == MARCH]
 
 
@@ -192,7 +192,7 @@ def again() -> int:
 
 
 def band(S: float, b: float) -> tuple[int, int]:
-    """The band of a load number and B/D."""
+    """Return the band of a load number and B/D."""
     row, column = np.searchsorted(LOADS, S, side="right") - 1, np.searchsorted(WIDTHS, b, side="right") - 1
     return min(max(int(row), 0), len(LOADS) - 2), min(max(int(column), 0), len(WIDTHS) - 2)
 
@@ -210,7 +210,7 @@ def march(seed: int, kinds: list[str], most: int, bands: Bands = EVERY_BAND) -> 
 
 
 def wanted(seed: int, kind: str, most: int, bands: Bands = EVERY_BAND) -> Iterator[tuple[int, RandomDuty]]:
-    """The first so many duties of each of the bands; with the other seed of all bands together."""
+    """Yield the first so many duties of each of the bands; with the other seed of all bands together."""
     counts: Counter[tuple[int, int]] = Counter()
     for number, duty in drawn(seed, kind):
         place = band(float(np.hypot(*duty.load.S).max()), duty.ratio)

@@ -73,7 +73,7 @@ HOLDS = 0.93
 
 
 def bound(errors: list[float]) -> float | None:
-    """The one-sided tolerance bound; None where there are too few, or it is infinite."""
+    """Return the one-sided tolerance bound; None where there are too few, or it is infinite."""
     ranks = np.arange(1, len(errors) + 1)
     high = ranks[binom.cdf(ranks - 1, len(errors), QUANTILE) >= CONFIDENCE]
     if high.size == 0:
@@ -83,7 +83,7 @@ def bound(errors: list[float]) -> float | None:
 
 
 def rounded_up(value: float) -> float:
-    """To two digits, never down."""
+    """Return a number in two digits, rounded up."""
     if value <= 0:
         return 0.0
     digit = 10.0 ** (floor(log10(value)) - 1)
@@ -91,7 +91,7 @@ def rounded_up(value: float) -> float:
 
 
 def at_band(lines: list[Line], level: str, output: str) -> list[float]:
-    """Errors of an output, with what the orbit lacks of repeating; infinite where there is none."""
+    """Return errors of an output, with what the orbit lacks of repeating; infinite where there is none."""
     rows = []
     for line in lines:
         errors = line.get("errors", {}).get(level)
@@ -104,7 +104,7 @@ Table = list[list[float | None]]
 
 
 def tables(lines: list[Line]) -> dict[str, dict[str, dict[str, Table]]]:
-    """Bounds by kind of supply, level and output, in every band."""
+    """Return bounds by kind of supply, level and output, in every band."""
     result: dict[str, dict[str, dict[str, Table]]] = {}
     for kind in KINDS:
         levels = CHEAP if kind.endswith("groove") else CHEAP[:2]
@@ -120,12 +120,12 @@ def tables(lines: list[Line]) -> dict[str, dict[str, dict[str, Table]]]:
 
 
 def unknown() -> Table:
-    """Null in every band."""
+    """Return a table with null in every band."""
     return [[None] * (len(WIDTHS) - 1) for _ in LOADS[1:]]
 
 
 def coverage(stated_tables: dict[str, dict[str, dict[str, Table]]], lines: list[Line]) -> dict[str, Any]:
-    """In how many duties of another seed each stated bound holds, and of how many, by kind and level."""
+    """Return how many duties of another seed each stated bound holds for, of how many, by kind and level."""
     held: dict[str, Any] = {}
     for kind, levels in stated_tables.items():
         for level, outputs in levels.items():
@@ -143,7 +143,7 @@ Tables = dict[str, dict[str, dict[str, Table]]]
 
 
 def admitted(stated: Tables, held: dict[str, Any]) -> Tables:
-    """The bounds that hold often enough with the other seed; the others are null in all bands."""
+    """Return the bounds that hold often enough with the other seed; the others are null in all bands."""
     result = deepcopy(stated)
     for kind, levels in held.items():
         for level, counts in levels.items():
@@ -202,7 +202,7 @@ def write() -> None:
 
 
 def costs(level: str, lines: list[Line]) -> dict[str, float]:
-    """Processor time of one point [s]: the median of the marches, or of a duty at this level."""
+    """Return the processor time of one point [s]: the median of the marches, or of a duty at this level."""
     if level == "supplied":
         return {"single": round(float(np.median([line["seconds"] for line in lines])), 2)} if lines else {}
     _, duty = next(drawn(SEED, "half_groove"))
@@ -242,7 +242,7 @@ def ratios() -> None:
 
 
 def spread(listed: Array) -> str:
-    """Quantiles, and the share near 1."""
+    """Return quantiles, and the share near 1."""
     low, middle, high = np.nanquantile(listed, [0.025, 0.5, 0.975])
     near = float(((listed >= 0.75) & (listed <= 1.25)).mean())
     quantiles = f"2.5 %, median, 97.5 %: {low:.2f}, {middle:.2f}, {high:.2f}"
@@ -276,7 +276,7 @@ def page() -> None:
 
 
 def places() -> list[tuple[int, int]]:
-    """Rows and columns of the bands."""
+    """Return rows and columns of the bands."""
     return [(i, j) for i in range(len(LOADS) - 1) for j in range(len(WIDTHS) - 1)]
 
 

@@ -38,20 +38,20 @@ MARGIN = 1.5
 
 
 def axes() -> tuple[Axis, Axis]:
-    """Nodes over atanh(eps) and ln(B/D)."""
+    """Return nodes over atanh(eps) and ln(B/D)."""
     top, low, high = np.arctanh(ECCENTRICITY_LIMIT), np.log(NARROWEST), np.log(WIDEST)
     return Axis(0.0, top / (NODES[0] - 1), NODES[0]), Axis(low, (high - low) / (NODES[1] - 1), NODES[1])
 
 
 def encoded(eps: float, ratio: float, around: int, across: int) -> Array:
-    """All values of the map from one solution, (16,)."""
+    """Return all values of the map from one solution, (16,)."""
     field = static_field(eps, ratio, around, across)
     forces = linear_forces(eps, ratio, field.mesh, field.rupture)
     return np.concatenate([encode(eps, ratio, measure(field)), encode_linear(eps, forces)])
 
 
 def extrapolated(eps: float, ratio: float, around: int = 128, across: int = 16) -> Array:
-    """The same, the film by Richardson's extrapolation; stiffness and damping, which jitter, not."""
+    """Return the same, the film by Richardson's extrapolation; stiffness and damping, which jitter, not."""
     eps = min(max(eps, CENTRED), ECCENTRICITY_LIMIT)
     coarse, fine = encoded(eps, ratio, around, across), encoded(eps, ratio, 2 * around, 2 * across)
     return fine + (fine - coarse) / 3 * (np.arange(16) < 8)
@@ -76,7 +76,7 @@ def build() -> None:
 
 
 def check_points() -> tuple[Array, Array]:
-    """Random places over the whole map, (POINTS,) each, in its coordinates."""
+    """Return random places over the whole map, (POINTS,) each, in its coordinates."""
     _, width = axes()
     draw = np.random.default_rng(7).random((2, POINTS))
     return draw[0] * np.arctanh(ECCENTRICITY_LIMIT), width.first + draw[1] * width.step * (width.nodes - 1)
@@ -93,7 +93,7 @@ def measure_error() -> None:
 
 
 def errors() -> tuple[Array, Array, Array]:
-    """Places and absolute errors of the map in its own values, (POINTS, 16)."""
+    """Return places and absolute errors of the map in its own values, (POINTS, 16)."""
     with np.load(CHECKS) as checks:
         x, y, truth = checks["x"], checks["y"], checks["truth"]
     data = film_map()
@@ -137,7 +137,7 @@ def report() -> None:
 
 
 def _seconds(function: object, *arguments: Array) -> float:
-    """Wall time of one call."""
+    """Return the wall time of one call."""
     assert callable(function)
     begin = perf_counter()
     function(*arguments)

@@ -59,11 +59,11 @@ class Calls:
 
     @property
     def total(self) -> int:
-        """All calls."""
+        """Return the number of all calls."""
         return self.counts.total()
 
     def by_package(self, root: Path) -> dict[str, int]:
-        """The calls of each package."""
+        """Return the calls of each package."""
         packages: Counter[str] = Counter()
         for code, count in self.counts.items():
             packages[Path(code.co_filename).relative_to(root).parts[0]] += count
@@ -141,12 +141,12 @@ def _forget(*progress: Any) -> None:
 
 
 def _folders(builds: type) -> list[tuple[()]]:
-    """The folders of a team's models, which older programs hand to the builds."""
+    """Return the folders of a team's models, which older programs hand to the builds."""
     return [()] if "folders" in signature(builds).parameters else []
 
 
 def _recent(designs: Any) -> dict[str, Any]:
-    """The results that saves leave for their jobs; version 0.1 left nothing."""
+    """Return the results that saves leave for their jobs; version 0.1 left nothing."""
     return {"calculation_cache": designs.calculation_cache}
 
 
@@ -157,7 +157,7 @@ def _once() -> Any:
 
 
 def document() -> dict[str, Any]:
-    """The design that is changed."""
+    """Return the design that is changed."""
     from app.designs.bodies import PAPER
 
     parameters = {"inner_diameter": "= film.bearing_diameter", "width": "= film.bearing_width"}
@@ -167,7 +167,7 @@ def document() -> dict[str, Any]:
 
 
 def counted(root: Path) -> Calls:
-    """The calls of one change, once everything is warm.
+    """Return the calls of one change, once everything is warm.
 
     Raises
     ------

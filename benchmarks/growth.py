@@ -50,7 +50,7 @@ Line = list[tuple[int, float]]
 
 
 def points() -> Line:
-    """All outputs of `oil_film` 1 at so many points in one call [s]."""
+    """Return all outputs of `oil_film` 1 at so many points in one call [s]."""
     line = []
     for number in POINTS:
         loads = {"value": np.linspace(6.3, 200, number), "unit": "kN"}
@@ -60,7 +60,7 @@ def points() -> Line:
 
 
 def meshes() -> Line:
-    """One film by the Reynolds equation, eccentricity ratio 0.8 and B/D 0.5 [s]."""
+    """Return one film by the Reynolds equation, eccentricity ratio 0.8 and B/D 0.5 [s]."""
     line = []
     for around in MESHES:
         action = partial(static_film, 0.8, 0.5, around, around // 8)
@@ -76,7 +76,7 @@ class Served:
         self._numbers = count(1)
 
     def created(self, **design: object) -> dict[str, Any]:
-        """A new design, as the service returns it."""
+        """Return a new design, as the service returns it."""
         answer = self.http.post(API, json={"name": f"growth {next(self._numbers)}", **design})
         created: dict[str, Any] = answer.raise_for_status().json()
         return created
@@ -95,7 +95,7 @@ class Served:
             self.http.get(API).raise_for_status()
 
     def spent(self, actions: Iterable[Callable[[], object]]) -> float:
-        """The median processor time of actions after the first of them [s]."""
+        """Return the median processor time of actions after the first of them [s]."""
         times = []
         for action in actions:
             before = used(self.server.pid)
@@ -104,7 +104,10 @@ class Served:
         return median(times[1:])
 
     def loads_spent(self, design: Mapping[str, Any]) -> float:
-        """The median processor time of ten changes of `a`, a load [s]; one takes few ticks of the clock."""
+        """Return the median processor time of ten changes of `a`, a load [s].
+
+        One takes few ticks of the clock.
+        """
         tens = [[f"{21 + turn}.{n} kN" for n in range(10)] for turn in range(TURNS + 1)]
         return self.spent(partial(self.changed, design, *ten) for ten in tens)
 
@@ -138,7 +141,7 @@ def designs() -> dict[str, Line]:
 
 
 def steps() -> Line:
-    """Ten changes of a design with so many steps that all read them [s]."""
+    """Return ten changes of a design with so many steps that all read them [s]."""
     line = []
     with serving() as it:
         for number in STEPS:
@@ -150,7 +153,7 @@ def steps() -> Line:
 
 
 def variants() -> Line:
-    """Ten changes that all of so many variants of a design read [s]."""
+    """Return ten changes that all of so many variants of a design read [s]."""
     line = []
     with serving() as it:
         for number in VARIANTS:
@@ -166,7 +169,7 @@ def variants() -> Line:
 
 
 def clients() -> Line:
-    """One evaluation of one output, while so many clients ask at once [s]."""
+    """Return one evaluation of one output, while so many clients ask at once [s]."""
     body = {"inputs": OIL_FILM, "outputs": ["minimum_film_thickness"]}
     line = []
     with serving() as it:
@@ -188,13 +191,13 @@ def clients() -> Line:
 
 
 def exponent(line: Line) -> float:
-    """The slope of the last two points in logarithms."""
+    """Return the slope of the last two points in logarithms."""
     (few, cheap), (many, expensive) = line[-2:]
     return float(np.log(expensive / cheap) / np.log(many / few))
 
 
 def measured() -> dict[str, Line]:
-    """Every line by its name, printed as it ends."""
+    """Return every line by its name, printed as it ends."""
     lines: dict[str, Line] = {}
     for name, measure in {
         "points: all outputs of `oil_film` 1": points,

@@ -60,17 +60,17 @@ class Bearings:
     film: JournalFilm
 
     def template(self) -> OilFilm:
-        """The template, with the balance as it calculates it."""
+        """Return the template, with the balance as it calculates it."""
         return OilFilm.from_quantities(self.inputs)
 
     def in_equilibrium(self, level: str) -> OilFilm:
-        """The same at a level, at the true temperature."""
+        """Return the same at a level, at the true temperature."""
         template = self.template().at(level)
         vars(template)["balance"] = HeatBalance(self.T, self.T_out, np.zeros(self.T.shape))
         return template
 
     def some(self, rows: Array) -> "Bearings":
-        """Some of them."""
+        """Return some of them."""
         inputs = {n: replace(v, si=v.si[rows]) if isinstance(v, Typed) else v for n, v in self.inputs.items()}
         film = replace(self.film, **{f.name: getattr(self.film, f.name)[rows] for f in fields(self.film)})
         return Bearings(inputs, self.T[rows], self.T_out[rows], film)
@@ -79,7 +79,7 @@ class Bearings:
 def drawn(
     rng: np.random.Generator, film: JournalFilm, ratio: Array, grade: str, *, supplied: bool
 ) -> Bearings:
-    """A bearing for each film, cooled by its oil or by air."""
+    """Return a bearing for each film, cooled by its oil or by air."""
     count = ratio.size
     D, psi, omega = (
         np.exp(rng.uniform(np.log(low), np.log(high), count))
@@ -120,21 +120,21 @@ def drawn(
 
 
 def _viscosity(oil: OilFilm, T: Array) -> Array:
-    """Dynamic viscosity of an oil at T [K], by the template's own formulas [Pa s]."""
+    """Return the dynamic viscosity of an oil at T [K], by the template's own formulas [Pa s]."""
     warm = oil.at("map")
     vars(warm)["T_film"] = T
     return np.asarray(warm.eta)
 
 
 def change(output: str, value: Array, true: Array, largest: Array) -> Array:
-    """Difference of two answers, in the measure of the tables."""
+    """Return the difference of two answers, in the measure of the tables."""
     size = np.pi / 2 if output in ANGLES else largest
     with np.errstate(all="ignore"):
         return np.asarray(np.where(value == true, 0.0, np.abs(value - true) / size))
 
 
 def sizes(template: OilFilm, output: str) -> Array:
-    """The scale of an error: the largest of four coefficients, else the value itself."""
+    """Return the scale of an error: the largest of four coefficients, else the value itself."""
     kind = output.partition("_")[0]
     if kind in ("stiffness", "damping") and not output.endswith("scale"):
         names = [f"{kind}_{xy}" for xy in ("xx", "xy", "yx", "yy")]
@@ -143,7 +143,7 @@ def sizes(template: OilFilm, output: str) -> Array:
 
 
 def value_of(template: OilFilm, output: str) -> Array:
-    """An output in SI."""
+    """Return an output in SI."""
     return np.asarray(getattr(template, OilFilm.formulas[output].attribute))
 
 
@@ -159,7 +159,7 @@ def dependent() -> list[str]:
 
 
 def ensemble(seed: int, *, streamers: bool = False) -> Iterator[Bearings]:
-    """All bearings, by oil and way of cooling; with `streamers` heated by shear where oil is."""
+    """Yield all bearings, by oil and way of cooling; with `streamers` heated by shear where oil is."""
     rng = np.random.default_rng(seed)
     _, y, film, _ = converged(streamers=streamers)
     for grade in GRADES:
@@ -168,7 +168,7 @@ def ensemble(seed: int, *, streamers: bool = False) -> Iterator[Bearings]:
 
 
 def added(bearings: Bearings, level: str) -> dict[str, float]:
-    """The largest change of each output at a level; none where the level has no such output."""
+    """Return the largest change of each output at a level; none where the level has no such output."""
     own, true = bearings.template().at(level), bearings.in_equilibrium(level)
     with np.errstate(all="ignore"):
         shares = {
@@ -180,13 +180,13 @@ def added(bearings: Bearings, level: str) -> dict[str, float]:
 
 
 def upwards(value: float) -> float:
-    """Two digits, upwards."""
+    """Return two digits, upwards."""
     unit = 10.0 ** (np.floor(np.log10(max(value, 1e-12))) - 1)
     return float(f"{np.ceil(value / unit) * unit:.2g}")
 
 
 def largest(each: Iterator[dict[str, float]]) -> dict[str, float]:
-    """The largest change of each output."""
+    """Return the largest change of each output."""
     most: dict[str, float] = {}
     for changes in each:
         for name, change in changes.items():
@@ -195,7 +195,10 @@ def largest(each: Iterator[dict[str, float]]) -> dict[str, float]:
 
 
 def slowly(every: list[Bearings], of_map: dict[str, float]) -> dict[str, float]:
-    """The addition at the slow level: measured on some bearings, and at least what the map adds to all."""
+    """Return the addition at the slow level.
+
+    Measured on some bearings, and at least what the map adds to all.
+    """
     rng = np.random.default_rng(SEED)
     some = [one.some(rng.choice(one.T.size, PICKED, replace=False)) for one in every]
     measured = largest(added(one, SLOW) for one in some)

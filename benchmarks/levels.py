@@ -20,7 +20,7 @@ COLUMNS = {
 
 
 def row(level: str) -> list[str]:
-    """The cells of one level but for its cost."""
+    """Return the cells of one level but for its cost."""
     units = {name: unit for name, (_, unit, _) in COLUMNS.items()}
     evaluation = evaluate(OilFilm, OilFilm.example, level=level, outputs=list(COLUMNS), units=units)
     values = [evaluation.outputs[name].value for name in COLUMNS]

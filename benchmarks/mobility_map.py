@@ -46,7 +46,7 @@ WIDE = 1.95
 
 
 def axes() -> Axes:
-    """Nodes over gap, chord and width."""
+    """Return nodes over gap, chord and width."""
     low = ECCENTRICITY_LIMIT - LARGEST
     start, end = np.log(low) + low, np.log(WIDE) + WIDE
     narrow, wide = np.log(NARROWEST), np.log(WIDEST)
@@ -58,14 +58,17 @@ def axes() -> Axes:
 
 
 def place(x: float, v: float) -> tuple[float, float]:
-    """Eccentricity along and ahead of the load at the map's coordinates: the inverse of `coordinates`."""
+    """Return the eccentricity along and ahead of the load at the map's coordinates.
+
+    The inverse of `coordinates`.
+    """
     h = float(lambertw(np.exp(x)).real)
     xi = ECCENTRICITY_LIMIT - h
     return xi, v * float(np.sqrt(max(h * (ECCENTRICITY_LIMIT + xi), 0.0)))
 
 
 def encoded(xi: float, eta: float, ratio: float, around: int, across: int) -> Array:
-    """All values of the map from one solution, (4,)."""
+    """Return all values of the map from one solution, (4,)."""
     eps, chi = min(float(np.hypot(xi, eta)), ECCENTRICITY_LIMIT), float(np.arctan2(-eta, xi))
     motion = film_mobility(eps, ratio, chi, around, across)
     turn = np.array([[np.cos(chi), np.sin(chi)], [-np.sin(chi), np.cos(chi)]])
@@ -73,7 +76,7 @@ def encoded(xi: float, eta: float, ratio: float, around: int, across: int) -> Ar
 
 
 def extrapolated(xi: float, eta: float, ratio: float, finer: int = 1) -> Array:
-    """The same by Richardson's extrapolation."""
+    """Return the same by Richardson's extrapolation."""
     coarse, fine = (encoded(xi, eta, ratio, n * finer * MESH[0], n * finer * MESH[1]) for n in (1, 2))
     return fine + (fine - coarse) / 3
 
@@ -96,7 +99,7 @@ def build() -> None:
 
 
 def row(x: float, chord: Axis, width: Axis) -> Array:
-    """Values at all nodes of one gap, (chord, width, 4)."""
+    """Return values at all nodes of one gap, (chord, width, 4)."""
     middle = CENTRE * np.sqrt(np.exp(min(x, 0.0)))
     return np.array([
         [extrapolated(*place(x, max(float(v), middle)), float(np.exp(y))) for y in width.places()]
@@ -105,14 +108,14 @@ def row(x: float, chord: Axis, width: Axis) -> Array:
 
 
 def coefficients(values: Array) -> Array:
-    """B-spline coefficients along all three axes, of (gap, chord, width, functions)."""
+    """Return B-spline coefficients along all three axes, of (gap, chord, width, functions)."""
     for _ in range(3):
         values = np.moveaxis(spline_coefficients(values), 0, 2)
     return values
 
 
 def check_points() -> Array:
-    """Random places over the whole map in its coordinates, (3, POINTS)."""
+    """Return random places over the whole map in its coordinates, (3, POINTS)."""
     low = np.array([axis.first for axis in axes()])
     high = np.array([axis.first + axis.step * (axis.nodes - 1) for axis in axes()])
     high[0] = np.log(2 * LARGEST) + 2 * LARGEST
@@ -135,7 +138,7 @@ def measure_error() -> None:
 
 
 def errors() -> tuple[Array, Array]:
-    """Places (3, POINTS) and absolute errors of the map, (4, POINTS): see `mobility_error`."""
+    """Return places (3, POINTS) and absolute errors of the map, (4, POINTS): see `mobility_error`."""
     with np.load(CHECKS) as checks:
         places, truth = checks["places"], checks["truth"]
     data = mobility_map()
@@ -186,7 +189,7 @@ def report() -> None:
 
 
 def _seconds(call: object) -> float:
-    """Wall time of one call."""
+    """Return the wall time of one call."""
     assert callable(call)
     begin = perf_counter()
     call()

@@ -43,7 +43,7 @@ def main() -> None:
 
 
 def _visit(browser: Browser, address: str) -> dict[str, Any]:
-    """Requests, compressed bytes, and times of a first visit."""
+    """Return requests, compressed bytes, and times of a first visit."""
     page = browser.new_page(viewport={"width": 1440, "height": 900})
     session = page.context.new_cdp_session(page)
     session.send("Network.enable")
@@ -61,7 +61,7 @@ def _visit(browser: Browser, address: str) -> dict[str, Any]:
 
 
 def _previews(url: str, pages: tuple[str, ...]) -> dict[str, float]:
-    """The time of a preview, each of other values."""
+    """Return the time of a preview, each of other values."""
     times = {}
     with httpx.Client(base_url=url, timeout=60, trust_env=False) as http:
         for page, (name, patch) in zip(pages, CHANGES.items(), strict=True):
@@ -77,7 +77,7 @@ def _previews(url: str, pages: tuple[str, ...]) -> dict[str, float]:
 
 
 def _typing(browser: Browser, address: str) -> float:
-    """From a key to the new film thickness in the page, with the pause for which the page waits."""
+    """Return the time from a key press to the new film thickness, with the pause of the page."""
     page = browser.new_page(viewport={"width": 1440, "height": 900})
     page.goto(address, wait_until="networkidle")
     load, film = page.get_by_label("Radial load"), page.locator('[data-output="film.minimum_film_thickness"]')

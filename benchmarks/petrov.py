@@ -37,18 +37,18 @@ POINTS = 100_000
 
 
 def error(eps: Array, ratio: Array) -> Array:
-    """Petrov's friction over that of the loaded film, less 1."""
+    """Return Petrov's friction over that of the loaded film, less 1."""
     return 1 / friction_over_Petrov(eps, ratio) - 1
 
 
 def cell(eps: tuple[float, float], ratio: tuple[float, float]) -> float:
-    """The largest error found in a cell, its edges included, rounded up."""
+    """Return the largest error found in a cell, its edges included, rounded up."""
     largest = np.abs(error(np.linspace(*eps, INSIDE)[:, None], np.geomspace(*ratio, INSIDE))).max()
     return float(np.ceil(largest * 1e5) / 1e5)
 
 
 def seconds_a_point(count: int) -> float:
-    """Cost of Petrov's force among so many, the best of some runs."""
+    """Return the cost of Petrov's force among so many, the best of some runs."""
     clearance = np.full(count, 2.5e-4) if count > 1 else np.float64(2.5e-4)
     runs = [_seconds(lambda: friction_Petrov_1883(0.025, 0.1, clearance, 0.0119, 157.1)) for _ in range(9)]
     return float(f"{min(runs) / count:.1e}")

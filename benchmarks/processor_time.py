@@ -12,7 +12,7 @@ _PARENT, _OWN, _ENDED = 1, slice(11, 13), slice(13, 15)  # fields of a `stat` be
 
 
 def environment() -> dict[str, str]:
-    """The environment of this process, but Python keeps bytecode, as it does for users.
+    """Return the environment of this process, but Python keeps bytecode, as it does for users.
 
     Where the variable is set, each process compiles the whole program, which takes as long as importing it.
     """
@@ -28,13 +28,13 @@ class Cores:
 
     @classmethod
     def now(cls) -> Cores:
-        """The counter now."""
+        """Return the counter now."""
         line = Path("/proc/stat").read_text().partition("\n")[0]
         user, nice, system, idle, waiting, *more = (int(text) * _TICK for text in line.split()[1:8])
         return cls(user + nice + system + sum(more), idle + waiting)
 
     def share_since(self, before: Cores) -> float:
-        """The share of all cores that has been in use since then, by whatever process."""
+        """Return the share of all cores that has been in use since then, by whatever process."""
         busy, idle = self.busy - before.busy, self.idle - before.idle
         return busy / (busy + idle)
 
@@ -46,12 +46,15 @@ def used(pid: int) -> float:
 
 
 def proportional_megabytes(pid: int) -> float:
-    """Memory of a process and its living descendants; what several share is divided among them [MB]."""
+    """Return memory of a process and its living descendants.
+
+    What several share is divided among them [MB].
+    """
     return sum(_proportional(one) for one in _family(pid, _processes())) / 1e6
 
 
 def anonymous_megabytes(pid: int) -> float:
-    """Memory of a process and its living descendants that holds no file [MB], shared parts divided."""
+    """Return memory of a process and its living descendants that holds no file [MB], shared parts divided."""
     return sum(_proportional(one, "Pss_Anon:") for one in _family(pid, _processes())) / 1e6
 
 
@@ -79,7 +82,7 @@ def _seconds(fields: list[int]) -> float:
 
 
 def _fields(place: Path) -> list[int]:
-    """The numbers of a process; none if it has ended."""
+    """Return the numbers of a process; none if it has ended."""
     with suppress(OSError):
         text = (place / "stat").read_text().rpartition(")")[2].split()
         return [0, *(int(field) for field in text[1:20])]  # the first is a letter, its state

@@ -27,13 +27,13 @@ PRODUCT, FACTOR = 0.05, 0.001
 
 
 def rows(path: Path) -> list[list[float]]:
-    """A reference table, without its comments and its heading."""
+    """Return a reference table, without its comments and its heading."""
     lines = [line for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
     return [[float(value) for value in row] for row in list(csv.reader(lines))[1:]]
 
 
 def torque(size: tuple[float, float], load: float, rpm: Array) -> Array:
-    """Friction torque of one bearing under a load [N] at some speeds [N m]."""
+    """Return the friction torque of one bearing under a load [N] at some speeds [N m]."""
     diameter, width = size
     slenderness = (FACTOR / (16 * np.sqrt(2) * np.pi / 15 * PRODUCT**2)) ** 2
     raw = {
@@ -48,7 +48,7 @@ def torque(size: tuple[float, float], load: float, rpm: Array) -> Array:
 
 
 def curves(path: Path = PUBLISHED) -> Iterator[tuple[float, Array, Array, Array]]:
-    """Specific load [MPa], speeds [rpm], and torques of the rig, published and calculated [N m]."""
+    """Yield the specific load [MPa], speeds [rpm], and torques of the rig, published and calculated [N m]."""
     for pressure, group in groupby(rows(path), lambda row: row[0]):
         rpm, published = np.array([row[1:] for row in group]).T
         load = LOAD * pressure

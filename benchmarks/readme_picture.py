@@ -77,7 +77,10 @@ def _part(axes: Any, client: Client, design: Design) -> None:
 
 
 def _trimmed(picture: Image.Image) -> Image.Image:
-    """The part that is not background; of a ring seen from above its edge, this is as wide as the ring."""
+    """Return the part that is not background.
+
+    Of a ring seen from above its edge, this is as wide as the ring.
+    """
     background = Image.new("RGB", picture.size, picture.getpixel((0, 0)))
     return picture.crop(ImageChops.difference(picture, background).getbbox())
 

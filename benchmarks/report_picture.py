@@ -43,7 +43,7 @@ def main() -> None:
 
 
 def _measured(http: httpx.Client, address: str) -> float:
-    """The median time of an answer [s]."""
+    """Return the median time of an answer [s]."""
     times = []
     for _ in range(TIMES):
         start = time.perf_counter()
@@ -53,7 +53,7 @@ def _measured(http: httpx.Client, address: str) -> float:
 
 
 def _waits(address: str) -> float:
-    """The longest answer of a trivial request [s] while two clients print reports."""
+    """Return the longest answer of a trivial request [s] while two clients print reports."""
     done = threading.Event()
 
     def prints() -> None:

@@ -88,7 +88,7 @@ PAINTED: dict[str, Callable[[Page], None]] = {
 
 
 def _seen(page: Page, address: str, painted: Callable[[Page], None] | None) -> bytes:
-    """The first screen of a page, once all that it shows is drawn."""
+    """Return the picture of a page, once all that it shows is drawn."""
     answer = page.goto(address, wait_until="networkidle")
     assert answer is not None
     assert answer.ok, f"{address} answers {answer.status}"

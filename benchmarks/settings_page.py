@@ -66,7 +66,7 @@ def _type(field: FieldInfo) -> str:
 
 
 def _words(kind: Any) -> str:
-    """A type in words that an operator reads."""
+    """Return a type in words that an operator reads."""
     origin, inside = get_origin(kind), get_args(kind)
     if origin is Annotated:
         return _words(inside[0])

@@ -68,19 +68,19 @@ _SAMPLES = 200  # of an edge
 
 
 def truth(step: bytes, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> Found:
-    """Extrapolated outputs of a shaft: stiffnesses [N·m/rad], frequency [Hz]."""
+    """Return extrapolated outputs of a shaft: stiffnesses [N·m/rad], frequency [Hz]."""
     return extrapolated(by_orders(step, shaft, outputs))
 
 
 def by_orders(step: bytes, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> list[Found]:
-    """What `truth` extrapolates: outputs by rising orders."""
+    """Return what `truth` extrapolates: outputs by rising orders."""
     grid = layered_grid(read_solid(step, shaft), LAYERS)
     orders = SHARP_ORDERS if grid.is_sharp else ORDERS
     return [outputs_by(grid, order, shaft, outputs) for order in orders]
 
 
 def extrapolated(found: list[Found]) -> Found:
-    """The limits of values by rising orders."""
+    """Return the limits of values by rising orders."""
     limits: Found = {}
     for name, last in found[-1].items():
         change = found[-2][name] - last
@@ -91,7 +91,7 @@ def extrapolated(found: list[Found]) -> Found:
 
 
 def layered_grid(solid: Solid, layers: int) -> Grid:
-    """A mesh for the truth, with layers of prisms around sharp inner edges if there are any."""
+    """Return a mesh for the truth, with layers of prisms around sharp inner edges if there are any."""
     edges = sharp_edges(solid, MESH)
     is_sharp = len(edges.ends) > 0
     fineness = SHARP_MESH if is_sharp else MESH
@@ -109,7 +109,7 @@ def layered_grid(solid: Solid, layers: int) -> Grid:
 
 
 def _edges_at(solid: Solid, edges: Edges) -> list[Any]:
-    """The kernel's edges to which pieces belong."""
+    """Return the kernel's edges to which pieces belong."""
     proper = [edge for edge in solid.shape.edges if edge.mass > 0]
     lines = [
         np.array([[*edge.Value(t)] for t in np.linspace(*edge.parameter_interval, _SAMPLES)])
@@ -152,7 +152,7 @@ def _of_components(numbers: Integers, count: int) -> Integers:
 
 
 def outputs_by(grid: Grid, order: int, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> Found:
-    """Outputs on one mesh in elements of one order: stiffnesses [N·m/rad], frequency [Hz]."""
+    """Return outputs on one mesh in elements of one order: stiffnesses [N·m/rad], frequency [Hz]."""
     computed: Found = {}
     for load in LOADS:
         asked = {name: end for name, (kind, end) in ASKED.items() if kind == load and name in outputs}
@@ -170,7 +170,7 @@ def outputs_by(grid: Grid, order: int, shaft: Shaft, outputs: Collection[str] = 
 
 
 def guided_compliance(free: Response) -> float:
-    """The compliance [rad/(N·mm)] with the forces of a guide, from the response without."""
+    """Return the compliance [rad/(N·mm)] with the forces of a guide, from the response without."""
     system = free.system
     _, guides = system.loads()
     moved = [system.solve(guide) for guide in guides]
@@ -180,7 +180,7 @@ def guided_compliance(free: Response) -> float:
 
 
 def torsional_frequency(free: Response) -> float:
-    """The frequency [Hz] of the Ritz vector with the largest effective inertia about z.
+    """Return the frequency [Hz] of the Ritz vector with the largest effective inertia about z.
 
     The space: the static displacement, and what the inertia of each vector moves next. Vectors are orthogonal
     in the mass, and each keeps the force that moves it.
@@ -211,7 +211,7 @@ def torsional_frequency(free: Response) -> float:
 
 
 def _mass(system: System) -> Any:
-    """The product with the matrix of mass, which is that of one component for each."""
+    """Return the product with the matrix of mass, which is that of one component for each."""
     scalar = ng.H1(system.space.mesh, order=system.order)
     u, v = scalar.TnT()
     form = ng.BilinearForm(scalar, symmetric=True, symmetric_storage=True)
@@ -229,7 +229,10 @@ def _mass(system: System) -> Any:
 
 
 def checked(step: bytes, shaft: Shaft) -> dict[str, Any]:
-    """One shaft up to an order more than `truth` has: limits without it, with it, and with a layer less."""
+    """Return one shaft up to an order more than `truth` has.
+
+    Limits without it, with it, and with a layer less.
+    """
     grid = layered_grid(read_solid(step, shaft), LAYERS)
     usual = SHARP_ORDERS if grid.is_sharp else ORDERS
     found = [outputs_by(grid, order, shaft, CHECKED) for order in (*usual, usual[-1] + 1)]

@@ -35,7 +35,7 @@ PLAIN = Shape("plain", 2, *(np.array(v) for v in (0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 
 
 
 def drawn(seed: int) -> Loaded:
-    """A random bearing of usual size: lobed or not, tilted or not, grooved or not."""
+    """Return a random bearing of usual size: lobed or not, tilted or not, grooved or not."""
     rng = np.random.default_rng([20261122, seed])
     lobes = int(rng.choice([1, 2, 3, 4]))
     bore = Bore(
@@ -67,7 +67,7 @@ def stated(loaded: Loaded) -> tuple[dict[str, float], float]:
 
 
 def measured(seed: int) -> dict[str, Any]:
-    """The errors of one bearing, relative, and what it cost."""
+    """Return the errors of one bearing, relative, and what it cost."""
     loaded, begin = drawn(seed), process_time()
     about: dict[str, Any] = {"seed": seed, "conserving": loaded.conserving, "tilted": bool(loaded.tilt.any())}
     try:

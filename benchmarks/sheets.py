@@ -23,7 +23,7 @@ Values = Mapping[str, Any]
 
 
 def values_of(inputs: Mapping[str, Any]) -> Values:
-    """The SI values of all inputs by attribute."""
+    """Return the SI values of all inputs by attribute."""
     template = OilFilm.from_quantities(inputs)
     return {declared.attribute: getattr(template, declared.attribute) for declared in OilFilm.inputs.values()}
 
@@ -37,7 +37,7 @@ def every_formula(cls: type[Template], values: Values) -> None:
 
 
 def least(work: Callable[[], object], runs: int, times: int = 1) -> float:
-    """The smallest processor time of some runs, each of the work so many times [s]."""
+    """Return the smallest processor time of some runs, each of the work so many times [s]."""
     took = []
     for _ in range(runs):
         start = process_time()
@@ -48,7 +48,7 @@ def least(work: Callable[[], object], runs: int, times: int = 1) -> float:
 
 
 def many_points() -> dict[str, Any]:
-    """The example at many loads and speeds."""
+    """Return the example at many loads and speeds."""
     random = np.random.default_rng(1)
     load, speed = random.uniform(1, 100, MANY), random.uniform(1000, 8000, MANY)
     return {

@@ -64,7 +64,7 @@ class Sizing:
 
 
 def sizing(random: np.random.Generator, heat: bool) -> Sizing:
-    """A random bearing of an engine or a gearbox, with a heat balance or at a given viscosity."""
+    """Return a random bearing of an engine or a gearbox, with a heat balance or at a given viscosity."""
     temperature, viscosity = random.uniform(60, 110), random.uniform(6, 40)
     oil = (
         {"supply_temperature": f"{temperature} degC"} if heat else {"dynamic_viscosity": f"{viscosity} mPa*s"}
@@ -80,7 +80,7 @@ def sizing(random: np.random.Generator, heat: bool) -> Sizing:
 
 
 def space(of: Sizing) -> Space:
-    """The box [m]: diameter ± 10 %, width from 0.8 to 1.25 times, clearance from 0.5 to 1.7 times."""
+    """Return the box [m]: diameter ± 10 %, width from 0.8 to 1.25 times, clearance from 0.5 to 1.7 times."""
     diameter = of.diameter_mm / 1e3
     middle = (diameter, diameter * of.width_ratio, diameter * of.clearance_ratio)
     around = ((0.9, 1.1), (0.8, 1.25), (0.5, 1.7))
@@ -89,7 +89,7 @@ def space(of: Sizing) -> Space:
 
 
 def net(of: Sizing) -> Net:
-    """The design of a sizing, of one step."""
+    """Return the design of a sizing, of one step."""
     diameter = of.diameter_mm
     width, clearance = diameter * of.width_ratio, diameter * of.clearance_ratio
     inputs = {
@@ -109,7 +109,7 @@ def net(of: Sizing) -> Net:
 
 
 def level(design: Net, name: str, limit: float) -> Answer:
-    """The answer of a design at a level; the cost is processor time."""
+    """Return the answer of a design at a level; the cost is processor time."""
 
     def answer(rows: Array) -> Columns:
         start = process_time()
@@ -126,12 +126,12 @@ def level(design: Net, name: str, limit: float) -> Answer:
 
 
 def thickest(of: Sizing, design: Net, explore: str) -> float:
-    """The thickest film [m] in the box of a sizing, at the exploring level."""
+    """Return the thickest film [m] in the box of a sizing, at the exploring level."""
     return float(np.nanmax(level(design, explore, 0.0)(Sobol(space(of), 1024, 0).rows(0, 1024)).values))
 
 
 def problem(of: Sizing) -> Problem:
-    """Least loss with a film of at least the limit."""
+    """Return the least loss with a film of at least the limit."""
     return Problem(space(of), (Objective("loss"),), (Held("film", ">="),))
 
 
@@ -155,7 +155,7 @@ def full_seconds(of: Sizing, design: Net) -> float:
 
 
 def started(random: np.random.Generator, number: int, explore: str) -> tuple[Sizing, Net]:
-    """A sizing with its limit, and its design."""
+    """Return a sizing with its limit, and its design."""
     one = sizing(random, heat=bool(number % 2))
     design, share = net(one), random.uniform(0.5, 0.9)
     one.limit_um = float(share * thickest(one, design, explore) * 1e6)
@@ -177,7 +177,7 @@ def all_sizings(options: argparse.Namespace) -> list[Sizing]:
 
 
 def levels_of_one(options: argparse.Namespace) -> dict[str, Any]:
-    """The choice of each level for the first sizing."""
+    """Return the choice of each level for the first sizing."""
     one, design = started(np.random.default_rng(options.seed), 0, options.explore)
     limit = one.limit_um / 1e6
     levels = {name: level(design, name, limit) for name in ("short_bearing", "fit", "map")}
@@ -186,7 +186,7 @@ def levels_of_one(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def entry(optimum: Optimum, limit: float) -> dict[str, Any]:
-    """One row of the trade."""
+    """Return one row of the trade."""
     best = optimum.best
     return {
         "promised loss [W]": float(best.promise[0]),
@@ -200,7 +200,7 @@ def entry(optimum: Optimum, limit: float) -> dict[str, Any]:
 
 
 def summary(explore: str, done: list[Sizing]) -> dict[str, Any]:
-    """How many are feasible, and the cost."""
+    """Return how many are feasible, and the cost."""
     shares = [one.share_of_full_cost for one in done]
     return {
         "explored at": explore,

@@ -39,7 +39,7 @@ HEIGHTS = np.linspace(0, 1, 9)
 
 
 def errors(film: PadFilm, true: PadFilm) -> dict[str, Array]:
-    """The error of every output of a pad, by name."""
+    """Return the error of every output of a pad, by name."""
     profile = np.abs(film.pressure(STATIONS) - true.pressure(STATIONS)).max(axis=-1) / true.P_max
     slope, straight = (np.stack([f.gradient(np.array(x)) for x in PLACES], axis=-1) for f in (film, true))
     H = true.a[..., None] - (true.a[..., None] - 1) * PLACES
@@ -63,12 +63,12 @@ def errors(film: PadFilm, true: PadFilm) -> dict[str, Array]:
 
 
 def relative(value: Array, true: Array) -> Array:
-    """Relative error [-]."""
+    """Return the relative error [-]."""
     return np.abs(value / true - 1)
 
 
 def cell(level: str, ratio: tuple[float, float], width: tuple[float, float]) -> dict[str, float]:
-    """The largest errors found in a cell, its edges included, rounded up."""
+    """Return the largest errors found in a cell, its edges included, rounded up."""
     if ratio[1] <= 1:
         return {}
     a = 1 + np.geomspace(max(ratio[0] - 1, 1e-6), ratio[1] - 1, INSIDE)[:, None]
@@ -78,14 +78,14 @@ def cell(level: str, ratio: tuple[float, float], width: tuple[float, float]) -> 
 
 
 def table(level: str) -> dict[str, list[list[float]]]:
-    """The largest errors of every output in every cell; none where the film is ruptured."""
+    """Return the largest errors of every output in every cell; none where the film is ruptured."""
     cells = [[cell(level, ratio, width) for width in pairwise(WIDTH)] for ratio in pairwise(RATIO)]
     names = cells[-1][-1]
     return {name: [[one.get(name, 0.0) for one in row] for row in cells] for name in names}
 
 
 def seconds_a_point(level: str, count: int) -> float:
-    """Cost of a pad among so many, the best of some runs."""
+    """Return the cost of a pad among so many, the best of some runs."""
     a = np.linspace(1.1, 3, count) if count > 1 else np.float64(2)
     runs = []
     for _ in range(5):
@@ -96,12 +96,12 @@ def seconds_a_point(level: str, count: int) -> float:
 
 
 def costs(level: str) -> dict[str, float]:
-    """Cost a point, alone and among many."""
+    """Return the cost a point, alone and among many."""
     return {"single": seconds_a_point(level, 1), "vectorised": seconds_a_point(level, POINTS)}
 
 
 def measured(level: str) -> dict[str, Any]:
-    """Cost, truth and errors of a level."""
+    """Return the cost, truth and errors of a level."""
     errors_by_name = table(level)
     return {"cost": costs(level), "truth": dict.fromkeys(errors_by_name, PAD), "errors": errors_by_name}
 

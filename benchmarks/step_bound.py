@@ -84,7 +84,7 @@ def measured(seed: int, duties: int, finer: float = FINER) -> Shares:
 
 
 def measured_with_grooves(seed: int, duties: int, finer: float = FINER) -> Shares:
-    """The same of bearings with a groove in a sleeve at rest."""
+    """Return the same of bearings with a groove in a sleeve at rest."""
     rng = np.random.default_rng(seed)
     load, ratio = random_duties(rng, duties, POINTS)
     ratio = np.maximum(ratio, 0.1)
@@ -98,7 +98,7 @@ def measured_with_grooves(seed: int, duties: int, finer: float = FINER) -> Share
 
 
 def compared(orbit: Orbit, true: Array, load: Array) -> Shares:
-    """The shares, of the orbits that both have."""
+    """Return the shares, of the orbits that both have."""
     present = np.isfinite(orbit.least_gap) & np.isfinite(true)
     bound, error = orbit.step_bound[present], np.abs(orbit.between / true - 1)[present]
     at_nodes = np.abs(orbit.least_gap / true - 1)[present]

@@ -35,7 +35,7 @@ class RandomDuty:
 
 
 def random_duty(seed: int, number: int, fed_by: str | None = None) -> RandomDuty:
-    """A duty; engines have even numbers, and the kinds of supply take turns unless one is given."""
+    """Return a duty; engines have even numbers, and the kinds of supply take turns unless one is given."""
     rng = np.random.default_rng([seed, number])
     fed_by = SUPPLIES[(number // 2) % len(SUPPLIES)] if fed_by is None else fed_by
     kind, load, sliding = _engine(rng) if number % 2 == 0 else _fourier(rng)
@@ -57,7 +57,7 @@ def _supply(rng: np.random.Generator, fed_by: str) -> Supply:
 
 
 def _engine(rng: np.random.Generator) -> tuple[str, CyclicLoad, Array]:
-    """The load with which the journal of a big end or a main bearing pushes, seen from the block."""
+    """Return the load with which the journal of a big end or a main bearing pushes, seen from the block."""
     strokes, big = int(rng.choice([2, 4])), bool(rng.random() < 0.6)
     period = strokes * np.pi
     theta = np.arange(POINTS) * period / POINTS
@@ -82,7 +82,7 @@ def _engine(rng: np.random.Generator) -> tuple[str, CyclicLoad, Array]:
 
 
 def _fourier(rng: np.random.Generator) -> tuple[str, CyclicLoad, Array]:
-    """Harmonics of the cycle, and a firing in half of them; sleeve at rest."""
+    """Return harmonics of the cycle, and a firing in half of them; sleeve at rest."""
     period = float(rng.choice([2, 4]) * np.pi)
     theta = np.arange(POINTS) * period / POINTS
     order = np.arange(6)
@@ -98,6 +98,6 @@ def _fourier(rng: np.random.Generator) -> tuple[str, CyclicLoad, Array]:
 
 
 def _scaled(rng: np.random.Generator, theta: Array, period: float, F: Array, mean: Array) -> CyclicLoad:
-    """A load of random size."""
+    """Return a load of random size."""
     F = F / np.abs(F).max() * np.exp(rng.uniform(np.log(SMALLEST), np.log(LARGEST)))
     return CyclicLoad(theta, float(period), np.stack([F.real, F.imag])[:, None], mean[None])

@@ -54,14 +54,14 @@ Row = dict[str, Any]
 def marched(
     duty: RandomDuty, meshes: tuple[Meshing, ...] = (COARSE, FINE), near_holes: tuple[Meshing, ...] = ()
 ) -> tuple[SuppliedOrbit, float]:
-    """The orbit of a duty and its processor time [s]."""
+    """Return the orbit of a duty and its processor time [s]."""
     begin = process_time()
     orbit = supplied_orbit(duty.load, duty.sliding, duty.ratio, duty.supply, meshes, near_holes=near_holes)
     return orbit, process_time() - begin
 
 
 def row(duty: RandomDuty) -> Row:
-    """The kept row of a duty."""
+    """Return the kept row of a duty."""
     orbit, seconds = marched(duty)
     return {
         "kind": duty.kind,
@@ -84,7 +84,10 @@ def row(duty: RandomDuty) -> Row:
 
 
 def sampled(number: int) -> bool:
-    """True if a duty is one of two in ten; in five tens there is each supply with each kind of load once."""
+    """Return whether a duty is one of two in ten.
+
+    In five tens there is each supply with each kind of load once.
+    """
     return number // 10 % 5 == number % 5
 
 
@@ -107,7 +110,7 @@ def continued(duty: RandomDuty, kept: Row, cells: int = 1, steps: int = 1) -> Ro
 
 
 def why(duty: RandomDuty, kept: Row) -> dict[str, Row]:
-    """Effects of more cycles, of more cells and of smaller steps, each alone."""
+    """Return effects of more cycles, of more cells and of smaller steps, each alone."""
     return {
         "cycles": continued(duty, kept),
         "cells": continued(duty, kept, cells=2),
@@ -130,12 +133,12 @@ def near(duty: RandomDuty) -> Row:
 
 
 def change(kept: Row, other: Row) -> float:
-    """Relative error of the least gap [-]."""
+    """Return the relative error of the least gap [-]."""
     return float(kept["least_gap"] / other["least_gap"] - 1)
 
 
 def results() -> dict[str, Any]:
-    """The kept results; empty at first."""
+    """Return the kept results; empty at first."""
     if RESULTS.exists():
         kept: dict[str, Any] = json.loads(RESULTS.read_text(encoding="utf-8"))
         return kept

@@ -49,7 +49,7 @@ class Component:
 
 
 def pins() -> dict[str, str]:
-    """Return name → version of all that is pinned."""
+    """Return the name → version of all that is pinned."""
     lines = CONSTRAINTS.read_text().split()
     return dict(line.split("==") for line in lines)
 
@@ -66,7 +66,7 @@ def component(name: str) -> Component:
 
 
 def _needs(package: Distribution) -> tuple[str, ...]:
-    """The names, normalised, of what a distribution needs without any extra."""
+    """Return the names, normalised, of what a distribution needs without any extra."""
     needs = (need for need in package.requires or () if "extra ==" not in need)
     return tuple(sorted({normalised(re.split(r"[^\w.-]", need, maxsplit=1)[0]) for need in needs}))
 
@@ -84,7 +84,7 @@ def _licence(package: Distribution) -> str:
 
 
 def _from_text(package: Distribution) -> str:
-    """The first line of the licence's own text, which names most of them."""
+    """Return the first line of the licence's own text, which names most of them."""
     for path in package.files or ():
         if re.match(r"(licen[cs]e|copying)", path.name.lower()):
             lines = (line.strip() for line in path.read_text().splitlines())
@@ -122,7 +122,10 @@ def needed(components: dict[str, Component], extra: str | None = None) -> set[st
 
 
 def _needed_directly(extra: str | None = None) -> Iterator[str]:
-    """The names, normalised, of the dependencies in pyproject.toml; an old installation may have others."""
+    """Yield the names, normalised, of the dependencies in pyproject.toml.
+
+    An old installation may have others.
+    """
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     needs = project["optional-dependencies"][extra] if extra else project["dependencies"]
     for need in needs:
@@ -193,7 +196,7 @@ def _edges(reference: str, needs: tuple[str, ...], components: dict[str, Compone
 
 
 def index_hashes() -> dict[str, str]:
-    """Return name → SHA-256 of the file that pip takes for each pin here; nothing is installed."""
+    """Return the name → SHA-256 of the file that pip takes for each pin here; nothing is installed."""
     with tempfile.NamedTemporaryFile(suffix=".json") as report:
         options = ["--dry-run", "--ignore-installed", "--no-deps", "--quiet", "--report", report.name]
         subprocess.run([sys.executable, "-m", "pip", "install", *options, "-r", str(CONSTRAINTS)], check=True)
@@ -203,7 +206,7 @@ def index_hashes() -> dict[str, str]:
 
 
 def locked() -> dict[str, str]:
-    """Return name → SHA-256 from the lock."""
+    """Return the name → SHA-256 from the lock."""
     rows = re.findall(r"^(\S+)==\S+ --hash=sha256:([0-9a-f]{64})$", LOCK.read_text(), re.MULTILINE)
     return {normalised(name): sha256 for name, sha256 in rows}
 

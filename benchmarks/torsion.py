@@ -31,14 +31,14 @@ TOLERANCE = 5e-3
 
 
 def throw() -> dict[str, Any]:
-    """The STEP file of the reference throw, drawn in a process of its own: no other loads CadQuery."""
+    """Return the STEP file of the reference throw, drawn in a process of its own: no other loads CadQuery."""
     from cad.regenerate import regenerate
 
     return {"step": regenerate("crank_throw", 1, THROW).step}
 
 
 def ours(step: bytes, asked: AnalysisRequest) -> dict[str, Any]:
-    """Our stiffness [N·m/rad], and what it took."""
+    """Return the stiffness [N·m/rad], and what it took."""
     stiffness = analyse(step, SHAFT, asked, ["stiffness"], lambda done, what: None).outputs["stiffness"]
     return {
         "stiffness": stiffness["value"],
@@ -49,7 +49,7 @@ def ours(step: bytes, asked: AnalysisRequest) -> dict[str, Any]:
 
 
 def greatest_stress(step: bytes) -> dict[str, Any]:
-    """The greatest stress [MPa] under 1 N·m, and what it took."""
+    """Return the greatest stress [MPa] under 1 N·m, and what it took."""
     outputs = ["maximum_stress"]
     stress = analyse(step, SHAFT, AnalysisRequest(), outputs, lambda done, what: None).outputs[
         "maximum_stress"

@@ -49,7 +49,7 @@ OPTIONS = {
 
 
 def random_throws(count: int, seed: int) -> Iterator[dict[str, Any]]:
-    """Parameters [SI] of throws that can be drawn.
+    """Yield parameters [SI] of throws that can be drawn.
 
     Half of them have no fillets; half of them have each bore, drilling or counterweight.
     """
@@ -70,7 +70,7 @@ def random_throws(count: int, seed: int) -> Iterator[dict[str, Any]]:
 
 
 def random_crankshafts(count: int, seed: int) -> Iterator[dict[str, Any]]:
-    """Parameters [SI] of crankshafts that can be drawn: random throws, each with ends of its own."""
+    """Yield parameters [SI] of crankshafts that can be drawn: random throws, each with ends of its own."""
     rng = np.random.default_rng(seed + 1)
     for thrown in random_throws(10 * count, seed):
         size = thrown["journal_diameter"]
@@ -85,7 +85,7 @@ def random_crankshafts(count: int, seed: int) -> Iterator[dict[str, Any]]:
 
 
 def random_shafts(count: int, seed: int) -> Iterator[tuple[type[CadModel], dict[str, Any]]]:
-    """Models and parameters [SI]: every third a crankshaft, the others throws."""
+    """Yield models and parameters [SI]: every third a crankshaft, the others throws."""
     cranks = random_crankshafts(count // 3, seed + 100)
     throws = random_throws(count - count // 3, seed)
     for number in range(count):
@@ -103,13 +103,13 @@ def possible(model: type[CadModel], parameters: dict[str, Any]) -> bool:
 
 
 def shaft_of(parameters: dict[str, Any]) -> tuple[bytes, Shaft]:
-    """A throw's STEP file, and where it is held and loaded."""
+    """Return a throw's STEP file, and where it is held and loaded."""
     half = 500 * (parameters["pin_length"] + 2 * parameters["web_thickness"] + parameters["journal_length"])
     return regenerate("crank_throw", 1, parameters).step, Shaft(-half, half)
 
 
 def drawn(model: str, parameters: dict[str, Any]) -> tuple[bytes, Shaft]:
-    """The STEP file of a shaft of a model, and where it is held and loaded."""
+    """Return the STEP file of a shaft of a model, and where it is held and loaded."""
     cls = {one.id: one for one in (CrankThrow, Crankshaft)}[model]
     shaft = cls.from_si(parameters).shaft()
     assert shaft is not None
@@ -156,7 +156,7 @@ def measure(row: Row, levels: Iterable[Level]) -> None:
 
 
 def mesh_of(level: Level) -> str:
-    """What values of a level depend on."""
+    """Return what values of a level depend on."""
     return f"{level.fineness}, order {level.order}, ngsolve {ng.__version__}"
 
 
@@ -166,7 +166,7 @@ def lacks(row: Row, level: Level) -> bool:
 
 
 def summary(rows: list[Row]) -> dict[str, Any]:
-    """For each level and sort of corners the greatest true error, change and share of the stated error."""
+    """Return the greatest true error, change and share of the stated error by level and sort of corners."""
     return {
         f"{level.name}, {'sharp' if sharp else 'filleted'}": worst(
             level,
@@ -179,7 +179,7 @@ def summary(rows: list[Row]) -> dict[str, Any]:
 
 
 def worst(level: Level, rows: list[Row], *, is_sharp: bool) -> dict[str, Any]:
-    """By output, the greatest of each, in magnitude."""
+    """Return the greatest of each output, in magnitude."""
     worst_ones: dict[str, Any] = {"shafts": len(rows)}
     for name in OUTPUTS:
         found = [judged(row, level, name, is_sharp=is_sharp) for row in rows]
@@ -191,7 +191,10 @@ CRITERIA = ("true error", "change", "share", "truth's last step")
 
 
 def judged(row: Row, level: Level, name: str, *, is_sharp: bool) -> dict[str, float]:
-    """One output of one shaft at one level; the last step is by how much the truth was extrapolated."""
+    """Return one output of one shaft at one level.
+
+    The last step is by how much the truth was extrapolated.
+    """
     low, high = (row[level.name][order][name] for order in ("low", "high"))
     orders = row["truth"]["orders"]
     true = extrapolated(orders)[name]

@@ -28,7 +28,7 @@ FRICTION = ("shear_torque", "friction_torque", "friction_coefficient", "power_lo
 
 
 def meanings(*names: str) -> dict[str, str]:
-    """The names that a table uses, with their meanings."""
+    """Return the names that a table uses, with their meanings."""
     return {name: TRUTHS[name] for name in names}
 
 
@@ -41,14 +41,17 @@ RELATIVE_TO: dict[str, float | list[str]] = {
 
 
 def truth_of(level: str, output: str) -> str:
-    """Against which film the error of an output is measured: `mass_conserving` has a convention of shear."""
+    """Return against which film the error of an output is measured.
+
+    `mass_conserving` has a convention of shear.
+    """
     if output not in FRICTION:
         return FILM
     return OIL_SHEAR if level == "mass_conserving" else FULL_SHEAR
 
 
 def converged(*, streamers: bool) -> tuple[Array, Array, JournalFilm, tuple[Array, Array]]:
-    """Places x = atanh(eps), y = ln(B/D), films and coefficients of the converged solutions.
+    """Return places x = atanh(eps), y = ln(B/D), films and coefficients of the converged solutions.
 
     Shear acts over the full circle, as in the standards, or with `streamers` as there is oil.
     """

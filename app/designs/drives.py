@@ -26,24 +26,26 @@ from templates.core.units.units import dimension_of, unit
 
 Columns = Mapping[str, int]
 
-KEPT = 4 * 2**20  # bytes of networks
-_kept: LRUCache[bytes, tuple[Snapshot, bytes]] = LRUCache(KEPT, getsizeof=lambda kept: len(kept[1]))
-"""Networks as JSON, by the digest of their document, each with the catalogue of which it was made."""
+KEPT = 20_000  # names and relations of networks
+_kept: LRUCache[bytes, tuple[Snapshot, DesignNetwork]] = LRUCache(
+    KEPT, getsizeof=lambda kept: len(kept[1].names) + len(kept[1].relations)
+)
+"""Networks by the digest of their document, each with the catalogue of which it was made; read only."""
 _keeping = Lock()
 
 
-def network_json(document: Mapping[str, Raw], catalogues: Catalogues) -> bytes:
-    """The dependencies in a stored document, as JSON; made once for a document and a catalogue."""
+def network(document: Mapping[str, Raw], catalogues: Catalogues) -> DesignNetwork:
+    """Return the dependencies in a stored document; computed once for a document and a catalogue."""
     digest, snapshot = sha256(canonical_json(document).encode()).digest(), catalogues.snapshot
     with _keeping:
-        of, network = _kept.get(digest, (None, b""))
-    if of is not snapshot:
+        of, kept = _kept.get(digest, (None, None))
+    if kept is None or of is not snapshot:
         graph, _ = build_graph(resolved(read_document(document), catalogues), catalogues)
-        network = network_of(graph).model_dump_json().encode()
-        if len(network) <= KEPT:
+        kept = network_of(graph)
+        if len(kept.names) + len(kept.relations) <= KEPT:
             with _keeping:
-                _kept[digest] = snapshot, network
-    return network
+                _kept[digest] = snapshot, kept
+    return kept
 
 
 def network_of(graph: Graph) -> DesignNetwork:

@@ -28,7 +28,7 @@ def note_revision(session: Session, events: Events, design: str, revision: int, 
 
 
 def standing(session: Session, id: str) -> Standing:
-    """At which revision a design is, and how its regeneration stands.
+    """Return at which revision a design is, and how its regeneration stands.
 
     Raises
     ------

@@ -128,18 +128,18 @@ class LevelSearch:
         return {name: _joined(_has_value(step, name) for step in self._started) for name in self.outputs}
 
     def _stated(self) -> float:
-        """At which share of the rows the starting level states the errors of what has a value."""
+        """Return at which share of the rows the starting level states the errors of what has a value."""
         return self._share(self._started, np.inf)
 
     def _met(self, measured: Accuracy, level: str) -> float:
-        """At which share of the rows all errors of a level are small enough."""
+        """Return at which share of the rows all errors of a level are small enough."""
         if level in self.block.cls.most_points:
             return float(np.mean(self._expected(measured, level)))
         steps = self._started if level == self.start else self._calculated(level)
         return self._share(steps, self.tolerance)
 
     def _share(self, steps: Sequence[StepRows], tolerance: float) -> float:
-        """At which share of the rows every output has a small error, or no value at the starting level."""
+        """Return the share of rows with a small error in all outputs, or no value at the starting level."""
         met = np.ones(sum(step.count for step in steps), dtype=bool)
         for name in self.outputs:
             there = _joined(_has_value(step, name) for step in steps)

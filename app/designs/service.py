@@ -10,17 +10,20 @@ from sqlalchemy.orm import Session
 from app.calculations.begun import Begun
 from app.calculations.steps import begun_steps
 from app.catalogue.catalogues import Catalogues
-from app.designs import repository
+from app.designs import repository, views
 from app.designs.automap import proposals
 from app.designs.calculate import Calculation, calculate
 from app.designs.calculation_cache import CalculationCache, Prepared
 from app.designs.document import Document, merge
+from app.designs.drives import network
 from app.designs.errors import StaleRevision
+from app.designs.explained import explained
 from app.designs.graph import Graph, build_graph, raise_if
 from app.designs.news import note_revision
 from app.designs.reading import read_document, resolved
 from app.designs.repository import Written
-from app.designs.schemas.designs import Proposal
+from app.designs.schemas.designs import Design, Explanation, Proposal
+from app.designs.schemas.network import DesignNetwork
 from app.designs.starting import starts
 from app.designs.stored_solids import analysed, built
 from app.designs.variants import stored as variants
@@ -29,6 +32,7 @@ from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available
 from app.jobs.service import Jobs
 from app.plain import JsonObject, Raw
+from app.presentation.units import System
 from app.reference import Reference
 from app.solids.ages import renew
 from app.storage.database import Database, Unit
@@ -75,6 +79,41 @@ class Designs:
     ) -> None:
         self.database, self.jobs, self.catalogues = database, jobs, catalogues
         self.calculation_cache = calculation_cache or CalculationCache()
+
+    def show(self, id: str, number: int | None = None) -> Design:
+        """Return a design as of a revision, by default the newest.
+
+        Raises
+        ------
+        NotFound
+            If there is no such design, or no such revision.
+        """
+        with self.database.read() as session:
+            return views.newest(session, id, number)
+
+    def network(self, id: str) -> DesignNetwork:
+        """Return the dependencies in a design.
+
+        Raises
+        ------
+        NotFound
+            If there is no such design.
+        """
+        with self.database.read() as session:
+            document = repository.newest(session, id).document
+        return network(document, self.catalogues)
+
+    def explanation(self, id: str, name: str, system: System) -> Explanation:
+        """Return where a parameter of a model, or the verdict of a criterion, comes from.
+
+        Raises
+        ------
+        NotFound
+            If there is no such design, or nothing in it is called so.
+        """
+        with self.database.read() as session:
+            row = repository.head(session, id).document
+        return explained(*self.prepare(row), self.catalogues, name, system)
 
     def create(
         self, raw: Mapping[str, Raw], note: str | None, once: Once, action: str = "design.create"

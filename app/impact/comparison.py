@@ -49,12 +49,12 @@ class Difference:
 
     @property
     def is_moved(self) -> bool:
-        """Whether anything that is known moves."""
+        """Return whether anything that is known moves."""
         return bool(self.verdicts or self.outputs or self.gone or self.parameters)
 
 
 def difference(before: Outcome, after: Outcome, variant: str | None) -> Difference:
-    """The changes between two outcomes without faults."""
+    """Return the changes between two outcomes without faults."""
     moved = sorted(_outputs(before, after), key=lambda one: (-one[1], one[0]))
     output = _shown(before, after, moved[0][0], variant) if moved else None
     names = after.values.keys() | {name for name in before.values if _is_of_waiting(name, after)}
@@ -87,7 +87,7 @@ def _verdicts(before: Outcome, after: Outcome, variant: str | None) -> Iterator[
 
 
 def _margin(before: Outcome, after: Outcome, variant: str | None) -> MarginLost | None:
-    """The criterion that loses the largest part of its margin; of those that had none, the first."""
+    """Return the criterion that loses the largest part of its margin; of those that had none, the first."""
     losses: list[tuple[float, MarginLost]] = []
     for name, old in before.judged.items():
         new = after.judged.get(name)
@@ -111,7 +111,7 @@ def _margin(before: Outcome, after: Outcome, variant: str | None) -> MarginLost 
 
 
 def _outputs(before: Outcome, after: Outcome) -> Iterator[tuple[str, float]]:
-    """The outputs of both versions that change, with the size of the change."""
+    """Yield the outputs of both versions that change, with the size of the change."""
     for name, old in before.values.items():
         new = after.values.get(name)
         if new is None:
@@ -128,7 +128,10 @@ def _is_one_kind(before: Outcome, after: Outcome, name: str) -> bool:
 
 
 def change_size(old: Value, new: Value) -> float:
-    """The largest change by the largest old value; infinite where a value appears, vanishes or leaves 0."""
+    """Return the largest change by the largest old value.
+
+    Infinite where a value appears, vanishes or leaves 0.
+    """
     if (
         isinstance(old, float)
         and isinstance(new, float)
@@ -157,7 +160,7 @@ def _together(old: Value, new: Value) -> tuple[Array, Array]:
 
 
 def _shown(before: Outcome, after: Outcome, name: str, variant: str | None) -> OutputMoved:
-    """A change at its largest place, in the unit that the new version declares."""
+    """Return a change at its largest place, in the unit that the new version declares."""
     old, new = _together(before.values[name], after.values[name])
     is_alike = old.shape == new.shape and _is_one_kind(before, after, name)
     place = _place(old, new) if is_alike else ()
@@ -170,13 +173,13 @@ def _shown(before: Outcome, after: Outcome, name: str, variant: str | None) -> O
 
 
 def _place(one: Array, other: Array) -> tuple[np.intp, ...]:
-    """The place where two arrays differ most; a value that one of them lacks counts most."""
+    """Return the place where two arrays differ most; a value that one of them lacks counts most."""
     steps = np.where(np.isnan(one) != np.isnan(other), INFINITE, np.abs(other - one))
     return np.unravel_index(int(np.argmax(np.nan_to_num(steps, nan=-1.0, posinf=INFINITE))), one.shape)
 
 
 def _signed(one: Array, other: Array, place: tuple[np.intp, ...], scale: str) -> float | None:
-    """The change at a place by the largest old value."""
+    """Return the change at a place by the largest old value."""
     largest = float(np.nanmax(np.abs(one))) if not np.isnan(one).all() else 0.0
     step = float(other[place] - one[place])
     if is_temperature(scale) or largest == 0 or not np.isfinite(step / largest):
@@ -185,14 +188,14 @@ def _signed(one: Array, other: Array, place: tuple[np.intp, ...], scale: str) ->
 
 
 def _quantity(si: Value, scale: str) -> Quantity | None:
-    """A single value [SI] in a unit; None of an array, or where there is none."""
+    """Return a single value [SI] in a unit; None of an array, or where there is none."""
     if np.ndim(si) or not np.isfinite(si):
         return None
     return Quantity(value=float(unit(scale).from_si(float(si))), unit=scale)
 
 
 def _parameters(before: Outcome, after: Outcome, variant: str | None) -> Iterator[ParameterMoved]:
-    """Parameters of models that change, or that are no longer known before a solid is built."""
+    """Yield parameters of models that change, or that are no longer known before a solid is built."""
     for name in dict.fromkeys([*before.parameters, *after.parameters]):
         old, new = (outcome.parameters.get(name) for outcome in (before, after))
         if old is None or new is None or change_size(old, new) > SAME:

@@ -25,7 +25,7 @@ Pairs = Mapping[str | None, tuple[Outcome, Outcome]]
 def impact_of(
     batch: Batch, design: DesignAt, document: Document, pairs: Pairs, catalogues: Catalogues
 ) -> DesignImpact | None:
-    """The changes in a design; None if nothing changes."""
+    """Return the changes in a design; None if nothing changes."""
     about = described(design, document, batch.template, batch.version)
     if refusals := list(_refusals(pairs)):
         given = {"refusals": refusals[:MOST_NAMED], **_remedies(batch, document, pairs, catalogues)}
@@ -40,7 +40,7 @@ def impact_of(
 
 
 def described(design: DesignAt, document: Document, template: str, version: int) -> dict[str, object]:
-    """The design, and its steps that use another version."""
+    """Return the design, and its steps that use another version."""
     return {
         "design": design.id,
         "name": document.name,
@@ -50,7 +50,7 @@ def described(design: DesignAt, document: Document, template: str, version: int)
 
 
 def used_steps(document: Document, template: str, version: int) -> list[StepUse]:
-    """The steps of a document that use another version of a template."""
+    """Return the steps of a document that use another version of a template."""
     return [
         StepUse(step=name, version=int(step.version or 0))
         for name, step in document.steps.items()
@@ -59,7 +59,7 @@ def used_steps(document: Document, template: str, version: int) -> list[StepUse]
 
 
 def _moved(differences: list[Difference]) -> dict[str, object]:
-    """The worst over a design and its variants."""
+    """Return the worst over a design and its variants."""
     margins = [one.margin for one in differences if one.margin]
     largest = max(differences, key=lambda one: one.size)
     return {
@@ -73,7 +73,7 @@ def _moved(differences: list[Difference]) -> dict[str, object]:
 
 
 def _refusals(pairs: Pairs) -> Iterator[UpgradeRefused]:
-    """Why a save of the upgrade is refused; each reason once, at the first variant that has it."""
+    """Yield why a save of the upgrade is refused; each reason once, at the first variant that has it."""
     listed = set[tuple[str, str, str]]()
     for variant, (before, after) in pairs.items():
         if before.faults and not after.faults:
@@ -88,7 +88,7 @@ def _refusals(pairs: Pairs) -> Iterator[UpgradeRefused]:
 
 
 def _remedies(batch: Batch, document: Document, pairs: Pairs, catalogues: Catalogues) -> dict[str, list[str]]:
-    """The names that the version needs, and those that it lacks."""
+    """Return the names that the version needs, and those that it lacks."""
     cls = catalogues.templates.get(batch.template, batch.version)
     steps = [use.step for use in used_steps(document, batch.template, batch.version)]
     remove = [name for step in steps for name in _left_over(step, document.steps[step], cls)]
@@ -98,7 +98,7 @@ def _remedies(batch: Batch, document: Document, pairs: Pairs, catalogues: Catalo
 
 
 def _left_over(name: str, step: Step, cls: type[Template]) -> Iterator[str]:
-    """The inputs and limits of a step that a version does not have."""
+    """Yield the inputs and limits of a step that a version does not have."""
     yield from (f"{name}.{given}" for given in step.inputs if given not in cls.inputs)
     limits = limits_of(cls)
     names = limits.keys() | {limit.library for limit in limits.values()}
@@ -110,20 +110,23 @@ def _is_missing(fault: Fault) -> bool:
 
 
 def _written(parts: dict[str, object]) -> DesignImpact:
-    """The answer without what is empty."""
+    """Return the answer without what is empty."""
     return DesignImpact.model_validate(
         {name: part for name, part in parts.items() if part not in ([], None, 0)}
     )
 
 
 def unusable(about: dict[str, object], absent: list[str]) -> DesignImpact:
-    """A design that uses what the catalogue does not have: neither it nor its upgrade can be calculated."""
+    """Return a design that uses what the catalogue does not have.
+
+    Neither it nor its upgrade can be calculated.
+    """
     detail = f"the catalogue does not have {', '.join(absent)}, so that the design cannot be calculated"
     return _refused(about, "unknown_name", detail)
 
 
 def unfinished(about: dict[str, object], error: Exception) -> DesignImpact:
-    """A design whose calculation ended its process."""
+    """Return a design whose calculation ended its process."""
     return _refused(about, "not_calculated", f"the calculation did not end: {error}")
 
 

@@ -35,7 +35,7 @@ class Form:
 
 
 def form_of(document: Document, catalogues: Catalogues) -> Form:
-    """The form of a document whose templates and models are in the catalogues."""
+    """Return the form of a document whose templates and models are in the catalogues."""
     plain = document.model_dump(mode="json", exclude={"name", "variants"})
     opening = _Opening({})
     plain["parameters"] = {n: opening.parameter(n, raw) for n, raw in document.parameters.items()}
@@ -55,7 +55,7 @@ class _Opening:
     values: dict[Reference, float]
 
     def parameter(self, name: str, raw: Raw) -> Raw:
-        """A parameter of the design: its kind is that of its own unit."""
+        """Return a parameter of the design: its kind is that of its own unit."""
         if _is_written_out(raw):
             return raw
         try:
@@ -68,7 +68,7 @@ class _Opening:
         return {"open": f"{unit(typed.unit).base:~C}"}
 
     def inputs(self, block: str, values: Mapping[str, Raw], cls: type[Template] | None) -> dict[str, Raw]:
-        """The inputs of a step, or the parameters of a model."""
+        """Return the inputs of a step, or the parameters of a model."""
         declared = cls.inputs if cls else {}
         return {name: self._input(block, name, raw, declared.get(name)) for name, raw in values.items()}
 

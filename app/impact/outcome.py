@@ -23,7 +23,7 @@ class Judged:
 
     @classmethod
     def alone(cls, judgement: Judgement) -> Judged:
-        """From the judgement of one design."""
+        """Return the judgement of one design."""
         return cls(judgement.verdict, judgement.margin_unit or judgement.unit, _finite(judgement.margin))
 
     @classmethod

@@ -46,7 +46,7 @@ Pair = tuple[Outcome, Outcome]
 
 
 def compared(batch: Batch) -> Compared:
-    """Every design of a batch with its own versions and with the new one."""
+    """Return every design of a batch with its own versions and with the new one."""
     catalogues = batch.parts.read()
     documents = {design.id: design.read() for design in batch.designs}
     cases = [case for design in batch.designs for case in _cases(design, documents[design.id], batch)]
@@ -61,7 +61,7 @@ def compared(batch: Batch) -> Compared:
 
 
 def _cases(design: DesignAt, document: Document, batch: Batch) -> Iterator[Case]:
-    """The design itself, then each of its variants."""
+    """Yield the design itself, then each of its variants."""
     after = upgraded(document, batch.template, batch.version)
     yield Case(design, None, document, after)
     for variant, overrides in document.variants.items():
@@ -69,7 +69,7 @@ def _cases(design: DesignAt, document: Document, batch: Batch) -> Iterator[Case]
 
 
 def _outcomes(cases: Sequence[Case], catalogues: Catalogues, solids: Solids) -> dict[int, Pair]:
-    """Both outcomes of every case, by its number; cases of one form are calculated together."""
+    """Return both outcomes of every case, by its number; cases of one form are calculated together."""
     groups: dict[tuple[str, str], list[_Member]] = {}
     for number, case in enumerate(cases):
         forms = form_of(case.before, catalogues), form_of(case.after, catalogues)
@@ -91,7 +91,7 @@ class _Member:
 
 
 def _of_group(members: Sequence[_Member], catalogues: Catalogues, solids: Solids) -> dict[int, Pair]:
-    """Both outcomes of every case of one form."""
+    """Return both outcomes of every case of one form."""
     sides: list[list[Outcome]] = []
     for side in (0, 1):
         documents = [(member.case.before, member.case.after)[side] for member in members]
@@ -110,7 +110,7 @@ def _of_group(members: Sequence[_Member], catalogues: Catalogues, solids: Solids
 def _together(
     document: Document, quantities: Sequence[Quantities], catalogues: Catalogues
 ) -> list[Outcome] | None:
-    """The outcomes of documents of one form; None if they are calculated alone, as a single one is."""
+    """Return the outcomes of documents of one form; None if they are calculated alone, as a single one is."""
     if len(quantities) < 2:
         return None
     columns = _columns(quantities)
@@ -119,6 +119,6 @@ def _together(
 
 
 def _columns(quantities: Sequence[Quantities]) -> Mapping[Reference, Array]:
-    """The values [SI] of the places in which the designs differ."""
+    """Return the values [SI] of the places in which the designs differ."""
     columns = {place: np.array([one[place] for one in quantities]) for place in quantities[0]}
     return {place: column for place, column in columns.items() if (column != column[0]).any()}

@@ -21,7 +21,7 @@ PAGE = 500  # designs of which the ids are read at once
 
 
 def ids_of(session: Session, wanted: DesignFilter, chosen: Collection[str] | None) -> list[str]:
-    """The designs that a filter selects, newest first; of those chosen, if any are."""
+    """Return the designs that a filter selects, newest first; of those chosen, if any are."""
     ids: list[str] = []
     cursor: str | None = None
     while page := designs.designs(session, PAGE, cursor, wanted)[:PAGE]:
@@ -32,7 +32,7 @@ def ids_of(session: Session, wanted: DesignFilter, chosen: Collection[str] | Non
 
 
 def newest(session: Session, ids: Sequence[str]) -> Iterator[tuple[DesignAt, Document]]:
-    """The designs of these ids as of their newest revisions; those deleted meanwhile are left out."""
+    """Yield the designs of these ids as of their newest revisions; those deleted meanwhile are left out."""
     heads = {row.id: row.head for row in designs.of_ids(session, ids)}
     query = select(RevisionRow.design_id, RevisionRow.number, RevisionRow.document)
     at = tuple_(RevisionRow.design_id, RevisionRow.number).in_(list(heads.items()))
@@ -46,13 +46,13 @@ def newest(session: Session, ids: Sequence[str]) -> Iterator[tuple[DesignAt, Doc
 
 
 def _settled(session: Session, id: str, number: int) -> tuple[tuple[str, float], ...]:
-    """The values [SI] with which the iterations of a revision ended."""
+    """Return the values [SI] with which the iterations of a revision ended."""
     results = designs.revision(session, id, number).results
     return tuple((str(reference), value) for reference, value in settled(results).items())
 
 
 def solids_of(session: Session, batch: Collection[tuple[DesignAt, Document]]) -> Solids:
-    """The stored measurements of the solids of some designs and of their variants."""
+    """Return the stored measurements of the solids of some designs and of their variants."""
     with_models = [(design.id, design.revision) for design, document in batch if document.models]
     at = tuple_(RevisionModelRow.design_id, RevisionModelRow.number).in_(with_models)
     keys = {key for key in session.scalars(select(RevisionModelRow.build_key).where(at)) if key}

@@ -19,7 +19,7 @@ class Impacts(LongAnswers):
     kind = IMPACT
 
     def requested(self, asked: Asked, client: str) -> str:
-        """The job that calculates an impact.
+        """Return the job that calculates an impact.
 
         Raises
         ------
@@ -38,7 +38,7 @@ class Impacts(LongAnswers):
         return self.queued(payload, asked.body.model_dump(), client)
 
     def calculated(self, payload: Mapping[str, object], body: object) -> Impact:
-        """The impact that a job holds."""
+        """Return the impact that a job holds."""
         units: System = "us" if payload["units"] == "us" else "si"
         version = int(str(payload["version"]))
         asked = Asked(str(payload["template"]), version, ImpactIn.model_validate(body), units)

@@ -10,7 +10,7 @@ NO_LONGER_MET, NOT_MET, REFUSED, OPEN, MOVED, UNKNOWN = range(6)
 
 
 def severity(moved: VerdictMoved) -> int:
-    """Rank a change of a verdict; the worst change has the least rank."""
+    """Return the rank a change of a verdict; the worst change has the least rank."""
     if moved.new == "not_met":
         return NO_LONGER_MET if moved.old == "met" else NOT_MET
     if moved.old == "met":
@@ -19,12 +19,12 @@ def severity(moved: VerdictMoved) -> int:
 
 
 def worst_first(moved: Iterable[VerdictMoved]) -> list[VerdictMoved]:
-    """Changes of verdicts, those that matter most first."""
+    """Return changes of verdicts, those that matter most first."""
     return sorted(moved, key=lambda one: (severity(one), one.name, one.variant or ""))
 
 
 def rank(impact: DesignImpact) -> tuple[int, float, float, str]:
-    """The key by which designs are sorted."""
+    """Return the key by which designs are sorted."""
     worst = min((severity(one) for one in impact.verdicts), default=MOVED)
     if impact.effect == "refused":
         worst = REFUSED

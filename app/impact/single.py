@@ -24,7 +24,7 @@ from templates.core.units.units import Value, unit
 def outcome_alone(
     document: Document, catalogues: Catalogues, solids: Solids, settled: Mapping[Reference, float]
 ) -> Outcome:
-    """The result of a document.
+    """Return the result of a document.
 
     `settled` are the values [SI] with which its iterations ended; they are taken as they are, because each
     round would need a solid.
@@ -51,7 +51,7 @@ def outcome_alone(
 
 
 def _values(calculation: Calculation) -> Iterator[tuple[str, tuple[Value, str]]]:
-    """The outputs of steps that are quantities [SI], and their units."""
+    """Yield the outputs of steps that are quantities [SI], and their units."""
     for step, evaluation in calculation.evaluations.items():
         for name, answer in evaluation.outputs.items():
             if not isinstance(evaluation.template.formulas[name], Text) and answer.unit is not None:
@@ -60,7 +60,7 @@ def _values(calculation: Calculation) -> Iterator[tuple[str, tuple[Value, str]]]
 
 
 def _parameters(calculation: Calculation) -> Iterator[tuple[str, tuple[float, str]]]:
-    """The parameters of models that are single quantities [SI], and their units."""
+    """Yield the parameters of models that are single quantities [SI], and their units."""
     for model, shape in calculation.shapes.items():
         for name, declared in shape.inputs.items():
             if not isinstance(declared, (Choice, Curve, Table)):

@@ -20,11 +20,11 @@ class Solids:
     analyses: Mapping[str, Outputs] = field(default_factory=dict)
 
     def measured(self, shape: CadModel) -> Measures | None:
-        """The measurements of a model, if its solid is among these."""
+        """Return the measurements of a model, if its solid is among these."""
         return self.builds.get(build_key(shape))
 
     def analysed(self, shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Outputs | None:
-        """The results of finite elements on a model, if all wanted results are among these."""
+        """Return the results of finite elements on a model, if all wanted results are among these."""
         outputs = self.analyses.get(question.key(build_key(shape)), {})
         if not set(wanted) <= outputs.keys():
             return None

@@ -73,7 +73,7 @@ class Survey:
     catalogues: Catalogues
 
     def impact(self) -> Impact:
-        """The effect of the version on them."""
+        """Return the effect of the version on them."""
         asked = self.asked
         chosen = None if asked.body.designs is None else set(asked.body.designs)
         tags = tuple(dict.fromkeys(map(key_of, asked.body.tags)))
@@ -99,7 +99,7 @@ class Survey:
         )
 
     def _concerned(self, ids: Sequence[str]) -> list[At]:
-        """Those of some designs of which a step uses another version."""
+        """Return those of some designs of which a step uses another version."""
         with self.database.read() as session:
             newest = list(repository.newest(session, ids))
         return [
@@ -136,7 +136,7 @@ class Survey:
             yield from self._of_batch(batch[half:], share)
 
     def _compared(self, batch: Sequence[At], share: _Share) -> Compared:
-        """A batch, calculated in the pool for the job that asks."""
+        """Return a batch, calculated in the pool for the job that asks."""
         templates, models = uses(document for _, document in batch)
         parts = CatalogueTask.of(
             {*templates, (self.asked.template, self.asked.version)}, models, self.catalogues
@@ -165,11 +165,11 @@ class _Share:
     total: int
 
     def at(self, fraction: float) -> float:
-        """The progress of the job when so much of the page is done."""
+        """Return the progress of the job when so much of the page is done."""
         return self.begin + self.width * fraction
 
     def text(self, fraction: float) -> str:
-        """The same in words."""
+        """Return the same in words."""
         return f"{int(self.at(fraction) * self.total)} of {self.total} designs"
 
 
@@ -179,7 +179,7 @@ def _pages(ids: Sequence[str]) -> Iterator[Sequence[str]]:
 
 
 def _batches(designs: Sequence[At]) -> Iterator[list[At]]:
-    """Designs in batches of at most so many designs and variants; one design at least."""
+    """Yield designs in batches of at most so many designs and variants; one design at least."""
     batch: list[At] = []
     count = 0
     for at in designs:

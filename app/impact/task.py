@@ -27,11 +27,11 @@ class DesignAt:
     settled: tuple[tuple[str, float], ...] = ()
 
     def read(self) -> Document:
-        """The document."""
+        """Return the document."""
         return Document.model_validate(from_json(self.document))
 
     def assumed(self) -> dict[Reference, float]:
-        """The values with which its iterations ended."""
+        """Return the values with which its iterations ended."""
         return {Reference.parse(name): value for name, value in self.settled}
 
 
@@ -47,7 +47,7 @@ class Batch:
 
 
 def uses(documents: Iterable[Document]) -> tuple[set[tuple[str, int]], set[tuple[str, int]]]:
-    """The templates and the models of some documents, which pin every version."""
+    """Return the templates and the models of some documents, which pin every version."""
     templates, models = set[tuple[str, int]](), set[tuple[str, int]]()
     for document in documents:
         templates |= {(step.template, int(step.version or 0)) for step in document.steps.values()}
@@ -56,7 +56,10 @@ def uses(documents: Iterable[Document]) -> tuple[set[tuple[str, int]], set[tuple
 
 
 def upgraded(document: Document, template: str, version: int) -> Document:
-    """The document with one version in every step that uses the template; nothing of the original changes."""
+    """Return the document with one version in every step that uses the template.
+
+    Nothing of the original changes.
+    """
     steps = {
         name: step.model_copy(update={"version": version}) if step.template == template else step
         for name, step in document.steps.items()
@@ -65,7 +68,7 @@ def upgraded(document: Document, template: str, version: int) -> Document:
 
 
 def missing(document: Document, catalogues: Catalogues) -> list[str]:
-    """The versions of a document that the catalogues do not have: `oil_film 1`."""
+    """Return the versions of a document that the catalogues do not have: `oil_film 1`."""
     templates, models = uses([document])
     absent = [key for key in sorted(templates) if key not in catalogues.templates.versions]
     absent += [key for key in sorted(models) if key not in catalogues.models.versions]

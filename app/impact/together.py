@@ -51,7 +51,7 @@ class Together:
 
     @classmethod
     def of(cls, document: Document, catalogues: Catalogues, varied: Collection[Reference]) -> Together | None:
-        """A form, by the document of one of its designs; None if its designs are calculated alone."""
+        """Return a form, by the document of one of its designs; None if its designs are calculated alone."""
         if document.iterations:
             return None
         try:
@@ -68,7 +68,7 @@ class Together:
         return cls(net.design, outputs, parameters, subjects, units)
 
     def outcomes(self, rows: Rows, count: int) -> list[Outcome] | None:
-        """The outcome of each row; None if they are calculated alone."""
+        """Return the outcome of each row; None if they are calculated alone."""
         listed: list[Outcome] = []
         try:
             with np.errstate(all="ignore"):
@@ -89,7 +89,7 @@ class Together:
         return Wanted(judged.references | cells, judged.inside | set(self.parameters))
 
     def _of_chunk(self, rows: Rows, part: RowPass) -> list[Outcome] | None:
-        """The outcomes of one array call; rows that start at different levels are calculated apart."""
+        """Return the outcomes of one array call; rows that start at different levels are calculated apart."""
         groups = _by_levels(part)
         if len(groups) == 1:
             return list(self._read(part))
@@ -102,7 +102,7 @@ class Together:
         return [apart[row] for row in range(part.count)]
 
     def _read(self, part: RowPass) -> Iterator[Outcome]:
-        """The outcome of each row of an array call."""
+        """Yield the outcome of each row of an array call."""
         values = {str(r): part.value(r).spread(part.count) for r in self.outputs}
         parameters = {str(r): self._parameter(part, r) for r in self.parameters}
         judging = RowJudging(part)
@@ -127,7 +127,7 @@ class Together:
             )
 
     def _parameter(self, part: RowPass, reference: Reference) -> Array:
-        """A parameter of a model as the model takes it."""
+        """Return a parameter of a model as the model takes it."""
         return part.steps[reference.block].values[reference.member].spread(part.count)
 
 
@@ -145,7 +145,7 @@ def _is_measured(graph: Graph) -> bool:
 
 
 def _outputs(graph: Graph) -> Iterator[Reference]:
-    """The outputs that the steps compute, without those that are words."""
+    """Yield the outputs that the steps compute, without those that are words."""
     for block in graph.blocks.values():
         if not block.is_model:
             computed = graph.computed(block)
@@ -155,7 +155,7 @@ def _outputs(graph: Graph) -> Iterator[Reference]:
 
 
 def _parameters(graph: Graph) -> Iterator[Reference]:
-    """The parameters of models that are single quantities."""
+    """Yield the parameters of models that are single quantities."""
     for block in graph.blocks.values():
         if block.is_model:
             for name, declared in block.cls.inputs.items():
@@ -164,7 +164,10 @@ def _parameters(graph: Graph) -> Iterator[Reference]:
 
 
 def _is_incomplete(block: Block) -> bool:
-    """True if a model lacks parameters, or nobody asks for any output of a step: it is checked alone."""
+    """Return whether a model lacks parameters, or nobody asks for any output of a step.
+
+    It is checked alone.
+    """
     if not block.is_model:
         return block.outputs == ()
     inputs = block.cls.inputs.items()
@@ -175,7 +178,7 @@ def _is_incomplete(block: Block) -> bool:
 
 
 def _by_levels(part: RowPass) -> list[Indices]:
-    """The rows in groups that start at the same levels when each stands alone."""
+    """Return the rows in groups that start at the same levels when each stands alone."""
     keys: list[list[str]] = [[] for _ in range(part.count)]
     for step in part.steps.values():
         cls = step.block.cls
@@ -189,7 +192,7 @@ def _by_levels(part: RowPass) -> list[Indices]:
 
 
 def _started(step: StepRows) -> Iterator[tuple[int, str]]:
-    """The level at which each row starts that has inputs."""
+    """Yield the level at which each row starts that has inputs."""
     for part in step.parts:
         shape = part.template.shape_of_points()
         for place, row in enumerate(part.rows.tolist()):

@@ -23,11 +23,11 @@ class Answer(BaseModel):
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     def plain(self) -> JsonObject:
-        """The answer as plain JSON values, without the fields that it leaves out."""
+        """Return the answer as plain JSON values, without the fields that it leaves out."""
         return self.model_dump(mode="json", by_alias=True, exclude_unset=True)
 
     def in_units(self, system: System) -> Self:
-        """The answer with every quantity in a system of units; what has no unit stays as it is."""
+        """Return the answer with every quantity in a system of units; what has no unit stays as it is."""
         if system == "si":
             return self
         return self.model_copy(
@@ -36,7 +36,7 @@ class Answer(BaseModel):
 
 
 def _in_units(value: object, system: System) -> object:
-    """A field of an answer, or an item of one, in a system of units."""
+    """Return a field of an answer, or an item of one, in a system of units."""
     if isinstance(value, Answer):
         return value.in_units(system)
     if isinstance(value, dict):
@@ -64,7 +64,7 @@ class Measured(Answer):
     """A magnitude `value` with its `unit`, which another system of units replaces."""
 
     def in_units(self, system: System) -> Self:
-        """The magnitude in a system of units."""
+        """Return the magnitude in a system of units."""
         unit: str | None = getattr(self, "unit", None)
         if unit is None or shown_unit(unit, system) == unit:
             return self
@@ -103,7 +103,7 @@ class Shown(Measured):
     zone: str | None = Field(None, description="of ISO 286, from which the limits come")
 
     def in_units(self, system: System) -> Self:
-        """The magnitude and its limit deviations, which are differences, in a system of units."""
+        """Return the magnitude and its limit deviations, which are differences, in a system of units."""
         shown = super().in_units(system)
         if self.unit is None or self.upper is None or self.lower is None or shown.unit == self.unit:
             return shown

@@ -31,7 +31,10 @@ class Bounded(BaseModel):
 
 
 def at_most(count: int) -> BeforeValidator:
-    """An annotation of a dictionary: it has at most so many entries, counted before they are looked at."""
+    """Return an annotation of a dictionary.
+
+    It has at most so many entries, counted before they are looked at.
+    """
     return BeforeValidator(partial(_few, most=count))
 
 

@@ -78,7 +78,7 @@ class Healing:
         raise error
 
     def _needs_another(self, session: Session, key: str) -> bool:
-        """Return whether a build's STEP file is lost and this program makes another build of its inputs."""
+        """Return whether a build's STEP file is lost and this program would make another build of it."""
         step = rows.artifact(session, key, "step")
         if step and self.store.exists(step.sha256):
             return False

@@ -22,7 +22,10 @@ _ABOUT = "about"
 
 
 def packed(arrays: Mapping[str, AnyArray], about: Mapping[str, object] | None = None) -> Pieces:
-    """The bytes of an archive of arrays, and a JSON object beside them; equal contents, equal bytes."""
+    """Return the bytes of an archive of arrays, and a JSON object beside them.
+
+    Equal contents, equal bytes.
+    """
     stream = io.BytesIO()
     write(stream, arrays, about)
     return Pieces.of(stream.getvalue())
@@ -69,7 +72,7 @@ class Archive:
 
     @property
     def names(self) -> list[str]:
-        """The names of its arrays, without the JSON object."""
+        """Return the names of its arrays, without the JSON object."""
         members = (name.removesuffix(".npy") for name in self._file.namelist())
         return [name for name in members if name != _ABOUT]
 
@@ -82,7 +85,7 @@ class Archive:
         return array
 
     def about(self) -> JsonObject:
-        """The JSON object beside the arrays; empty if there is none."""
+        """Return the JSON object beside the arrays; empty if there is none."""
         if _ABOUT not in self:
             return {}
         about: JsonObject = json.loads(self[_ABOUT].tobytes())

@@ -108,7 +108,7 @@ class StudyIn(Bounded):
 
 
 def study_of(raw: JsonObject) -> StudyIn:
-    """A study from plain values.
+    """Return a study from plain values.
 
     Raises
     ------

@@ -38,7 +38,7 @@ class Chunk:
 def explored(
     task: Task, first: int, last: int, levels: Levels, criteria: tuple[str, ...], solids: Solids = ()
 ) -> Chunk | Lacking:
-    """Rows number `first` to `last`, the last one excluded, as the method has them."""
+    """Return rows number `first` to `last`, the last one excluded, as the method has them."""
     points = prepared(task).asked.points
     assert points is not None, "a table or an optimisation gives its rows itself"
     return calculated(task, points.rows(first, last), levels, criteria, solids)
@@ -47,7 +47,7 @@ def explored(
 def calculated(
     task: Task, rows: Array, levels: Levels, criteria: tuple[str, ...], solids: Solids = ()
 ) -> Chunk | Lacking:
-    """Rows given by their values [SI], shape (N, d), or the solids that they wait for."""
+    """Return rows given by their values [SI], shape (N, d), or the solids that they wait for."""
     ready = prepared(task)
     resolved = ready.solids.resolved(placed(ready, rows), len(rows), levels, solids)
     if resolved.wanting:
@@ -63,7 +63,7 @@ def calculated(
 
 
 def placed(ready: Prepared, rows: Array) -> dict[Reference, Array]:
-    """The columns of rows, shape (N, d), by their places."""
+    """Return the columns of rows, shape (N, d), by their places."""
     return {place: rows[:, column] for column, place in enumerate(ready.asked.places)}
 
 
@@ -76,23 +76,23 @@ def called(
     measures: Mapping[Reference, Array] | None = None,
     judge: bool = False,
 ) -> Table:
-    """The table of some rows, shape (N, d); without `measures`, with those of the design itself."""
+    """Return the table of some rows, shape (N, d); without `measures`, with those of the design itself."""
     values = {**placed(ready, rows), **(tried(ready, len(rows)) if measures is None else measures)}
     return ready.net(values, ready.asked.wanted, levels=levels, criteria=criteria, judge=judge)
 
 
 def tried(ready: Prepared, count: int) -> dict[Reference, Array]:
-    """The measures of the design itself for rows that are only tried; NaN where they are not known."""
+    """Return the measures of the design itself for rows that are only tried; NaN where they are not known."""
     return {r: np.full(count, ready.nominal.get(r, np.nan)) for r in ready.solids.measures}
 
 
 def columns_of(names: tuple[str, ...], rows: Array) -> dict[str, AnyArray]:
-    """The values of the places, as a chunk keeps them."""
+    """Return the values of the places, as a chunk keeps them."""
     return {f"place/{name}": rows[:, column] for column, name in enumerate(names)}
 
 
 def results_of(table: Table, wanted: tuple[Reference, ...]) -> dict[str, AnyArray]:
-    """The values of the outputs, their errors and the verdicts, as a chunk keeps them."""
+    """Return the values of the outputs, their errors and the verdicts, as a chunk keeps them."""
     results: dict[str, AnyArray] = {}
     for output in wanted:
         results[f"output/{output}"] = table.columns[output]
@@ -105,7 +105,10 @@ def results_of(table: Table, wanted: tuple[Reference, ...]) -> dict[str, AnyArra
 
 
 def reasons_of(table: Table) -> tuple[list[list[str]], AnyArray]:
-    """Distinct reasons of refused rows, and the place of each row's in that list; -1 where it has values."""
+    """Return distinct reasons of refused rows, and the place of each row's in that list.
+
+    -1 where it has values.
+    """
     places: dict[Refusal, int] = {}
     which = np.full(table.count, -1, dtype=np.int32)
     for row, refusal in sorted(table.refusals.items()):

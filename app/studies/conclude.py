@@ -26,7 +26,7 @@ class Concluding:
         self._building = building
 
     def __call__(self, run: Run) -> StudyResult:
-        """The result of a study; raises what its design brings about."""
+        """Return the result of a study; raises what its design brings about."""
         return self._building.built(run, read_body(run.task.body), _concluded(run))
 
 
@@ -48,7 +48,7 @@ def _sensitivity(run: Run) -> StudyResult:
 
 
 def _chosen(run: Run) -> StudyResult:
-    """The best rows among all; those that matter are calculated again, if the study asks for that."""
+    """Return the best rows among all; those that matter are calculated again, if the study asks for that."""
     stored = run.stored(run.plan.chunks)
     worst = stored.worst(run.plan.required)
     met = _shares_met(run, stored, worst)
@@ -74,7 +74,7 @@ def _chosen(run: Run) -> StudyResult:
 
 
 def _shares_met(run: Run, stored: Stored, worst: AnyArray) -> dict[str, object]:
-    """The share of the rows that meet all criteria, and each of them; nothing where there are none."""
+    """Return the share of the rows that meet all criteria, and each of them; nothing where there are none."""
     if not run.plan.required:
         return {}
     shares = {name: float(np.mean(stored.codes(name) == MET)) for name in run.plan.required}
@@ -84,7 +84,7 @@ def _shares_met(run: Run, stored: Stored, worst: AnyArray) -> dict[str, object]:
 def _feasible(
     stored: Stored, numbers: Integers, run: Run, names: list[str], maximised: list[bool]
 ) -> Integers:
-    """The rows that count among those calculated again, the best first."""
+    """Return the rows that count among those calculated again, the best first."""
     objectives = signed(stored.rows([f"{OUTPUT}{name}" for name in names], numbers), maximised)
     worst = stored.worst(run.plan.required)[numbers]
     if len(names) == 1:
@@ -112,12 +112,12 @@ def _result(
 
 
 def _answered(**fields: object) -> StudyResult:
-    """A result without the fields that do not apply."""
+    """Return a result without the fields that do not apply."""
     return StudyResult.model_validate({name: value for name, value in fields.items() if value is not None})
 
 
 def _trade(run: Run, stored: Stored, explored: Integers, confirmed: Integers, *, several: bool) -> Trade:
-    """The promise of each level of the exploration in some rows, and the true value there."""
+    """Return the promise of each level of the exploration in some rows, and the true value there."""
     pairs = zip(
         rows_found(run, stored, explored, confirmed=False),
         rows_found(run, stored, confirmed, confirmed=True),

@@ -23,7 +23,7 @@ SIDES = ("value", "limit", "low", "high")
 
 
 def judged_of(net: Net, name: str, table: Table) -> dict[str, AnyArray]:
-    """Value, limit and margins [SI] of a criterion over the rows; at least zero is safe."""
+    """Return the value, limit and margins [SI] of a criterion over the rows; at least zero is safe."""
     column, codes = table.judged[name], np.asarray(table.verdicts[name])
     sign = 1.0 if criterion_of(net, name).sign == ">=" else -1.0
     ends = sign * (column.low - column.limit), sign * (column.high - column.limit)

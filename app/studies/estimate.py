@@ -32,7 +32,7 @@ class Pace:
     row: float
 
     def seconds(self, rows: int, calls: int = 0) -> float:
-        """The time of so many rows in so many calls, by default in as few as possible [s]."""
+        """Return the time of so many rows in so many calls, by default in as few as possible [s]."""
         return self.row * rows + self.call * (calls or -(-rows // IN_CALL))
 
 
@@ -44,7 +44,7 @@ def estimated(
     levels: Levels,
     confirm: Levels | None,
 ) -> float:
-    """The processor time of a study of so many rows [s]."""
+    """Return the processor time of a study of so many rows [s]."""
     body, names = ready.asked.body, tuple(criteria)
     pace = paced(ready, probe, names, levels)
     again = paced(ready, probe, names, confirm) if confirm is not None else pace
@@ -59,7 +59,7 @@ def estimated(
 
 
 def paced(ready: Prepared, probe: Array, criteria: tuple[str, ...], levels: Levels) -> Pace:
-    """The pace at some levels, by a call of a few rows and one of as many as are affordable."""
+    """Return the pace at some levels, by a call of a few rows and one of as many as are affordable."""
     few, many = probe[:FEW], np.resize(probe, (MANY, probe.shape[1]))
     timed(ready, few[:1], criteria, levels)  # what is loaded once does not count
     first = timed(ready, few, criteria, levels)
@@ -71,7 +71,7 @@ def paced(ready: Prepared, probe: Array, criteria: tuple[str, ...], levels: Leve
 
 
 def timed(ready: Prepared, rows: Array, criteria: tuple[str, ...], levels: Levels) -> float:
-    """The processor time of a call [s]."""
+    """Return the processor time of a call [s]."""
     begun = time.thread_time()
     called(ready, rows, levels, criteria)
     return time.thread_time() - begun

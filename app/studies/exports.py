@@ -23,7 +23,7 @@ SOME, SOME_SORTED = 2000, 20_000  # rows that are read and written at once; sort
 
 
 def heads(listing: Listing, system: System) -> list[list[str]]:
-    """The two rows above the numbers: names, then units."""
+    """Return the two rows above the numbers: names, then units."""
     criteria = listing.plan.criteria
     names = ["row", *listing.names, *criteria, "verdict", "level", "reason"]
     units = [shown_unit(unit, system) for unit in listing.units.values()]
@@ -31,7 +31,7 @@ def heads(listing: Listing, system: System) -> list[list[str]]:
 
 
 def lines(listing: Listing, system: System) -> Iterator[list[Value]]:
-    """A line for each row, under `heads`."""
+    """Yield a line for each row, under `heads`."""
     numbers = listing.numbers()
     size = SOME if listing.wanted.sort is None else SOME_SORTED
     for start in range(0, len(numbers), size):
@@ -52,7 +52,7 @@ def _cell(value: object) -> float | str:
 
 
 def csv_parts(listing: Listing, system: System) -> Iterator[bytes]:
-    """The rows as CSV, piece by piece."""
+    """Yield the rows as CSV, piece by piece."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\r\n")
     writer.writerows(heads(listing, system))
@@ -66,7 +66,7 @@ def csv_parts(listing: Listing, system: System) -> Iterator[bytes]:
 
 
 def xlsx(listing: Listing, system: System) -> bytes:
-    """The rows as one sheet.
+    """Return the rows as one sheet.
 
     Raises
     ------

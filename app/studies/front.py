@@ -15,7 +15,7 @@ MOST_FRONT = 200
 
 
 def ranked(objective: Array, worst: AnyArray, most: int, *, undecided: bool = False) -> Integers:
-    """The rows of least objective among those that meet all criteria, the best first.
+    """Return the rows of least objective among those that meet all criteria, the best first.
 
     With `undecided`, rows whose limits lie within the error of their level are among them.
     """
@@ -25,7 +25,9 @@ def ranked(objective: Array, worst: AnyArray, most: int, *, undecided: bool = Fa
 
 
 def front(objectives: Array, worst: AnyArray, *, undecided: bool = False) -> Integers:
-    """The rows that no other one equals or betters in all objectives, shape (N, k); at most `MOST_FRONT`.
+    """Return the rows that no other one equals or betters in all objectives, shape (N, k).
+
+    At most `MOST_FRONT`.
 
     They are in the order of the first objective; of more, those are kept that are spread evenly over it.
     """
@@ -39,7 +41,7 @@ def front(objectives: Array, worst: AnyArray, *, undecided: bool = False) -> Int
 
 
 def _undominated(sorted_rows: Array) -> Mask:
-    """Which rows are not dominated by an earlier one; they are sorted by their columns.
+    """Return which rows are not dominated by an earlier one; they are sorted by their columns.
 
     Only rows that are kept are compared with, so that the cost is that of rows times front.
     """
@@ -53,5 +55,5 @@ def _undominated(sorted_rows: Array) -> Mask:
 
 
 def signed(columns: Array, maximised: Sequence[bool]) -> Array:
-    """Objectives as something to minimise."""
+    """Return objectives as something to minimise."""
     return columns * np.where(maximised, -1.0, 1.0)

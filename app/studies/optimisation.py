@@ -63,7 +63,7 @@ def _listed(best: list[Best], *, several: bool) -> dict[str, object]:
 
 
 def _numbers(run: Run, stored: Stored, places: tuple[Array, ...]) -> Integers:
-    """The rows of these places, as they were confirmed."""
+    """Return the rows of these places, as they were confirmed."""
     rows = stored.rows([f"{PLACE}{name}" for name in run.plan.places], np.arange(stored.count))
     levels = stored.values("level")
     is_fine = levels == (CONFIRM if run.plan.confirm not in (None, run.plan.levels) else EXPLORE)

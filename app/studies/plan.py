@@ -67,12 +67,12 @@ class Plan:
         return MOST_CHUNKS if self.searched else -(-self.rows // self.chunk)
 
     def plain(self) -> JsonObject:
-        """As JSON."""
+        """Return the plan as JSON."""
         return asdict(self)
 
     @classmethod
     def of(cls, plain: JsonObject) -> Self:
-        """From JSON."""
+        """Return the plan that a JSON object holds."""
         return cls(**plain)
 
 
@@ -136,7 +136,7 @@ def _count(asked: Asked, given: Array | None) -> int:
 
 
 def _probe(asked: Asked, count: int, given: Array | None) -> Array:
-    """Some rows, spread over all of them."""
+    """Return some rows, spread over all of them."""
     if asked.points is None and given is None:
         return asked.space.at(_lattice(len(asked.space)))
     numbers = np.unique(np.linspace(0, count - 1, min(count, PROBED)).astype(int)).tolist()
@@ -148,7 +148,7 @@ def _probe(asked: Asked, count: int, given: Array | None) -> Array:
 
 
 def _lattice(dimensions: int) -> Array:
-    """Places in the unit cube, evenly spread (Kronecker's lattice): the middle first."""
+    """Return places in the unit cube, evenly spread (Kronecker's lattice): the middle first."""
     steps = np.sqrt(np.arange(2, 2 + dimensions))
     return np.asarray((0.5 + np.outer(np.arange(PROBED), steps)) % 1.0)
 
@@ -161,7 +161,7 @@ def _levels(
 
 
 def _chunk(ready: Prepared, criteria: Collection[str], levels: Levels) -> int:
-    """Rows of a chunk: as many as take half a second, and a multiple of what an array call takes."""
+    """Return rows of a chunk: as many as take half a second, and a multiple of what an array call takes."""
     wanted = ready.asked.wanted  # by tables, so that equal studies have equal chunks
     seconds = ready.net.seconds(STEP_OF_CHUNK, wanted, levels, criteria=criteria, by_tables=True)
     per_row = seconds / STEP_OF_CHUNK
@@ -172,7 +172,7 @@ def _chunk(ready: Prepared, criteria: Collection[str], levels: Levels) -> int:
 def _searched(
     ready: Prepared, levels: dict[str, str | None], confirm: dict[str, str | None] | None
 ) -> list[dict[str, str | None]]:
-    """At which levels an optimisation searches: explore, confirm, then cheaper ones that it compares."""
+    """Return the levels at which an optimisation searches: explore, confirm, then cheaper ones to compare."""
     if ready.asked.points is not None or ready.asked.body.method != "optimise":
         return []
     searched = [levels, confirm or levels]
@@ -184,7 +184,7 @@ def _searched(
 
 
 def _judged(hold: Sequence[str] | None, names: Collection[str]) -> list[str]:
-    """The criteria that are judged: those named, else all of the design."""
+    """Return the criteria that are judged: those named, else all of the design."""
     if hold is None:
         return sorted(names)
     if unknown := [name for name in hold if name not in names]:
@@ -193,7 +193,7 @@ def _judged(hold: Sequence[str] | None, names: Collection[str]) -> list[str]:
 
 
 def _checked(criteria: Sequence[str], tried: Table, task: Task) -> list[str]:
-    """The criteria that count: not waived, and checked in any row that was tried.
+    """Return the criteria that count: not waived, and checked in any row that was tried.
 
     Nobody has given the limits of the others, so that no row could meet them.
     """

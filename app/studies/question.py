@@ -35,12 +35,12 @@ class Asked:
 
     @property
     def objectives(self) -> list[str]:
-        """The outputs that are minimised, then those that are maximised."""
+        """Return the outputs that are minimised, then those that are maximised."""
         return directions(self.body)[0]
 
 
 def asked_of(body: StudyIn, varied: Sequence[str], net: Net) -> Asked:
-    """A body read against the network of its design.
+    """Return a body read against the network of its design.
 
     Raises
     ------
@@ -91,7 +91,7 @@ _WITHOUT_POINTS = {
 
 
 def _variables(body: StudyIn, varied: Sequence[str], net: Net) -> Iterator[Variable]:
-    """The variables in the order of the columns; the keys of a stored body have another."""
+    """Yield the variables in the order of the columns; the keys of a stored body have another."""
     faults: list[Fault] = []
     for name in varied if body.vary else ():
         vary = body.vary[name]
@@ -112,7 +112,7 @@ def _variable(name: str, vary: Vary, unit: str) -> Variable:
 
 
 def single(raw: Raw, unit: str, name: str) -> float:
-    """One value [SI] as typed."""
+    """Return one value [SI] as typed."""
     try:
         value = read(raw, unit).si
     except FaultyText as error:
@@ -123,7 +123,7 @@ def single(raw: Raw, unit: str, name: str) -> float:
 
 
 def points_of(body: StudyIn, space: Space, net: Net) -> Points | None:
-    """The rows of a method by number; None if the method finds them by itself."""
+    """Return the rows of a method by number; None if the method finds them by itself."""
     match body.method:
         case "grid":
             return Grid(space, _steps(body, space))
@@ -153,7 +153,7 @@ def _steps(body: StudyIn, space: Space) -> dict[str, int]:
 
 
 def _around(space: Space, net: Net) -> Local:
-    """The design's own values, or the middle of an interval that leaves them out."""
+    """Return the design's own values, or the middle of an interval that leaves them out."""
     at, steps, faults = [], [], []
     for variable in space.variables:
         if not isinstance(variable, Interval):
@@ -169,7 +169,7 @@ def _around(space: Space, net: Net) -> Local:
 
 
 def _too_many(body: StudyIn, space: Space) -> list[Fault]:
-    """A fault if the method would make more rows than it takes, counted before any row is made."""
+    """Return a fault if the method would make more rows than it takes, counted before any row is made."""
     count = 0
     match body.method:
         case "grid":
@@ -190,7 +190,7 @@ def _too_many(body: StudyIn, space: Space) -> list[Fault]:
 
 
 def too_long(method: str, count: int) -> Fault:
-    """The fault of a study with more rows than its method takes."""
+    """Return the fault of a study with more rows than its method takes."""
     place = {"grid": "steps", "table": "rows"}.get(method, "points")
     given = str(count) if count < 10**15 else "as many as these"  # its digits may be thousands
     return Fault(place, "too_many_rows", f"{method} takes at most {MOST_ROWS[method]} rows, not {given}")
@@ -202,6 +202,6 @@ def _refuse(faults: Sequence[Fault]) -> None:
 
 
 def directions(body: StudyIn) -> tuple[list[str], list[bool]]:
-    """The objectives of a study, and for each whether it is maximised."""
+    """Return the objectives of a study, and for each whether it is maximised."""
     names = [*body.minimise, *body.maximise]
     return names, [name in body.maximise for name in names]

@@ -11,13 +11,13 @@ from templates.core.units.relation import is_relation
 
 
 def relations_at(document: Document, places: Iterable[str]) -> dict[str, str]:
-    """The relations, as typed, that set some of the places; a list of relations in one line."""
+    """Return the relations, as typed, that set some of the places; a list of relations in one line."""
     raw = {place: _raw(document, Reference.parse(place)) for place in places}
     return {place: text for place, value in raw.items() if (text := _relation(value))}
 
 
 def words(relations: Mapping[str, str]) -> str:
-    """Relations in words: `film.bearing_width (= ratio * 48 mm)`."""
+    """Return relations in words: `film.bearing_width (= ratio * 48 mm)`."""
     return ", ".join(f"{place} ({text})" for place, text in relations.items())
 
 

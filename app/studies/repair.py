@@ -33,7 +33,7 @@ class _Repeated(Run):
     """A study that is repeated for the chunks that it has lost."""
 
     def chunks(self, until: int | None = None) -> list[StudyChunkRow]:
-        """The chunks that are there; of a search those before the first that is lost."""
+        """Return the chunks that are there; of a search those before the first that is lost."""
         kept = []
         for chunk in super().chunks(until):
             if self.services.store.exists(chunk.sha256):
@@ -96,7 +96,10 @@ class ChunkRepair:
             pass
 
     def lost(self, id: str) -> Exception:
-        """The error to raise when rows of a study are lost: where they are calculated again, or why not."""
+        """Return the error to raise when rows of a study are lost.
+
+        Where they are calculated again, or why not.
+        """
         with self._lock:
             if refused := self._refused.get(id):
                 return refused

@@ -53,7 +53,7 @@ def add(session: Session, new: New) -> StudyRow:
 
 
 def get(session: Session, id: str) -> StudyRow:
-    """A study.
+    """Return a study.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def get(session: Session, id: str) -> StudyRow:
 
 
 def page(session: Session, limit: int, before: str | None, design: str | None) -> list[StudyRow]:
-    """One page of studies, newest first, and one more if there are more."""
+    """Return one page of studies, newest first, and one more if there are more."""
     query = select(StudyRow).order_by(StudyRow.id.desc()).limit(limit + 1)
     if design is not None:
         query = query.where(StudyRow.design_id == design)
@@ -75,13 +75,13 @@ def page(session: Session, limit: int, before: str | None, design: str | None) -
 
 
 def chunks(session: Session, id: str) -> list[StudyChunkRow]:
-    """The chunks of a study that were calculated, in their order."""
+    """Return the chunks of a study that were calculated, in their order."""
     query = select(StudyChunkRow).where(StudyChunkRow.study_id == id).order_by(StudyChunkRow.number)
     return list(session.scalars(query))
 
 
 def done(session: Session, id: str, until: int | None = None) -> Progress:
-    """The progress of a study, counting chunks with a number below `until`."""
+    """Return the progress of a study, counting chunks with a number below `until`."""
     which = [StudyChunkRow.study_id == id]
     if until is not None:
         which.append(StudyChunkRow.number < until)
@@ -132,5 +132,5 @@ def remove(session: Session, id: str) -> None:
 
 
 def _locked(session: Session, id: str) -> StudyRow | None:
-    """A study as it is now; no other unit changes it before the end of this one."""
+    """Return a study as it is now; no other unit changes it before the end of this one."""
     return session.get(StudyRow, id, with_for_update=True, populate_existing=True)

@@ -41,7 +41,7 @@ class Stored:
         self.count: int = starts[-1]
 
     def archive(self, part: Part) -> Archive:
-        """The arrays of a chunk; raises ArtifactMissing, ArtifactDamaged."""
+        """Return the arrays of a chunk; raises ArtifactMissing, ArtifactDamaged."""
         return Archive(self._store.open(part.sha).file)
 
     def verify(self) -> None:
@@ -50,15 +50,18 @@ class Stored:
             self._store.open(part.sha).file.close()
 
     def values(self, name: str) -> Array:
-        """A column of numbers [SI], NaN where a chunk has none."""
+        """Return a column of numbers [SI], NaN where a chunk has none."""
         return np.concatenate([np.empty(0), *self._each(name, np.nan)]).astype(np.float64)
 
     def codes(self, criterion: str) -> AnyArray:
-        """The verdicts on a criterion, as places in `WORST_FIRST`."""
+        """Return the verdicts on a criterion, as places in `WORST_FIRST`."""
         return np.concatenate([np.empty(0, np.int8), *self._each(f"{VERDICT}{criterion}", NOT_CHECKED)])
 
     def worst(self, criteria: Sequence[str]) -> AnyArray:
-        """The worst verdict of each row on these criteria; met, if there are none and the row has values."""
+        """Return the worst verdict of each row on these criteria.
+
+        Met, if there are none and the row has values.
+        """
         worst = np.where(self.is_refused, NOT_CHECKED, MET).astype(np.int8)
         for criterion in criteria:
             worst = np.minimum(worst, self.codes(criterion))
@@ -66,12 +69,12 @@ class Stored:
 
     @cached_property
     def is_refused(self) -> Mask:
-        """Which rows have a reason instead of values."""
+        """Return which rows have a reason instead of values."""
         reasons = [reason.astype(np.int32) for reason in self._each("reason", -1)]
         return np.concatenate([np.empty(0, np.int32), *reasons]) >= 0
 
     def rows(self, names: Sequence[str], numbers: Integers) -> Array:
-        """Some rows of some columns [SI], shape (len(numbers), len(names))."""
+        """Return some rows of some columns [SI], shape (len(numbers), len(names))."""
         columns = [self.values(name)[numbers] for name in names]
         return np.stack(columns, axis=-1) if columns else np.empty((len(numbers), 0))
 

@@ -84,7 +84,7 @@ class Resolved:
 def measures_of_rows(
     net: Net, body: StudyIn, outputs: Collection[Reference], measured: Collection[Reference]
 ) -> list[Reference]:
-    """The measures that a study needs and that differ from row to row, or are not `known`.
+    """Return the measures that a study needs and that differ from row to row, or are not `known`.
 
     Only what the study names counts: its outputs and objectives, and the criteria of `hold`.
     """
@@ -98,7 +98,7 @@ def measures_of_rows(
 
 
 def iterated(document: Document, measures: Sequence[Reference]) -> Iterator[Fault]:
-    """A fault if a design iterates: each row would need several solids, one after another."""
+    """Yield a fault if a design iterates: each row would need several solids, one after another."""
     if document.iterations and measures:
         through = document.iterations[0].through
         detail = f"the design iterates through {through}; a study builds no solid for a row of such a design"
@@ -106,7 +106,10 @@ def iterated(document: Document, measures: Sequence[Reference]) -> Iterator[Faul
 
 
 def tables_among(measures: Sequence[Reference]) -> Iterator[Fault]:
-    """A fault for each table of an analysis on which a study depends: a row has single values of solids."""
+    """Yield a fault for each table of an analysis on which a study depends.
+
+    A row has single values of solids.
+    """
     for reference in filter(is_table, measures):
         what = {1: "list", 2: "table"}[axes_of(reference)]
         detail = (
@@ -124,26 +127,26 @@ class RowSolids:
 
     @cached_property
     def models(self) -> list[Block]:
-        """The models that are built, in the order in which they follow from each other."""
+        """Return the models that are built, in the order in which they follow from each other."""
         names = {reference.block for reference in self.measures}
         return [node for node in self.net.graph.order if isinstance(node, Block) and node.name in names]
 
     def measures_of(self, model: str) -> list[Reference]:
-        """The references to measures of a model."""
+        """Return the references to measures of a model."""
         return [reference for reference in self.measures if reference.block == model]
 
     def drivers(self, model: Block) -> list[Reference]:
-        """The places that rows vary and from which the parameters of a model follow."""
+        """Return the places that rows vary and from which the parameters of a model follow."""
         places = self.net.varied - set(self.measures)
         return sorted((p for p in places if model in varying(self.net.graph, [p])), key=str)
 
     @property
     def analysed(self) -> set[str]:
-        """The models of which analyses by finite elements are needed."""
+        """Return the models of which analyses by finite elements are needed."""
         return {reference.block for reference in self.measures if reference.analysis is not None}
 
     def resolved(self, rows: Rows, count: int, levels: Levels | None, solids: Solids) -> Resolved:
-        """The measures of rows, as far as their solids are known."""
+        """Return the measures of rows, as far as their solids are known."""
         empty = {reference: np.full(count, np.nan) for reference in self.measures}
         result = Resolved(empty, np.zeros(count, dtype=bool))
         by_texts = {(solid.model, solid.texts): solid for solid in solids}
@@ -186,7 +189,7 @@ class RowSolids:
                     result.columns[Reference.parse(f"{model.name}.{name}")][numbers] = value
 
     def _solid(self, model: Block, values: Mapping[str, float | list[float]]) -> Texts | Refusal:
-        """The parameters of a solid as text, or what is wrong with them."""
+        """Return the parameters of a solid as text, or what is wrong with them."""
         words = {n: _word(cell.raw) for n, cell in model.cells.items() if n not in values}
         try:
             shape = model.cls.from_si({**words, **values})
@@ -197,13 +200,13 @@ class RowSolids:
 
 
 def _side_by_side(columns: Sequence[Array], count: int) -> Array:
-    """One row of numbers for each row; a list of k items takes k columns."""
+    """Return one row of numbers for each row; a list of k items takes k columns."""
     parts = [np.reshape(column, (count, -1)) for column in columns]
     return np.concatenate(parts, axis=1) if parts else np.empty((count, 0))
 
 
 def _apart(values: Array, columns: Sequence[Array]) -> list[float | list[float]]:
-    """One row of numbers as the values of its columns again: numbers and lists."""
+    """Return one row of numbers as the values of its columns again: numbers and lists."""
     ends = np.cumsum([column[0].size for column in columns])
     parts = np.split(values, ends[:-1]) if columns else []
     return [

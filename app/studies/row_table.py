@@ -21,7 +21,7 @@ Rows = Mapping[str, Raw] | Sequence[Mapping[str, Raw]]
 
 
 def columns_named(rows: Rows | None) -> list[str]:
-    """The places that the rows set, in their order.
+    """Return the places that the rows set, in their order.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def _uneven(number: int, row: Mapping[str, Raw], first: Mapping[str, Raw]) -> Fa
 
 
 def given_rows(rows: Rows, net: Net) -> Array:
-    """The values [SI] of the rows, shape (N, d).
+    """Return the values [SI] of the rows, shape (N, d).
 
     Raises
     ------
@@ -73,7 +73,7 @@ def given_rows(rows: Rows, net: Net) -> Array:
 
 
 def _column(name: str, raw: Raw, unit: str, faults: list[Fault]) -> Array:
-    """A column [SI]; what is wrong with it is added to the faults, and the column is empty then."""
+    """Return a column [SI]; what is wrong with it is added to the faults, and the column is empty then."""
     try:
         value = read(raw, unit).si
     except FaultyText as error:
@@ -87,7 +87,7 @@ def _column(name: str, raw: Raw, unit: str, faults: list[Fault]) -> Array:
 
 
 def _cells(name: str, rows: Sequence[Mapping[str, Raw]], unit: str, faults: list[Fault]) -> Array:
-    """The cells of a column [SI]; what is wrong with them is added to the faults."""
+    """Return the cells of a column [SI]; what is wrong with them is added to the faults."""
     column = np.full(len(rows), np.nan)
     for number, row in enumerate(rows):
         try:

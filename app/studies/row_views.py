@@ -16,7 +16,10 @@ from templates.core.units.units import unit
 
 
 def rows_found(run: Run, stored: Stored, numbers: Integers, *, confirmed: bool) -> list[Best]:
-    """Rows as a result shows them; `confirmed` says whether they were calculated again at finer levels."""
+    """Return rows as a result shows them.
+
+    `confirmed` says whether they were calculated again at finer levels.
+    """
     plan = run.plan
     places = stored.rows([f"{PLACE}{name}" for name in plan.places], numbers)
     outputs = stored.rows([f"{OUTPUT}{name}" for name in plan.outputs], numbers)
@@ -44,7 +47,7 @@ def _verdicts(codes: Mapping[str, int]) -> dict[str, object]:
 def quantities(
     units: Mapping[str, str], names: Sequence[str], values: Sequence[float]
 ) -> dict[str, Quantity]:
-    """Values [SI] as quantities in their units; those that do not exist are left out."""
+    """Return values [SI] as quantities in their units; those that do not exist are left out."""
     pairs = ((name, value) for name, value in zip(names, values, strict=True) if np.isfinite(value))
     return {
         name: Quantity(value=float(unit(units[name]).from_si(value)), unit=units[name])

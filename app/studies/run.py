@@ -98,17 +98,17 @@ class Run:
 
     @property
     def criteria(self) -> tuple[str, ...]:
-        """The criteria that are judged."""
+        """Return the criteria that are judged."""
         return tuple(self.plan.criteria)
 
     def chunks(self, until: int | None = None) -> list[StudyChunkRow]:
-        """The chunks that were calculated, with numbers below `until`."""
+        """Return the chunks that were calculated, with numbers below `until`."""
         with self.services.database.read() as session:
             chunks = repository.chunks(session, self.row.id)
         return chunks if until is None else [chunk for chunk in chunks if chunk.number < until]
 
     def stored(self, until: int | None = None) -> Stored:
-        """The rows of these chunks."""
+        """Return the rows of these chunks."""
         return Stored(self.services.store, self.chunks(until))
 
     def submit(self, function: Callable[..., object], *args: object) -> Calculation:
@@ -116,7 +116,7 @@ class Run:
         return self.services.pool.submit(f"study:{self.row.id}", function, *args, lane="jobs")
 
     def result_of(self, calculation: Calculation) -> object:
-        """The result of a calculation; raises JobCancelled once the study is cancelled."""
+        """Return the result of a calculation; raises JobCancelled once the study is cancelled."""
         while not wait([calculation.future], GLANCE).done:
             if self.context.is_cancelled:
                 self.services.pool.cancel(calculation)
@@ -241,7 +241,7 @@ class Run:
         return time.monotonic() - self._since > SHIFT and self.services.jobs.others_wait(STUDY)
 
     def _given(self) -> Array | None:
-        """The rows that the user of a table gave [SI]."""
+        """Return the rows that the user of a table gave [SI]."""
         if self.row.table_sha256 is None:
             return None
         try:
@@ -290,7 +290,7 @@ class Studying:
         return completion
 
     def _concluded(self, id: str, job: Job, context: JobContext) -> StudyResult:
-        """The result; chunks that are found lost or damaged meanwhile are calculated again first."""
+        """Return the result; chunks that are found lost or damaged meanwhile are calculated again first."""
         for _ in range(MOST_HEALED):
             try:
                 return self._conclude(run_of(self.services, id, job, context, Run))
@@ -307,7 +307,7 @@ class Studying:
 
 
 def run_of(services: StudyServices, id: str, job: Job, context: JobContext, kind: type[R]) -> R:
-    """A study from its row, for a job to work on."""
+    """Return a study from its row, for a job to work on."""
     with services.database.read() as session:
         row = repository.get(session, id)
         whole = designs.document(session, row.design_id, row.revision)

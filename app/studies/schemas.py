@@ -77,7 +77,7 @@ class StudyRows(Units, Page[StudyRow]):
     count: int | None = Field(None, description="of all rows that fit the filter, where it was counted")
 
     def in_units(self, system: System) -> Self:
-        """The rows in a system of units."""
+        """Return the rows in a system of units."""
         if system == "si":
             return self
         items = [self._converted(row, system) for row in self.items]
@@ -171,7 +171,7 @@ class Study(Units):
     changed: str
 
     def in_units(self, system: System) -> Self:
-        """The study in a system of units."""
+        """Return the study in a system of units."""
         if system == "si":
             return self
         converted = super().in_units(system)

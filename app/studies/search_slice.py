@@ -137,7 +137,7 @@ def _compared(
 
 
 def _alone(problem: Problem, book: _Book, level: int, seed: int) -> list[Promised]:
-    """The result of one level by itself, confirmed once; nothing of a level that lacks a result."""
+    """Return the result of one level by itself, confirmed once; nothing of a level that lacks a result."""
     answer, confirm = book.answer(level), book.answer(CONFIRM)
     try:
         if len(problem.objectives) > 1:
@@ -174,7 +174,7 @@ class _Journal:
     changed: set[str]
 
     def stored(self, name: str) -> Stage | None:
-        """The stage of a name, as it was kept last."""
+        """Return the stage of a name, as it was kept last."""
         return self.stages.get(f"{self.level}: {name}")
 
     def keep(self, name: str, stage: Stage) -> None:
@@ -202,11 +202,11 @@ class _Book:
                 self._remember(call)
 
     def journal(self, level: int) -> _Journal:
-        """The stages of the search at a level."""
+        """Return the stages of the search at a level."""
         return _Journal(level, self._stages, self._changed)
 
     def answer(self, level: int) -> Answer:
-        """The results at a level, from what is stored or by calculating."""
+        """Return the results at a level, from what is stored or by calculating."""
         same = next(n for n, levels in enumerate(self._levels) if levels == self._levels[level])
 
         def answered(rows: Array) -> Columns:
@@ -219,7 +219,7 @@ class _Book:
         return answered
 
     def chunk(self) -> Chunk | None:
-        """The new answers as a chunk; None if there are none."""
+        """Return the new answers as a chunk; None if there are none."""
         if not self._new:
             return None
         names = sorted({name for call in self._new for name in call.arrays})
@@ -241,7 +241,7 @@ class _Book:
         return Chunk(packed(arrays, about), len(arrays["reason"]), refused)
 
     def _calculated(self, level: int, rows: Array) -> _Call:
-        """New rows at a level.
+        """Return new rows at a level.
 
         Raises
         ------
@@ -288,12 +288,12 @@ class _Book:
 
 
 def _array(call: _Call, name: str) -> AnyArray:
-    """An array of a call; NaN where it has none, such as an error that its level does not state."""
+    """Return an array of a call; NaN where it has none, such as an error that its level does not state."""
     return call.arrays[name] if name in call.arrays else np.full(call.count, np.nan)
 
 
 def _read(pieces: Pieces) -> tuple[list[_Call], dict[str, Stage]]:
-    """The calls whose answers a chunk holds, in their order, and the stages as they stood at its end."""
+    """Return the calls whose answers a chunk holds, in their order, and the stages at its end."""
     with Archive(pieces.joined()) as archive:
         arrays, about = {name: archive[name] for name in archive.names}, archive.about()
     calls, start = [], 0
@@ -305,7 +305,7 @@ def _read(pieces: Pieces) -> tuple[list[_Call], dict[str, Stage]]:
 
 
 def _plain(stage: Stage) -> JsonObject:
-    """A stage as JSON, whose numbers keep all their digits."""
+    """Return a stage as JSON, whose numbers keep all their digits."""
     return {**vars(stage), "arrays": [array.tolist() for array in stage.arrays]}
 
 

@@ -34,7 +34,7 @@ class Shares:
 
 
 def sensitivities(task: Task, columns: Mapping[str, Array]) -> Shares:
-    """The sensitivities of outputs from their values [SI] at all rows.
+    """Return the sensitivities of outputs from their values [SI] at all rows.
 
     Raises
     ------
@@ -89,13 +89,13 @@ def _indices(
 
 
 def _difference(declared: str) -> Callable[[float], Quantity]:
-    """Shows a change [SI] of something declared in a unit."""
+    """Return a change [SI] of something declared in a unit."""
     factor, name = unit(declared).factor, difference(declared)
     return lambda change: Quantity(value=change / factor, unit=name)
 
 
 def _present(**values: Quantity | float | None) -> Index:
-    """An index without the numbers that do not exist."""
+    """Return an index without the numbers that do not exist."""
     there = {n: v for n, v in values.items() if v is not None}
     finite = {n: v for n, v in there.items() if not isinstance(v, float) or math.isfinite(v)}
     return Index.model_validate(finite)

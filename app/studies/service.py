@@ -80,7 +80,7 @@ class Studies:
         self._lost = lost
 
     def begun_before(self, once: Once) -> str | None:
-        """The study that this very request has begun before."""
+        """Return the study that this very request has begun before."""
         if not once.key:
             return None
         with self.database.read() as session:
@@ -88,7 +88,7 @@ class Studies:
         return _study(before) if before else None
 
     def draft(self, body: StudyIn) -> Draft:
-        """A study of a revision, as a process can plan it.
+        """Return a study of a revision, as a process can plan it.
 
         Raises
         ------
@@ -109,13 +109,13 @@ class Studies:
         return Draft(body.design, number, plain, body.rows, task, seconds)
 
     def places(self, design: str, revision: int | None) -> Units:
-        """Every place that the rows of a study may set, with its unit; raises NotFound."""
+        """Return every place that the rows of a study may set, with its unit; raises NotFound."""
         _, document = self._revision(design, revision)
         graph, _ = build_graph(Document.model_validate(document), self.catalogues)
         return units_of(graph)
 
     def _revision(self, design: str, revision: int | None) -> tuple[int, JsonObject]:
-        """The number and the document of a revision, the newest if none is named; raises NotFound."""
+        """Return the number and the document of a revision, the newest if none is named; raises NotFound."""
         with self.database.read() as session:
             number = designs.design(session, design).head if revision is None else revision
             return number, designs.document(session, design, number)
@@ -151,7 +151,9 @@ class Studies:
         return id
 
     def choose(self, id: str, row: int, note: str | None, expected: str | None, once: Once) -> Saved:
-        """A new revision of the design with the values of a row; its note names the relations they replace.
+        """Return a new revision of the design with the values of a row.
+
+        Its note names the relations they replace.
 
         Raises
         ------
@@ -173,7 +175,7 @@ class Studies:
         return self.designs.change(study.design_id, patch, said, expected, once)
 
     def values(self, study: StudyRow, number: int) -> dict[str, float]:
-        """The values [SI] of the places in a row that was calculated; raises InvalidInputs."""
+        """Return the values [SI] of the places in a row that was calculated; raises InvalidInputs."""
         with self.database.read() as session:
             stored = Stored(self.store, repository.chunks(session, study.id))
         part = next((p for p in stored.parts if p.first <= number < p.first + p.count), None)
@@ -233,7 +235,7 @@ def _remove(session: Session, id: str) -> None:
 
 
 def patch_of(document: JsonObject, units: Mapping[str, str], values: Mapping[str, float]) -> JsonObject:
-    """A merge patch that gives places of a document their values [SI], in these units."""
+    """Return a merge patch that gives places of a document their values [SI], in these units."""
     patch: JsonObject = {}
     for name, value in values.items():
         quantity = {"value": float(unit(units[name]).from_si(value)), "unit": units[name]}
@@ -252,7 +254,7 @@ def _study(location: JsonObject) -> str:
 
 
 def measured_in(designs: Designs, document: JsonObject) -> dict[str, float]:
-    """The measures [SI] that relations of a document use, as far as they are known."""
+    """Return the measures [SI] that relations of a document use, as far as they are known."""
     if not document.get("models"):
         return {}
     calculation = designs.prepare(document)[1]
@@ -261,7 +263,7 @@ def measured_in(designs: Designs, document: JsonObject) -> dict[str, float]:
 
 
 def _used(calculation: Calculation) -> set[Reference]:
-    """The measures and results of analyses that relations name, but for tables."""
+    """Return the measures and results of analyses that relations name, but for tables."""
     blocks = calculation.graph.blocks
     used = {reference for cell in calculation.graph.cells() for reference in cell.uses.values()}
     models = {

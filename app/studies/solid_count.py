@@ -34,7 +34,7 @@ class Needed:
 
 
 def counted(ready: Prepared, count: int, given: Array | None, levels: Levels, seconds: float) -> Needed:
-    """The solids that the rows of a study need; to build one takes so long [s].
+    """Return the solids that the rows of a study need; to build one takes so long [s].
 
     Raises
     ------
@@ -58,7 +58,7 @@ def counted(ready: Prepared, count: int, given: Array | None, levels: Levels, se
 
 
 def _refused(ready: Prepared, rows: int, solids: int, seconds: float, why: str) -> Iterator[Fault]:
-    """A fault for each measure, which names the chain from what varies."""
+    """Yield a fault for each measure, which names the chain from what varies."""
     graph, measures = ready.net.graph, ready.solids.measures
     hours = f"about {solids * seconds / HOUR:.2g} h at {seconds:.2g} s each, as jobs have taken lately"
     for fault in solids_in_the_way(graph, measures, ready.net.design.moving):
@@ -84,7 +84,7 @@ def _is_affordable(ready: Prepared, model: Block, count: int, levels: Levels) ->
 
 
 def _distinct(ready: Prepared, places: Sequence[int], count: int, given: Array | None) -> Array:
-    """The first row of each distinct set of values of some places; not all, if there are too many."""
+    """Return the first row of each distinct set of values of some places; not all, if there are too many."""
     chosen: Array = np.empty((0, len(ready.asked.places)))
     for first in range(0, count, AT_ONCE):
         last = min(first + AT_ONCE, count)

@@ -58,7 +58,7 @@ class SolidMaking:
         self._turns = threading.BoundedSemaphore(most)
 
     def of(self, document: Document, catalogues: Catalogues, context: JobContext) -> StudySolids:
-        """The solids of one study."""
+        """Return the solids of one study."""
         return StudySolids(self, document, catalogues, context)
 
     @contextmanager
@@ -92,7 +92,7 @@ class StudySolids:
 
     @property
     def measured(self) -> Solids:
-        """The measures so far."""
+        """Return the measures so far."""
         return tuple(self._measures.values())
 
     def is_known(self, wanting: Wanting) -> bool:
@@ -112,7 +112,7 @@ class StudySolids:
         return Measured(wanting.model, wanting.texts, measures)
 
     def _measured(self, wanting: Wanting) -> dict[str, float]:
-        """The measures of a solid [SI], by their names within its model."""
+        """Return the measures of a solid [SI], by their names within its model."""
         model = self.document.models[wanting.model]
         assert isinstance(model.version, int), "a revision pins every version"
         shape = self.catalogues.models.get(model.id, model.version).from_quantities(dict(wanting.texts))
@@ -140,7 +140,7 @@ class StudySolids:
                 return
 
     def _analysed(self, wanting: Wanting, shape: CadModel, runner: Runner) -> dict[str, float]:
-        """The results of finite elements on a solid [SI]."""
+        """Return the results of finite elements on a solid [SI]."""
         references = [Reference.parse(f"{wanting.model}.{name}") for name in wanting.measures]
         values: dict[str, float] = {}
         for kind in dict.fromkeys(r.analysis for r in references if r.analysis is not None):
@@ -159,7 +159,7 @@ class StudySolids:
         return values
 
     def _questions(self) -> Graph:
-        """The network of the design, which knows how its models are analysed."""
+        """Return the network of the design, which knows how its models are analysed."""
         if self._graph is None:
             self._graph, faults = build_graph(self.document, self.catalogues)
             raise_if(faults)
@@ -167,7 +167,7 @@ class StudySolids:
 
 
 def _refusal(model: str, error: Exception) -> Refusal:
-    """Why the rows that have a solid are refused."""
+    """Return why the rows that have a solid are refused."""
     if isinstance(error, InvalidInputs):
         return refusal_of([fault.within(model) for fault in error.faults])
     code = CODES.get(type(error)) or getattr(error, "code", "failed")

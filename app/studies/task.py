@@ -40,7 +40,7 @@ class Task:
         measured: Mapping[str, float],
         catalogues: Catalogues,
     ) -> Task:
-        """The task of a body, without the rows of a table, and a revision's document.
+        """Return the task of a body, without the rows of a table, and a revision's document.
 
         Raises
         ------
@@ -74,7 +74,7 @@ class Prepared:
 
 
 def prepared(task: Task) -> Prepared:
-    """The design of a task as a function of rows, and what is asked of it.
+    """Return the design of a task as a function of rows, and what is asked of it.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def prepared(task: Task) -> Prepared:
 
 
 def read_body(body: str) -> StudyIn:
-    """A body that was checked when it came."""
+    """Return a body that was checked when it came."""
     return StudyIn.model_validate(from_json(body))
 
 
@@ -117,7 +117,10 @@ def _net(
     measured: Mapping[Reference, float],
     aside: Sequence[Reference],
 ) -> Net:
-    """The design with rows; where a relation is refused, the refusal names the remedy of a study too."""
+    """Return the design with rows.
+
+    Where a relation is refused, the refusal names the remedy of a study too.
+    """
     try:
         return Net.of(document, catalogues, varied, measured=measured, pending=True, set_aside=aside)
     except InvalidInputs as error:

@@ -31,7 +31,7 @@ DAMAGED = "this file cannot be read as XLSX; save it again in a spreadsheet, or 
 
 
 def read_rows(content: Pieces, kind: FileKind, places: Places) -> Mapping[str, Raw]:
-    """The columns of a file by name, each with its numbers and its unit.
+    """Return the columns of a file by name, each with its numbers and its unit.
 
     Raises
     ------
@@ -59,7 +59,7 @@ class _Headings:
         self._places, self._seen = places, set[str]()
 
     def fault(self, name: str, given: str) -> Fault | None:
-        """The fault of a column: of its name, or of its unit, which is empty where it has none."""
+        """Return the fault of a column: of its name, or of its unit, which is empty where it has none."""
         if name in self._seen:
             return Fault(name, "twice", f"{excerpt(name)} names two columns; keep one of them")
         self._seen.add(name)
@@ -85,7 +85,7 @@ def _of_csv(content: bytes) -> str:
 
 
 def _of_xlsx(content: bytes) -> str:
-    """The first visible sheet as text, a row a line, its cells separated by tabs."""
+    """Return the first visible sheet as text, a row a line, its cells separated by tabs."""
     from openpyxl import load_workbook  # type: ignore[import-untyped]
 
     _check_size(content)

@@ -10,7 +10,7 @@ from templates.core.errors import Fault, InvalidInputs, excerpt, listed
 
 
 def document_of(document: JsonObject, variant: str | None) -> JsonObject:
-    """The document as a variant has it, without variants of its own; itself for the design.
+    """Return the document as a variant has it, without variants of its own; itself for the design.
 
     Raises
     ------
@@ -33,7 +33,7 @@ def _unknown(variant: str, names: list[str]) -> str:
 
 
 def within(patch: JsonObject, variant: str | None) -> JsonObject:
-    """A merge patch of parameters, inputs and model parameters, as a patch of a variant."""
+    """Return a merge patch of parameters, inputs and model parameters, as a patch of a variant."""
     if variant is None or variant == BASE:
         return patch
     values = dict(patch.get("parameters", {}))

@@ -30,7 +30,7 @@ class Building:
         self._services, self._designs = services, service
 
     def built(self, run: Run, body: StudyIn, result: StudyResult) -> StudyResult:
-        """The result with the design whose variants are the rows to build, if there are any."""
+        """Return the result with the design whose variants are the rows to build, if there are any."""
         rows = rows_to_build(body, result, run.plan.rows)
         if not rows:
             return result
@@ -48,7 +48,7 @@ class Building:
 
 
 def rows_to_build(body: StudyIn, result: StudyResult, count: int) -> dict[str, int]:
-    """The rows that become variants, by the names of these."""
+    """Return the rows that become variants, by the names of these."""
     match body.build:
         case "none":
             return {}
@@ -63,7 +63,7 @@ def rows_to_build(body: StudyIn, result: StudyResult, count: int) -> dict[str, i
 
 
 def _variants(run: Run, document: JsonObject, rows: Mapping[str, int]) -> JsonObject:
-    """The name of the new design, and its variants."""
+    """Return the name of the new design, and its variants."""
     numbers = np.array(list(rows.values()))
     values = run.stored().rows([f"{PLACE}{name}" for name in run.plan.places], numbers)
     scales = [unit(run.plan.units[name]) for name in run.plan.places]

@@ -29,7 +29,7 @@ Where = Literal["met", "not_met", "undecided", "not_checked", "refused"]
 
 
 def study(session: Session, row: Row) -> Study:
-    """A study as it stands."""
+    """Return a study as it stands."""
     plan = Plan.of(row.plan)
     progress = repository.done(session, row.id, plan.chunks)
     frequent = sorted(progress.refused.items(), key=lambda pair: (-pair[1], pair[0]))[:MOST_REASONS]
@@ -67,7 +67,7 @@ def study(session: Session, row: Row) -> Study:
 
 
 def estimate(plan: Plan) -> StudyEstimate:
-    """The estimate of a study that is not begun."""
+    """Return the estimate of a study that is not begun."""
     return StudyEstimate(
         rows=plan.rows,
         criteria=plan.required,
@@ -79,7 +79,7 @@ def estimate(plan: Plan) -> StudyEstimate:
 
 
 def _named(levels: Mapping[str, str | None]) -> dict[str, str]:
-    """The levels of the steps that have any."""
+    """Return the levels of the steps that have any."""
     return {step: level for step, level in levels.items() if level is not None}
 
 
@@ -113,11 +113,11 @@ class Listing:
 
     @property
     def units(self) -> dict[str, str]:
-        """The unit of each column."""
+        """Return the unit of each column."""
         return {name: self.plan.units[name] for name in self.names}
 
     def numbers(self) -> Integers:
-        """The rows that fit, in their order."""
+        """Return the rows that fit, in their order."""
         numbers = np.arange(self.stored.count)
         if self.wanted.where is not None:
             numbers = np.flatnonzero(self._fits())
@@ -128,7 +128,7 @@ class Listing:
         return numbers
 
     def page(self, limit: int, start: int, system: System = "si") -> StudyRows:
-        """A page of rows that begins with one of those that fit."""
+        """Return a page of rows that begins with one of those that fit."""
         numbers = self.numbers()
         following = str(start + limit) if start + limit < len(numbers) else None
         items = self.rows(numbers[start : start + limit])
@@ -136,7 +136,7 @@ class Listing:
         return page.in_units(system)
 
     def rows(self, numbers: Integers) -> list[StudyRow]:
-        """Some rows, in this order."""
+        """Return some rows, in this order."""
         shown: dict[int, StudyRow] = {}
         for part in self.stored.parts:
             inside = numbers[(numbers >= part.first) & (numbers < part.first + part.count)]
@@ -146,11 +146,11 @@ class Listing:
         return [shown[number] for number in numbers.tolist()]
 
     def column(self, name: str) -> Array:
-        """A column of all rows, in its unit."""
+        """Return a column of all rows, in its unit."""
         return self._in_unit(name, self.stored.values(self._array(name)))
 
     def _in_unit(self, name: str, values: AnyArray) -> Array:
-        """Values [SI] in the unit of a column."""
+        """Return values [SI] in the unit of a column."""
         return np.asarray(unit(self.plan.units[name]).from_si(values.astype(np.float64)))
 
     def _of_part(self, archive: Archive, part: Part, numbers: Integers) -> dict[int, StudyRow]:
@@ -204,5 +204,5 @@ def _finite(value: float) -> float | None:
 
 
 def start_of(cursor: str | None) -> int:
-    """The place in a list at which a page begins."""
+    """Return the place in a list at which a page begins."""
     return int(cursor) if cursor and cursor.isdecimal() and len(cursor) < 9 else 0

@@ -78,7 +78,7 @@ class Analysis:
 
     @classmethod
     def of(cls, document: Document, catalogues: Catalogues, question: Question) -> Analysis:
-        """The analysis of a design.
+        """Return the analysis of a design.
 
         Raises
         ------
@@ -99,17 +99,17 @@ class Analysis:
 
     @cached_property
     def factors(self) -> list[Factor]:
-        """The toleranced values as random numbers."""
+        """Return the toleranced values as random numbers."""
         return [one.factor for one in self.varied]
 
     @property
     def levels(self) -> dict[str, str]:
-        """The level of each step that has any."""
+        """Return the level of each step that has any."""
         return {step: level for step, level in self._levels.items() if level is not None}
 
     @property
     def base(self) -> int:
-        """Rows of each sample for the shares."""
+        """Return rows of each sample for the shares."""
         return (self.question.points or USUAL_POINTS) // SCRAMBLINGS
 
     def carried_out(self) -> Findings:
@@ -134,7 +134,7 @@ class Analysis:
         return Findings(nominal, ends, spread, causes, self._errors)
 
     def _nominal(self) -> Table:
-        """The values of the design itself, at the levels that all rows have from here on."""
+        """Return the values of the design itself, at the levels that all rows have from here on."""
         self._levels = dict(self.question.levels)
         row = np.array([[factor.nominal for factor in self.factors]])
         table = self._table(row, judge=True)
@@ -155,7 +155,7 @@ class Analysis:
         return Rows(_stacked(table, self.outputs), table.verdicts, margins)
 
     def _table(self, rows: Array, *, judge: bool = False) -> Table:
-        """The outputs, and with `judge` the verdicts, of rows of factors."""
+        """Return the outputs, and with `judge` the verdicts, of rows of factors."""
         given = {one.reference: rows[:, column] for column, one in enumerate(self.varied)}
         criteria = list(self.demands) if judge else []
         table = self.net(given, self.outputs, levels=self._levels, judge=judge, criteria=criteria)
@@ -175,7 +175,10 @@ class Analysis:
         )
 
     def _most_points(self) -> int | None:
-        """Up to how many products are sampled where yields need them; None if their number was given."""
+        """Return the largest number of products to sample where yields need them.
+
+        None if their number was given.
+        """
         if self.question.points is not None:
             return None
         self._levels = dict(self.question.levels)
@@ -199,7 +202,7 @@ class Analysis:
 
 
 def _stacked(table: Table, outputs: Sequence[Reference]) -> Array:
-    """Columns side by side, of the shape (rows, outputs)."""
+    """Return columns side by side, of the shape (rows, outputs)."""
     return np.stack([table.columns[output] for output in outputs], axis=1)
 
 
@@ -240,7 +243,7 @@ def _is_quantity(graph: Graph, reference: Reference) -> bool:
 
 
 def _outputs(graph: Graph, question: Question, demands: Mapping[str, Demanded]) -> list[Reference]:
-    """The outputs asked for; else those that criteria hold against limits; else all of the steps."""
+    """Return the outputs asked for; else those that criteria hold against limits; else all of the steps."""
     if question.outputs is not None:
         return [Reference.parse(name) for name in dict.fromkeys(question.outputs)]
     subjects = [demand.alone for demand in demands.values() if demand.alone is not None]

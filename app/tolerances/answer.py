@@ -27,7 +27,7 @@ STEADY = "no tolerance changes it"
 
 
 def answer(analysis: Analysis, findings: Findings, revision: int) -> answers.ToleranceAnalysis:
-    """The whole answer."""
+    """Return the whole answer."""
     return _Answering(analysis, findings).whole(revision)
 
 
@@ -75,7 +75,7 @@ class _Answering:
         return answers.Toleranced.model_validate(parts)
 
     def _quantity(self, place: int, si: float) -> Quantity:
-        """A toleranced value in the unit in which it was typed."""
+        """Return a toleranced value in the unit in which it was typed."""
         scale = unit(self.analysis.varied[place].typed.unit)
         return Quantity(value=_short(scale.from_si(si)), unit=scale.text)
 
@@ -118,7 +118,7 @@ class _Answering:
         return answers.OutputScatter.model_validate(given)
 
     def _criteria_of(self, reference: Reference) -> list[str]:
-        """The criteria that hold an output against a limit."""
+        """Return the criteria that hold an output against a limit."""
         return [name for name, demand in self.analysis.demands.items() if reference in demand.judged]
 
     def _worst(self, column: int, scale: Unit) -> answers.Worst | None:
@@ -165,7 +165,7 @@ class _Answering:
         return answers.Yield.model_validate({n: part for n, part in parts.items() if part is not None})
 
     def _limit(self, name: str, demand: Demanded) -> float | None:
-        """The limit [SI], where it is one for all products."""
+        """Return the limit [SI], where it is one for all products."""
         if not demand.has_one_limit:
             return None
         limit = float(self.findings.nominal.judged[name].limit[0])
@@ -205,7 +205,7 @@ def _needed(one: Yield, points: int) -> int | None:
 
 
 def analysed(task: DesignTask, revision: int, body: str) -> ToleranceAnalysis:
-    """The whole answer to a body [JSON text] about a revision, in SI units.
+    """Return the whole answer to a body [JSON text] about a revision, in SI units.
 
     Raises
     ------

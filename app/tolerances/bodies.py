@@ -16,7 +16,7 @@ Named = Annotated[str, StringConstraints(pattern=NAME)]
 
 
 def _whole(raw: object) -> object:
-    """A number without a fraction as an integer, as JSON Schema takes it: 1024.0 is one."""
+    """Return a number without a fraction as an integer, as JSON Schema takes it: 1024.0 is one."""
     return int(raw) if isinstance(raw, float) and raw.is_integer() else raw
 
 
@@ -53,7 +53,7 @@ class ToleranceIn(Bounded):
     )
 
     def question(self) -> Question:
-        """The same as a process takes it."""
+        """Return the same as a process takes it."""
         return Question(
             None if self.outputs is None else tuple(self.outputs),
             None if self.criteria is None else tuple(self.criteria),

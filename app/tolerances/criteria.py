@@ -19,34 +19,34 @@ class Demanded:
 
     @property
     def criterion(self) -> Criterion:
-        """The criterion to compare."""
+        """Return the criterion to compare."""
         return self.subject.criterion
 
     @property
     def references(self) -> frozenset[Reference]:
-        """The values that it names, without limits."""
+        """Return the values that it names, without limits."""
         return frozenset(self.subject.references.values())
 
     @cached_property
     def judged(self) -> frozenset[Reference]:
-        """The values on the side that is held against the limit."""
+        """Return the values on the side that is held against the limit."""
         named = self.criterion.value.names
         return frozenset(of for name, of in self.subject.references.items() if name in named)
 
     @property
     def alone(self) -> Reference | None:
-        """The value that is judged, where it stands alone."""
+        """Return the value that is judged, where it stands alone."""
         name = self.criterion.subject
         return None if name is None else self.subject.references.get(name)
 
     @property
     def has_one_limit(self) -> bool:
-        """Whether the limit is the same for every product: no value of the design stands in it."""
+        """Return whether the limit is the same for every product: no value of the design stands in it."""
         return self.subject.references.keys().isdisjoint(self.criterion.limit.names)
 
     @property
     def missing(self) -> list[str]:
-        """Limits that nobody has given."""
+        """Return limits that nobody has given."""
         block = self.subject.block
         if block is None:
             return []
@@ -55,7 +55,7 @@ class Demanded:
 
 
 def demanded(graph: Graph) -> dict[str, Demanded]:
-    """Every criterion of a design that is judged and not waived."""
+    """Return every criterion of a design that is judged and not waived."""
     return {name: Demanded(one) for name, one in subjects(graph).items() if _counts(graph, name, one)}
 
 

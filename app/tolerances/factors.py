@@ -41,7 +41,7 @@ class Factor:
 
 
 def inverse(distribution: Distribution, share: Array) -> Array:
-    """The place, from −1 to 1 between the limits, below which a share (0 to 1) of the values lies.
+    """Return the place, from −1 to 1 between the limits, below which a share (0 to 1) of the values lies.
 
     Normal: limits at ±3 standard deviations, cut there. Triangular: the peak is in the middle.
     """
@@ -56,20 +56,20 @@ def inverse(distribution: Distribution, share: Array) -> Array:
 
 
 def placed(factors: Sequence[Factor], position: Array) -> Array:
-    """Values [SI] of positions from −1 (lower limits) to 1 (upper limits)."""
+    """Return values [SI] of positions from −1 (lower limits) to 1 (upper limits)."""
     low, high = np.array([f.low for f in factors]), np.array([f.high for f in factors])
     between: Array = np.clip(0.5 * ((1 - position) * low + (1 + position) * high), low, high)
     return between
 
 
 def scattered(factors: Sequence[Factor], shares: Array) -> Array:
-    """Values [SI] of points of the unit cube, distributed as the factors are."""
+    """Return values [SI] of points of the unit cube, distributed as the factors are."""
     columns = [inverse(f.distribution, shares[:, i]) for i, f in enumerate(factors)]
     return placed(factors, np.stack(columns, axis=1))
 
 
 def sobol(dimensions: int, count: int, seed: Sequence[int]) -> Array:
-    """A scrambled Sobol' sequence of so many points (a power of two) in the unit cube."""
+    """Return a scrambled Sobol' sequence of so many points (a power of two) in the unit cube."""
     from scipy.stats import qmc  # it takes as long as all other imports of a small command
 
     sequence = qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(list(seed)))
@@ -78,7 +78,10 @@ def sobol(dimensions: int, count: int, seed: Sequence[int]) -> Array:
 
 
 def lattice(count: int) -> Array:
-    """Positions on a lattice between the limits, so fine that so many factors allow it; always the middle."""
+    """Return positions on a lattice between the limits, so fine that so many factors allow it.
+
+    Always the middle.
+    """
     if count <= MOST_AT_THREE:
         return np.array(list(product((-1.0, 0.0, 1.0), repeat=count)))
     axes = np.vstack([np.zeros(count), np.eye(count), -np.eye(count)])

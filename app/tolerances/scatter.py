@@ -141,7 +141,7 @@ def _range(values: Array) -> tuple[float, float]:
 
 
 def _yield(name: str, parts: Sequence[Rows]) -> Yield | None:
-    """The yield of a criterion; its least standard error is one row."""
+    """Return the yield of a criterion; its least standard error is one row."""
     margins = np.array([part.margins[name] for part in parts])
     codes = np.array([part.codes[name] for part in parts])
     if np.isnan(margins).all():

@@ -104,7 +104,7 @@ class OutputScatter(Answer):
     reason: str | None = Field(None, description="why something is absent")
 
     def in_units(self, system: System) -> Self:
-        """The numbers in a system of units."""
+        """Return the numbers in a system of units."""
         if system == "si":
             return self
 
@@ -179,5 +179,5 @@ class ToleranceAnalysis(Answer):
 
     @property
     def outputs(self) -> dict[str, OutputScatter]:
-        """The outputs by name."""
+        """Return the outputs by name."""
         return dict(self.__pydantic_extra__ or {})

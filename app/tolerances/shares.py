@@ -65,7 +65,7 @@ def shares(factors: Sequence[Factor], outputs: Outputs, base: int, seed: int) ->
 
 
 def _samples(factors: Sequence[Factor], outputs: Outputs, count: int, seed: Sequence[int]) -> Array:
-    """Outputs of A, B and one AB for each factor, of the shape (samples, rows, outputs)."""
+    """Return outputs of A, B and one AB for each factor, of the shape (samples, rows, outputs)."""
     number = len(factors)
     points = sobol(2 * number, count, seed)
     first, second = scattered(factors, points[:, :number]), scattered(factors, points[:, number:])
@@ -75,7 +75,7 @@ def _samples(factors: Sequence[Factor], outputs: Outputs, count: int, seed: Sequ
 
 
 def _of_output(values: Array) -> Parts | None:
-    """The shares of one output, from values of the shape (scramblings, samples, rows)."""
+    """Return the shares of one output, from values of the shape (scramblings, samples, rows)."""
     if np.isnan(values).any() or values.std() <= NEGLIGIBLE * np.abs(values).max():
         return None
     whole = _indices(values)
@@ -92,14 +92,14 @@ def _of_output(values: Array) -> Parts | None:
 
 
 def _jackknife(without: Array) -> Array:
-    """The standard error of an estimate, from those without one scrambling each (first axis)."""
+    """Return the standard error of an estimate, from those without one scrambling each (first axis)."""
     spread = ((without - without.mean(axis=0)) ** 2).sum(axis=0)
     error: Array = np.sqrt((SCRAMBLINGS - 1) / SCRAMBLINGS * spread)
     return error
 
 
 def _indices(values: Array) -> Array:
-    """First-order and total shares by two estimators each, of the shape (2, 2, factors)."""
+    """Return first-order and total shares by two estimators each, of the shape (2, 2, factors)."""
     centred = values - values[:, :2].mean()
     a, b, mixed = centred[:, :1], centred[:, 1:2], centred[:, 2:]
 

@@ -33,7 +33,7 @@ class Varied:
 
 
 def varied(graph: Graph, behind: Collection[Cell]) -> tuple[list[Varied], list[Warning]]:
-    """The toleranced values from which something follows, and a warning for every other one.
+    """Return the toleranced values from which something follows, and a warning for every other one.
 
     `behind` are the cells from which anything that was asked for follows.
     """
@@ -54,7 +54,7 @@ def varied(graph: Graph, behind: Collection[Cell]) -> tuple[list[Varied], list[W
 
 
 def _factor(cell: Cell, typed: Typed) -> Factor | str:
-    """A toleranced value as a factor, or why it is none."""
+    """Return a toleranced value as a factor, or why it is none."""
     tolerance, value = typed.tolerance, typed.si
     assert tolerance is not None
     lower, upper = tolerance.lower, tolerance.upper

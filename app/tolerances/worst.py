@@ -65,7 +65,7 @@ def worst(factors: Sequence[Factor], outputs: Outputs, seed: int) -> Worst:
 
 
 def _position(factor: Factor) -> float:
-    """Position of the value itself, from −1 to 1; outside, where both limits lie on one side of it."""
+    """Return position of the value itself, from −1 to 1; outside, where both limits lie on one side of it."""
     half = (factor.high - factor.low) / 2
     return float(np.clip((factor.nominal - (factor.high + factor.low) / 2) / half, -1, 1))
 
@@ -79,7 +79,7 @@ class _Search:
         self.first_refused: Array | None = None
 
     def values(self, positions: Array) -> Array:
-        """The outputs at some positions."""
+        """Return the outputs at some positions."""
         rows = placed(self.factors, positions)
         values = self.outputs(rows)
         refused = np.isnan(values).all(axis=1)
@@ -90,13 +90,13 @@ class _Search:
         return values
 
     def ends(self, positions: Array, values: Array, column: int) -> tuple[Extreme, Extreme] | None:
-        """The least and the largest value of one output."""
+        """Return the least and the largest value of one output."""
         if np.isnan(values).all():
             return None
         return self._end(positions, values, column, 1.0), self._end(positions, values, column, -1.0)
 
     def _end(self, positions: Array, values: Array, column: int, sign: float) -> Extreme:
-        """The least value, or for the sign −1 the largest."""
+        """Return the least value, or for the sign −1 the largest."""
         best = int(np.nanargmin(sign * values))
         best_end = values[best], positions[best]
         scale = float(np.nanmax(values) - np.nanmin(values))
@@ -108,7 +108,7 @@ class _Search:
         return Extreme(float(best_end[0]), placed(self.factors, best_end[1][np.newaxis])[0])
 
     def _climb(self, start: Array, column: int, factor: float) -> tuple[float, Array]:
-        """A local extreme from a start; the best point that was met."""
+        """Return a local extreme from a start; the best point that was met."""
         best: list[tuple[float, Array]] = []
 
         def function(position: Array) -> tuple[float, Array]:
@@ -123,7 +123,7 @@ class _Search:
         return min(best, key=lambda one: factor * one[0])
 
     def _slopes(self, position: Array, column: int) -> tuple[float, Array]:
-        """An output and its slopes, from one call of 1 + 2k rows; 0 where a neighbour is refused."""
+        """Return an output and its slopes, from one call of 1 + 2k rows; 0 where a neighbour is refused."""
         count = len(position)
         steps = STEP * np.eye(count)
         beside = np.clip(np.vstack([position + steps, position - steps]), -1, 1)
@@ -134,7 +134,7 @@ class _Search:
 
 
 def _starts(positions: Array, values: Array) -> list[int]:
-    """The rows with the least values, apart from each other."""
+    """Return the rows with the least values, apart from each other."""
     chosen: list[int] = []
     for row in np.argsort(values, kind="stable")[: 20 * STARTS]:
         if np.isnan(values[row]) or len(chosen) == STARTS:

@@ -17,7 +17,7 @@ from app.http.access import FORM_TOKEN
 from app.http.strict_requests import FORM_TYPES, NotForm, check_type
 from app.presentation.input_text import value_of
 from app.reference import Reference
-from app.web.api import Api, Refused, TheApi, read
+from app.web.api import Api, TheApi, read
 from app.web.blocks import Refusal
 from app.web.declaring import change_of
 from app.web.design_page import design_page
@@ -26,6 +26,7 @@ from app.web.gallery import GALLERY
 from app.web.new_step import NewStep, address, beside, new_step, step_page, versioned
 from app.web.rendering import go
 from app.web.routes import Id, Number
+from app.web.services import Refused
 from app.web.session import check_form_token
 
 AT_ONCE = {"Prefer": "wait=1"}  # the page shows how the rest goes on
@@ -99,7 +100,7 @@ async def _created(api: Api, document: Mapping[str, JsonValue]) -> Response:
 async def save(id: Id, request: Request, api: TheApi) -> Response:
     """A new revision; where it is refused, the form again with what was typed and what is wrong."""
     typed = await fields(request)
-    design = await api.get(f"/designs/{id}", Design)
+    design = await api.run(api.designs.show, id)
     based = typed.get("revision", "")
     patch = patch_of(design, typed)
     try:
@@ -120,7 +121,7 @@ async def add(id: Id, request: Request, api: TheApi) -> Response:
     typed = await fields(request)
     if typed.get("add") == "template":
         return await _add_step(id, request, api, typed)
-    design = await api.get(f"/designs/{id}", Design)
+    design = await api.run(api.designs.show, id)
     declared = change_of(design, typed)
     patch = _block(typed)
     try:
@@ -134,7 +135,7 @@ async def add(id: Id, request: Request, api: TheApi) -> Response:
 
 async def _add_step(id: str, request: Request, api: Api, typed: Mapping[str, str]) -> Response:
     """Add a step; show its form where that is not filled in, or was refused."""
-    step, design = await new_step(api, typed), await api.get(f"/designs/{id}", Design)
+    step, design = await new_step(api, typed), await api.run(api.designs.show, id)
     patch: Patch = {"steps": {step.name: step.plain()}}
     try:
         _refuse_taken(design, patch)

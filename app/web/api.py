@@ -6,9 +6,9 @@ What a page shows is what a user would be answered; what a form does is a call t
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
-from http import HTTPStatus
+from dataclasses import dataclass
 from typing import Annotated, TypeVar
 
 import httpx
@@ -19,6 +19,7 @@ from starlette.types import Message, Scope
 from app.http.clients import TheClient, from_inside
 from app.schemas.problems import Problem
 from app.web.same_answers import Same, same
+from app.web.services import PageServices, Refused, get_services
 
 Kind = TypeVar("Kind")
 Scalar = str | int | float | bool | None
@@ -28,35 +29,11 @@ _CLIENT = "crankwright.client"
 """Extension of a request within the process: the client of the page's request."""
 
 
-def with_related(detail: str, also: Sequence[str]) -> str:
-    """A fault's sentence and the other inputs that it concerns; `static/api.js` writes the same."""
-    return f"{detail}. See also {', '.join(also)}" if also else detail
-
-
-class Refused(Exception):
-    """The interface answered with a problem; `problem` is it."""
-
-    def __init__(self, problem: Problem) -> None:
-        self.status, self.problem = problem.status, problem
-        super().__init__(f"{problem.status} {problem.detail}")
-
-    @classmethod
-    def because(cls, status: int, detail: str) -> Refused:
-        """A refusal of the pages themselves."""
-        title = HTTPStatus(status).phrase.capitalize()
-        return cls(Problem(type="about:blank", title=title, status=status, detail=detail))
-
-    @property
-    def faults(self) -> dict[str, str]:
-        """The faults by the name of the input, with the other inputs that they concern."""
-        return {fault.name: with_related(fault.detail, fault.also) for fault in self.problem.errors}
-
-
-class Api:
+@dataclass(frozen=True)
+class Api(PageServices):
     """Calls of the interface by one request of a page, for the client who sent that."""
 
-    def __init__(self, http: httpx.AsyncClient, client: str) -> None:
-        self._http, self._client = http, client
+    http: httpx.AsyncClient
 
     async def get(self, path: str, kind: type[Kind], **query: Scalar) -> Kind:
         """The answer of a GET, as a model.
@@ -78,7 +55,7 @@ class Api:
         """
         return same((await self.send("GET", path, params=query)).content, kind)
 
-    async def find(self, path: str, kind: type[Kind], **query: Scalar) -> Kind | None:
+    async def get_or_none(self, path: str, kind: type[Kind], **query: Scalar) -> Kind | None:
         """The answer of a GET, or None where there is nothing."""
         try:
             return await self.get(path, kind, **query)
@@ -114,9 +91,9 @@ class Api:
         Refused
             If the interface refuses.
         """
-        extensions = {_CLIENT: self._client}
+        extensions = {_CLIENT: self.client}
         try:
-            response = await self._http.request(
+            response = await self.http.request(
                 method,
                 BASE + path,
                 json=json,
@@ -212,7 +189,8 @@ async def get_api(request: Request, client: TheClient) -> Api:
             timeout=None,
             headers={"Accept-Encoding": "identity"},  # nothing is compressed within the process
         )
-    return Api(state.web_client, client)
+    services = await get_services(request, client)
+    return Api(**vars(services), http=state.web_client)
 
 
 TheApi = Annotated[Api, Depends(get_api)]

@@ -7,12 +7,13 @@ from typing import NamedTuple
 from fastapi import APIRouter, Depends, Request, Response
 
 from app.web.actions import forms_only
-from app.web.api import Api, Refused, TheApi
+from app.web.api import Api, TheApi
 from app.web.design_page import design_page
 from app.web.forms import fields
 from app.web.rendering import go
 from app.web.revision_page import revision_page
 from app.web.routes import Id, Number
+from app.web.services import Refused
 
 router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 

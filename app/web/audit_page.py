@@ -8,7 +8,8 @@ from urllib.parse import urlencode
 from fastapi import APIRouter, Query, Request, Response
 
 from app.http.roles import needs
-from app.identity.schemas.audit import AuditHead, AuditList
+from app.identity.routes.audit import show_head
+from app.identity.schemas.audit import AuditList
 from app.web.api import TheApi
 from app.web.rendering import show
 
@@ -35,7 +36,7 @@ async def audit(
         request,
         "audit.html",
         entries=page.items,
-        head=await api.get("/audit/head", AuditHead),
+        head=await api.run(show_head, api.database),
         wanted=wanted,
         older=urlencode({**wanted, "cursor": page.next}) if page.next else None,
     )

@@ -13,16 +13,17 @@ from collections.abc import Mapping
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import JsonValue, TypeAdapter
 
-from app.catalogue.schemas.templates import TemplateList, TemplateSummary
+from app.catalogue.schemas.templates import TemplateSummary
 from app.designs.schemas.designs import Design, DesignModel
-from app.jobs.schemas import Job
-from app.solids.schemas.models import CadModel
+from app.solids.routes.models import list_models, show_model
 from app.web.actions import AT_ONCE, forms_only
-from app.web.api import Api, Refused, TheApi
+from app.web.api import Api, TheApi
+from app.web.design_answers import job_of
 from app.web.forms import fields
 from app.web.model_import_page import BINARY, MISSED
 from app.web.rendering import go, show
 from app.web.routes import Id
+from app.web.services import Refused
 
 PATIENCE = 15.0
 """Time that the page waits for the import, which draws nothing [s]."""
@@ -41,7 +42,7 @@ forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 @router.get("/designs/{id}/models/{name}/beside")
 async def beside_form(request: Request, api: TheApi, id: Id, name: Id) -> Response:
     """Show the form: which part, and where it stands."""
-    design = await api.get(f"/designs/{id}", Design)
+    design = await api.run(api.designs.show, id)
     return await _form(request, api, design, name, {})
 
 
@@ -49,7 +50,7 @@ async def beside_form(request: Request, api: TheApi, id: Id, name: Id) -> Respon
 async def put_beside(request: Request, api: TheApi, id: Id, name: Id) -> Response:
     """Make the assembly and let the design take it; where that is refused, the form again with the reason."""
     typed = {key: text.strip() for key, text in (await fields(request)).items() if key in FIELDS}
-    design = await api.get(f"/designs/{id}", Design)
+    design = await api.run(api.designs.show, id)
     try:
         version = await _brought(api, typed, await _manifest(api, _model(design, name), typed))
         patch = {"models": {name: version}, "note": f"{typed.get('component', '')[:40]} beside {name}"}
@@ -71,7 +72,7 @@ def _model(design: Design, name: str) -> DesignModel:
 
 async def _manifest(api: Api, model: DesignModel, typed: Mapping[str, str]) -> dict[str, JsonValue]:
     """The manifest of the model's assembly with the part that was typed; a new one if it is no assembly."""
-    described = await api.get(f"/models/{model.id}/versions/{model.version}", CadModel)
+    described = await api.run(show_model, model.id, model.version, api.catalogues, api.database)
     if described.origin is not None and described.origin.program == "assembly":
         original = await api.send("GET", f"/models/{model.id}/versions/{model.version}/original")
         manifest = _MANIFEST.validate_json(original.content)
@@ -110,7 +111,7 @@ async def _brought(
     answer = await api.send("POST", "/models/import", content=content, params=query, headers=BINARY)
     job = answer.headers["Location"].rpartition("/")[2]
     for _ in range(round(PATIENCE / GLANCE)):
-        work = await api.get(f"/jobs/{job}", Job)
+        work = await job_of(api, job)
         if work.problem is not None:
             raise Refused(work.problem)
         if work.state == "done" and (version := _VERSION.fullmatch(work.result or "")):
@@ -129,7 +130,7 @@ async def _form(
     status: int = 200,
 ) -> Response:
     model = _model(design, name)
-    described = await api.get(f"/models/{model.id}/versions/{model.version}", CadModel)
+    described = await api.run(show_model, model.id, model.version, api.catalogues, api.database)
     is_assembly = described.origin is not None and described.origin.program == "assembly"
     usual = {"datum": "origin", "id": model.id if is_assembly else f"{model.id[:50]}_with_parts"}
     return show(
@@ -147,5 +148,5 @@ async def _form(
 
 async def _bought(api: Api) -> list[TemplateSummary]:
     """The STEP files that were brought, the newest of each."""
-    items = (await api.get("/models", TemplateList, limit=500)).items
+    items = (await api.run(list_models, api.catalogues, limit=500)).items
     return [item for item in items if item.latest and item.title.startswith(_FIXED)]

@@ -15,9 +15,10 @@ from app.presentation.criteria import Line, line
 from app.reports.content import Plot
 from app.reports.plots import drawn
 from app.schemas.answers import Accepted
-from app.web.api import Api, Refused, read
+from app.web.api import Api, read
 from app.web.blocks import StepBlock
 from app.web.rendering import units_of
+from app.web.services import Refused
 from app.web.solution import ACCEPTED, PATIENT
 
 WITHOUT_ANSWER = (404, 422)

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 
 from fastapi import Request, Response
 
+from app.designs.routes.designs import list_designs
 from app.designs.schemas.comparison import Comparison
-from app.designs.schemas.designs import Design, DesignList
-from app.web.api import Api, Refused, Scalar
+from app.designs.schemas.designs import Design
+from app.web.api import Api, Scalar
 from app.web.rendering import show, units_of
+from app.web.services import Refused
 
 MOST_NUMBERS = 100  # of revisions in a picker
 GROUPS = ("inputs", "outputs", "model_parameters", "measurements")
@@ -47,13 +49,13 @@ def _is_number(text: str) -> bool:
 
 async def compare_page(request: Request, api: Api, id: str, asked: Asked) -> Response:
     """Show the differences, and the forms to choose two other revisions."""
-    design = await api.get(f"/designs/{id}", Design)
+    design = await api.run(api.designs.show, id)
     other = await _other(api, design, asked.design)
     if other is None:
         raise Refused.because(MISSING, "the design to compare with does not exist; choose another one")
     query = {**asked.query(id), "units": units_of(request)}
     comparison = await api.get(f"/designs/{id}/compare", Comparison, **query)
-    listed = (await api.get("/designs", DesignList, limit=200)).items
+    listed = (await api.run(list_designs, api.database, limit=200)).items
     others = {item.id: item.name for item in listed} | {design.id: design.name, other.id: other.name}
     groups = [(name, getattr(comparison, name)) for name in GROUPS]
     texts = [(name, getattr(comparison, name)) for name in TEXTS]
@@ -76,7 +78,7 @@ async def _other(api: Api, design: Design, id: str) -> Design | None:
     """The design on the other side; None if there is none of this id."""
     if not id:
         return design
-    return await api.find(f"/designs/{id}", Design) if _ID.fullmatch(id) else None
+    return await api.find(api.designs.show, id) if _ID.fullmatch(id) else None
 
 
 def _numbers(newest: int, chosen: int) -> list[int]:

@@ -6,28 +6,34 @@ from collections.abc import Mapping
 
 from fastapi import Request
 
+from app.catalogue.routes.templates import show_template
 from app.catalogue.schemas.templates import Template
 from app.designs.schemas.designs import Design, RevisionWorksheet
+from app.jobs.schemas import Job
+from app.solids.routes.models import show_model
 from app.solids.schemas.models import CadModel
-from app.web.api import Api, Scalar
+from app.web.api import Api
 from app.web.rendering import units_of
-from app.web.same_answers import Same
 
 
 async def revision_of(
-    request: Request, api: Api, id: str, number: int, **options: Scalar
+    request: Request,
+    api: Api,
+    id: str,
+    number: int,
+    *,
+    within: float | None = None,
+    only: str | None = None,
+    has_formulas: bool = True,
 ) -> RevisionWorksheet:
-    """A revision as a worksheet, in the units that the page shows."""
-    path = f"/designs/{id}/revisions/{number}/worksheet"
-    return await api.get(path, RevisionWorksheet, units=units_of(request), **options)
+    """A revision as a worksheet, in the units that the page shows; with `only`, that step alone."""
+    units = units_of(request)
+    return await api.calculate(within, api.reports.worksheet, id, number, units, only, has_formulas)
 
 
-async def same_revision(
-    request: Request, api: Api, design: Design, **options: Scalar
-) -> Same[RevisionWorksheet]:
-    """The newest revision as a worksheet, in the units that the page shows; shared with earlier looks."""
-    path = f"/designs/{design.id}/revisions/{design.revision}/worksheet"
-    return await api.same(path, RevisionWorksheet, units=units_of(request), **options)
+async def job_of(api: Api, id: str) -> Job:
+    """Return a job."""
+    return Job.model_validate(await api.run(api.jobs.get, id))
 
 
 def steps_of_design(design: Design) -> dict[str, tuple[str, int]]:
@@ -38,7 +44,7 @@ def steps_of_design(design: Design) -> dict[str, tuple[str, int]]:
 async def templates_of(api: Api, steps: Mapping[str, tuple[str, int]]) -> dict[str, Template]:
     """The template of every step; steps of one version share it."""
     versions = {
-        (id, version): (await api.same(f"/templates/{id}/versions/{version}", Template)).model
+        (id, version): await api.run(show_template, id, version, api.catalogues)
         for id, version in dict.fromkeys(steps.values())
     }
     return {name: versions[place] for name, place in steps.items()}
@@ -48,7 +54,7 @@ async def described_models(api: Api, design: Design | RevisionWorksheet) -> dict
     """The description of every model; models of one version share it."""
     places = {name: (model.id, model.version) for name, model in design.models.items()}
     versions = {
-        (id, version): await api.get(f"/models/{id}/versions/{version}", CadModel)
+        (id, version): await api.run(show_model, id, version, api.catalogues, api.database)
         for id, version in dict.fromkeys(places.values())
     }
     return {name: versions[place] for name, place in places.items()}

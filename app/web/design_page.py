@@ -9,25 +9,31 @@ from typing import NamedTuple
 from fastapi import Request, Response
 from markupsafe import Markup
 
-from app.catalogue.schemas.templates import Template, TemplateList, TemplateSummary
+from app.catalogue.routes.templates import list_templates
+from app.catalogue.schemas.templates import Template, TemplateSummary
+from app.designs.previewing import Change
+from app.designs.routes.designs import show_measurements
+from app.designs.routes.revisions import list_revisions
+from app.designs.routes.solid_fields import list_solid_fields
+from app.designs.routes.variants import variants_of
 from app.designs.schemas.designs import (
     Design,
     ModelMeasurements,
     Preview,
     Proposal,
-    Proposals,
-    RevisionList,
     RevisionWorksheet,
 )
-from app.designs.schemas.network import DesignNetwork
-from app.designs.schemas.solid_fields import SolidField, SolidFieldList
+from app.designs.schemas.solid_fields import SolidField
 from app.designs.schemas.variants import VariantsOut
 from app.http.roles import routes_of
-from app.jobs.schemas import Job, JobList
+from app.identity.principal import acting
+from app.jobs.routes import list_jobs
+from app.jobs.schemas import Job
+from app.solids.routes.models import list_models
 from app.solids.schemas.analyses import Analysis
 from app.solids.schemas.models import CadModel as Model
 from app.web import sheet
-from app.web.api import Api, Scalar
+from app.web.api import Api
 from app.web.approvals import ON_DESIGN, approval_of, comments_of
 from app.web.blocks import (
     ModelBlock,
@@ -42,14 +48,13 @@ from app.web.blocks import (
 )
 from app.web.chosen_variant import chosen_variant
 from app.web.declaring import analysis_lines, errors_of, iteration_lines, measures
-from app.web.design_answers import described_models, revision_of, same_revision, steps_of_design, templates_of
+from app.web.design_answers import described_models, revision_of, steps_of_design, templates_of
 from app.web.flow import drawing
 from app.web.forms import texts
 from app.web.limits import library
 from app.web.model_page import finished_analyses
 from app.web.names import names_json, values_of
 from app.web.rendering import show, units_of
-from app.web.same_answers import Same
 from app.web.sections import (
     MOST_IN_FULL,
     asked_step,
@@ -86,17 +91,14 @@ async def design_page(
     status: int = 200,
 ) -> Response:
     """The newest revision in a form; or a form that was refused, with what was typed and what is wrong."""
-    answer = await api.same(f"/designs/{id}", Design)
-    design = answer.model
+    design = await api.run(api.designs.show, id)
     revision, preview, parameters, steps, folded, parts, models, verdict, in_full = await _form(
-        request, api, answer, refusal
+        request, api, design, refusal
     )
     faults, wrong = refusal.faults, errors_of(refusal.part, refusal.faults)
-    measured = await api.get(
-        f"/designs/{id}/measurements", dict[str, ModelMeasurements], units=units_of(request)
-    )
-    network = await api.same(f"/designs/{id}/network", DesignNetwork)
-    places = network.once(places_of, design)
+    measured = await api.run(show_measurements, id, api.database, units_of(request))
+    network = await api.run(api.designs.network, id)
+    places = places_of(network, design)
     variants = variants_table(design, await _variants(request, api, id), places, table)
     return show(
         request,
@@ -118,7 +120,7 @@ async def design_page(
         measured=measured,
         analyses=await _analyses(request, api, measured, models),
         painted_fields=await _fields_of_solids(api, id, measured),
-        revisions=await api.get(f"/designs/{id}/revisions", RevisionList, limit=20, steps=False),
+        revisions=await api.run(list_revisions, id, api.database, limit=20, steps=False),
         proposals=await _proposals(api, design),
         job=await _job(api, design),
         studies=await studies_of(api, id),
@@ -129,27 +131,25 @@ async def design_page(
         verdict=verdict,
         verdict_banner=banner_of(verdict, id),
         can_decide=_has_route(request, DECIDE),
-        toleranced=answer.once(toleranced),
+        toleranced=toleranced(design),
         base=f"/api/v1/designs/{id}",
         painted=painted(steps, parts),
-        was=answer.once(_as_typed),
+        was=_as_typed(design),
         choices=await _choices(api),
         analysis_lines=analysis_lines(design, parts, refusal),
         iteration_lines=iteration_lines(design, refusal),
         part={**NO_PART, **refusal.part},
         part_errors=wrong,
         measures=list(measures(design, parts)),
-        network=network.model,
-        picture=network.once(drawing),
+        network=network,
+        picture=drawing(network),
         upgrades=await upgrades_of(api, {step.name: step.template for step in steps}),
         variants=variants,
         variants_start="" if variants.count or variants.is_refused else variants_start(design, variants),
         approval=await approval_of(api, id, design.revision),
         comments=await comments_of(api, id, None, ON_DESIGN),
         chosen=await chosen_variant(request, api, design, steps),
-        names=""
-        if in_full is not None
-        else names_json(network.model, values_of(revision, preview, measured)),
+        names="" if in_full is not None else names_json(network, values_of(revision, preview, measured)),
     )
 
 
@@ -171,32 +171,33 @@ class Form(NamedTuple):
     in_full: set[str] | None
 
 
-async def _form(request: Request, api: Api, of: Same[Design], refusal: Refusal) -> Form:
-    design, id = of.model, of.model.id
+async def _form(request: Request, api: Api, design: Design, refusal: Refusal) -> Form:
+    id = design.id
     within = 0 if design.state == "regenerating" else QUICK
     is_long = len(design.steps) > MOST_IN_FULL
-    answer = await same_revision(request, api, design, within=within, formulas=not is_long)
+    revision = await revision_of(request, api, id, design.revision, within=within, has_formulas=not is_long)
     templates, models = await templates_of(api, steps_of_design(design)), await described_models(api, design)
     has_parameters = bool(design.parameters)  # only with the worksheet a preview has their values
-    query: dict[str, Scalar] = {"worksheet": has_parameters, "units": units_of(request), "within": within}
+    change = Change(id, {}, worksheet=has_parameters, system=units_of(request))
     has_values = has_parameters or bool(design.models)  # the page shows nothing else of a preview
-    preview = await api.post(f"/designs/{id}/preview", Preview, {}, **query) if has_values else None
+    preview = await api.calculate(within, api.previews.quick, change) if has_values else None
     before = await _before(request, api, design)
     tables = await library(api) if templates else []
-    verdict = answer.once(_verdict, design, templates)
-    bare = blocks = answer.once(_blocks, design, templates)
-    revision = answer.model
+    verdict = _verdict(revision, design, templates)
+    bare = blocks = _blocks(revision, design, templates)
     in_full = steps_in_full(request, design.steps, refusal, verdict) if is_long else None
     if in_full is not None:
-        written = [await same_revision(request, api, design, within=within, step=name) for name in in_full]
-        whole = {name: step for one in written for name, step in one.model.steps.items()}
+        written = [
+            await revision_of(request, api, id, design.revision, within=within, only=name) for name in in_full
+        ]
+        whole = {name: step for one in written for name, step in one.steps.items()}
         revision = revision.model_copy(update={"steps": {**revision.steps, **whole}})
         blocks = [with_result(block, whole.get(block.name)) for block in blocks]
     steps = [
         with_fields(block, design, refusal, tables) if in_full is None or block.name in in_full else block
         for block in blocks
     ]
-    folded = {} if in_full is None else answer.once(_folded, bare, verdict, f"/designs/{id}")
+    folded = {} if in_full is None else fold_lines(bare, verdict, f"/designs/{id}")
     parts = [
         with_changes(block, design, refusal, before, preview.model_parameters if preview else {})
         for block in models_of(revision, models)
@@ -224,17 +225,11 @@ def _blocks(
     return with_keys(steps_of(revision, templates, computed), revision, design)
 
 
-def _folded(
-    revision: RevisionWorksheet, blocks: list[StepBlock], verdict: Banner, base: str
-) -> dict[str, Markup]:
-    return fold_lines(blocks, verdict, base)
-
-
 async def _before(request: Request, api: Api, design: Design) -> RevisionWorksheet | None:
     """The revision before the newest; of it the page shows parameters of models alone."""
     if design.revision == 1 or not design.models:
         return None
-    return await revision_of(request, api, design.id, design.revision - 1, within=0, formulas=False)
+    return await revision_of(request, api, design.id, design.revision - 1, within=0, has_formulas=False)
 
 
 async def step_section(request: Request, api: Api, id: str, name: str) -> Response:
@@ -245,8 +240,8 @@ async def step_section(request: Request, api: Api, id: str, name: str) -> Respon
     Refused
         If there is no such design, or no such step in it.
     """
-    design = await api.get(f"/designs/{id}", Design)
-    revision = await revision_of(request, api, id, design.revision, within=QUICK, step=name)
+    design = await api.run(api.designs.show, id)
+    revision = await revision_of(request, api, id, design.revision, within=QUICK, only=name)
     templates = await templates_of(api, {name: steps_of_design(design)[name]})
     blocks = steps_of(revision, templates, {name: design.steps[name].outputs})
     tables = await library(api)
@@ -277,16 +272,17 @@ async def _fields_of_solids(
     fields: dict[str, list[SolidField]] = {name: [] for name in measured}
     for name, part in measured.items():
         if part.analyses:
-            path = f"/designs/{id}/revisions/{part.revision}/models/{name}/fields"
-            fields[name] = (await api.get(path, SolidFieldList)).items
+            listed = await api.run(list_solid_fields, id, part.revision, name, api.database, api.catalogues)
+            fields[name] = listed.items
     return fields
 
 
 async def _proposals(api: Api, design: Design) -> list[Proposal]:
-    """Relations for parameters of models that are not set; none without a model."""
-    if not design.models:
+    """Relations for parameters of models that are not set; none for whoever may not save them."""
+    if not (design.models and acting().may("author")):
         return []
-    return (await api.post(f"/designs/{design.id}/auto-map", Proposals)).proposals
+    proposals, _ = await api.calculate(None, api.designs.auto_map, design.id, False, None, api.once)
+    return proposals
 
 
 def _loose(
@@ -305,21 +301,21 @@ def _fields(steps: list[StepBlock], models: list[ModelBlock]) -> list[sheet.Fiel
 
 
 async def _variants(request: Request, api: Api, id: str) -> VariantsOut:
-    return await api.get(f"/designs/{id}/variants", VariantsOut, units=units_of(request))
+    return await api.run(variants_of, id, None, api.database, api.catalogues, (), units_of(request))
 
 
 async def _job(api: Api, design: Design) -> Job | None:
     """The job that regenerates the design, if one does."""
     if design.state != "regenerating":
         return None
-    jobs = (await api.get("/jobs", JobList, limit=200)).items
+    jobs = (await api.run(list_jobs, api.jobs, limit=200)).items
     return next((job for job in jobs if job.design == design.id and job.state in UNFINISHED), None)
 
 
 async def _choices(api: Api) -> dict[str, list[TemplateSummary]]:
     """The templates and models that a design may take in."""
     groups = {
-        group: (await api.get(f"/{group}", TemplateList, limit=500)).items
-        for group in ("templates", "models")
+        "templates": (await api.run(list_templates, api.catalogues, limit=500)).items,
+        "models": (await api.run(list_models, api.catalogues, limit=500)).items,
     }
     return {group: [item for item in items if item.latest] for group, items in groups.items()}

@@ -8,15 +8,16 @@ from urllib.parse import quote, urlencode
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from app.catalogue.schemas.templates import Template
+from app.catalogue.routes.templates import show_template
 from app.impact.schemas import DesignImpact, Impact
 from app.presentation import numbers
 from app.schemas.answers import Quantity
 from app.web.actions import forms_only
-from app.web.api import Api, Refused, TheApi, read
+from app.web.api import Api, TheApi, read
 from app.web.forms import fields
 from app.web.rendering import go, show, units_of
 from app.web.routes import Id, Number, Text
+from app.web.services import Refused
 
 router = APIRouter(include_in_schema=False)
 forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
@@ -139,7 +140,7 @@ async def _page(
     refusal: Refused | None,
     status: int = 200,
 ) -> Response:
-    template = await api.find(f"/templates/{id}/versions/{version}", Template)  # not of a draft
+    template = await api.find(show_template, id, version, api.catalogues)  # not of a draft
     job = typed.get("job", "")
     return show(
         request,

@@ -6,12 +6,14 @@ import re
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from app.jobs.schemas import Job
-from app.web.api import Api, Refused, TheApi
+from app.web.api import Api, TheApi
+from app.web.design_answers import job_of
 from app.web.multipart import forms_with_files, parts_of
 from app.web.rendering import go, show
 from app.web.routes import Id, Text
-from app.worksheets.schemas.imports import ImportedRegion, SheetImport
+from app.web.services import Refused
+from app.worksheets.routes.imports import read_import
+from app.worksheets.schemas.imports import ImportedRegion
 from app.worksheets.schemas.worksheets import Sheet
 
 MISSED = (409, 415, 422, 429)
@@ -29,7 +31,7 @@ async def import_form(request: Request, api: TheApi, job: Text = "", id: Text = 
     """Show the form for a file; while its job runs, the wait; then the regions or the refusal."""
     if not _JOB.fullmatch(job):
         return _form(request, id)
-    work = await api.get(f"/jobs/{job}", Job)
+    work = await job_of(api, job)
     if work.state == "done" and work.result:
         return go(f"{work.result.removeprefix('/api/v1')}/import")
     if work.problem is not None:
@@ -71,7 +73,7 @@ async def import_report(id: Id, request: Request, api: TheApi) -> Response:
 
 async def _report(request: Request, api: Api, id: str) -> Response:
     sheet = await api.get(f"/worksheets/{id}", Sheet)
-    report = await api.get(f"/worksheets/{id}/import", SheetImport)
+    report = await api.run(read_import, id, api.worksheets)
     counts = [(state, count) for state, count in report.regions if count]
     rows = [(region, _values(region)) for region in report.items if region.kind != "text"]
     return show(request, "import_report.html", sheet=sheet, report=report, counts=counts, rows=rows)

@@ -7,8 +7,9 @@ from dataclasses import replace
 
 from pydantic import JsonValue
 
+from app.catalogue.routes.library import list_library_tables, show_library_table
 from app.catalogue.schemas.declarations import Declared, properties
-from app.catalogue.schemas.library import LibraryRow, LibraryTable, LibraryTables
+from app.catalogue.schemas.library import LibraryRow, LibraryTable
 from app.catalogue.schemas.templates import Template
 from app.presentation.input_text import text_of, value_of
 from app.reference import Reference
@@ -30,8 +31,8 @@ def is_limit(control: str) -> bool:
 
 async def library(api: Api) -> list[LibraryTable]:
     """Every table of the library."""
-    listed = await api.get("/library", LibraryTables)
-    return [await api.get(f"/library/{table.id}", LibraryTable) for table in listed.items]
+    listed = await api.run(list_library_tables)
+    return [await api.run(show_library_table, table.id) for table in listed.items]
 
 
 def limit_fields(

@@ -6,12 +6,13 @@ import re
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from app.imported_models.schemas import DrawingPrograms
-from app.jobs.schemas import Job
-from app.web.api import Api, Refused, TheApi
+from app.imported_models.routes import list_programs
+from app.web.api import Api, TheApi
+from app.web.design_answers import job_of
 from app.web.multipart import forms_with_files, parts_of
 from app.web.rendering import go, show
 from app.web.routes import Text
+from app.web.services import Refused
 
 MISSED = (409, 415, 422, 429, 503)
 """Errors that the form explains, because the user can correct them."""
@@ -28,7 +29,7 @@ async def model_import_form(request: Request, api: TheApi, job: Text = "", id: T
     """Show the form for a file; while its job runs, the wait; then the model or the refusal."""
     if not _JOB.fullmatch(job):
         return await _form(request, api, id)
-    work = await api.get(f"/jobs/{job}", Job)
+    work = await job_of(api, job)
     if work.state == "done" and (version := _VERSION.fullmatch(work.result or "")):
         return go(f"/models/{version[1]}/{version[2]}")
     if work.problem is not None:
@@ -61,7 +62,7 @@ async def import_model_file(request: Request, api: TheApi) -> Response:
 
 
 async def _form(request: Request, api: Api, id: str, notice: str = "", status: int = 200) -> Response:
-    programs = (await api.get("/models/import", DrawingPrograms)).items
+    programs = (await api.run(list_programs, api.model_imports)).items
     return show(
         request, "model_import.html", status, typed_id=id, notice=notice, waiting=None, programs=programs
     )

@@ -8,12 +8,14 @@ from fastapi import Request, Response
 
 from app.presentation.input_text import text_of, value_of
 from app.schemas.values import Given
-from app.solids.schemas.analyses import Analysis, AnalysisList, ModelAnalysis
+from app.solids.routes.analyses import list_analyses_of_build, show_analysis
+from app.solids.schemas.analyses import Analysis, ModelAnalysis
 from app.solids.schemas.models import Build
 from app.solids.schemas.models import CadModel as Model
 from app.web import sheet
-from app.web.api import Api, Refused
+from app.web.api import Api
 from app.web.rendering import show, units_of
+from app.web.services import Refused
 from cad.export import MEDIA_TYPES
 
 SHOWN = ["step", "glb"]  # made at once; other kinds when they are asked for
@@ -55,10 +57,10 @@ async def finished_analyses(
     if not model.analyses or build is None:
         return []
     units = units_of(request)
-    analyses = await api.find(f"/builds/{build}/analyses", AnalysisList, units=units)
+    analyses = await api.find(list_analyses_of_build, build, api.analyses, units)
     loads = {analysis.id: text_of(analysis.load.plain()) for analysis in (declared or {}).values()}
     return [
-        await api.get(f"/analyses/{analysis.id}", Analysis, units=units, load=loads[analysis.id])
+        await api.run(show_analysis, analysis.id, api.analyses, loads[analysis.id], units)
         if analysis.id in loads
         else analysis
         for analysis in (analyses.items if analyses else [])
@@ -73,7 +75,7 @@ async def _built(api: Api, path: str, cells: Mapping[str, Given]) -> tuple[Build
         if refused.status != 422:
             raise
         return None, refused.faults or {"model": refused.problem.detail}
-    build = await api.find(f"/builds/{begun.build}", Build)
+    build = await api.get_or_none(f"/builds/{begun.build}", Build)
     if build and build.artifacts.keys() >= {*SHOWN}:
         return build, {}
     return begun.model_copy(update={"artifacts": {}}), {}

@@ -14,8 +14,9 @@ from starlette.exceptions import HTTPException
 
 from app.identity.errors import NotSignedIn, RoleNeeded
 from app.schemas.problems import MEDIA_TYPE
-from app.web.api import BASE, Refused
+from app.web.api import BASE
 from app.web.rendering import go, show
+from app.web.services import Refused
 
 _LONGEST = 2000  # characters of an address
 Handler = Callable[[Request, Exception], Awaitable[Response]]

@@ -6,7 +6,7 @@ import asyncio
 
 from fastapi import Request, Response
 
-from app.designs.schemas.designs import Design, RevisionWorksheet
+from app.designs.schemas.designs import RevisionWorksheet
 from app.web.api import Api
 from app.web.approvals import approval_of, comments_of
 from app.web.blocks import models_of, steps_of
@@ -29,7 +29,7 @@ async def revision_page(
 ) -> Response:
     """Show a stored revision, and how it differs from another: the one before, if none is named."""
     design, revision = await asyncio.gather(
-        api.get(f"/designs/{id}", Design), revision_of(request, api, id, number)
+        api.run(api.designs.show, id), revision_of(request, api, id, number)
     )
     compared = other or (number - 1 if number > 1 else None)
     against = await revision_of(request, api, id, compared) if compared else None

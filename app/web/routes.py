@@ -5,17 +5,28 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Awaitable
 from typing import Annotated, get_args
-from urllib.parse import quote, urlencode
+from urllib.parse import urlencode
 
 from fastapi import APIRouter, Path, Query, Request, Response
+from pydantic import BaseModel
 
-from app.catalogue.schemas.faults import FaultList
-from app.catalogue.schemas.templates import TemplateList, TemplateVersions
-from app.designs.schemas.designs import Design, DesignList, Explanation, ModelMeasurements, State
-from app.designs.schemas.labels import TagList
+from app.catalogue.routes.faults import list_catalogue_faults
+from app.catalogue.routes.templates import list_template_versions, list_templates
+from app.designs.routes.designs import (
+    Archived,
+    InState,
+    NamePart,
+    UsedTemplate,
+    WithTags,
+    list_designs,
+    show_measurements,
+)
+from app.designs.routes.labels import list_tags
+from app.designs.schemas.designs import State
 from app.presentation.criteria import line
+from app.solids.routes.models import list_model_versions, list_models
 from app.web import plotly
-from app.web.api import Api, Refused, TheApi
+from app.web.api import Api, TheApi
 from app.web.compare_page import Asked, compare_page
 from app.web.design_page import design_page, step_section
 from app.web.gallery import offered
@@ -24,6 +35,7 @@ from app.web.new_step import beside, new_step, step_page
 from app.web.rendering import go, show, units_of
 from app.web.revision_page import revision_page
 from app.web.sensitivities import sensitivity_lines
+from app.web.services import Refused
 from app.web.stored_page import is_unusable, stored_page
 from app.web.template_page import template_page
 from app.web.template_solve_page import template_solve_page
@@ -38,15 +50,25 @@ ON_HOME = 4  # designs, with pictures: the first page is light
 TAGS_ON_HOME = 30
 
 
+class Filter(BaseModel):
+    """The filter of a list of designs, as the interface takes it."""
+
+    name: NamePart = None
+    state: InState = None
+    tag: WithTags = []
+    archived: Archived = "false"
+    template: UsedTemplate = None
+
+
 @router.get("/")
 async def home(request: Request, api: TheApi) -> Response:
     """Designs, templates, models, and where to start."""
     designs, tags, templates, models, faulty = await asyncio.gather(
-        api.get("/designs", DesignList, limit=ON_HOME),
-        api.get("/tags", TagList),
-        api.get("/templates", TemplateList, limit=500),
-        api.get("/models", TemplateList, limit=500),
-        api.get("/catalogue/faults", FaultList, limit=500),
+        api.run(list_designs, api.database, limit=ON_HOME),
+        api.run(list_tags, api.database),
+        api.run(list_templates, api.catalogues, limit=500),
+        api.run(list_models, api.catalogues, limit=500),
+        api.run(list_catalogue_faults, api.catalogues, limit=500),
     )
     latest = [item for item in templates.items if item.latest]
     return show(
@@ -84,9 +106,10 @@ async def designs(
         "archived": archived,
     }
     wanted = {key: text for key, text in typed.items() if text}  # a form sends empty fields too
-    place = {"cursor": cursor} if cursor else {}
+    filtered = api.read(Filter, {**wanted, **({"tag": [wanted["tag"]]} if tag.strip() else {})})
     page, tags = await asyncio.gather(
-        api.get("/designs", DesignList, limit=50, **wanted, **place), api.get("/tags", TagList)
+        api.run(list_designs, api.database, 50, cursor or None, **vars(filtered)),
+        api.run(list_tags, api.database),
     )
     return show(
         request,
@@ -103,8 +126,8 @@ async def designs(
 @router.get("/templates/faults")
 async def faults(request: Request, api: TheApi, cursor: Text = "") -> Response:
     """The files of a team that have faults."""
-    place = {"cursor": cursor} if cursor else {}
-    return show(request, "faults.html", faulty=await api.get("/catalogue/faults", FaultList, **place))
+    faulty = await api.run(list_catalogue_faults, api.catalogues, cursor=cursor or None)
+    return show(request, "faults.html", faulty=faulty)
 
 
 @router.get("/templates/{id}")
@@ -150,7 +173,7 @@ async def new_design(request: Request, api: TheApi) -> Response:
 async def another_step(id: Id, request: Request, api: TheApi) -> Response:
     """The empty form of one more step of a design."""
     typed = dict(request.query_params)
-    step, design = await new_step(api, typed), await api.get(f"/designs/{id}", Design)
+    step, design = await new_step(api, typed), await api.run(api.designs.show, id)
     hidden = {**beside(typed), "add": "template", "revision": str(design.revision)}
     return step_page(request, step, f"/designs/{id}/blocks", hidden)
 
@@ -213,8 +236,8 @@ async def explanation(
 ) -> Response:
     """Show where a model parameter, or the verdict of a criterion, comes from."""
     design, chain = await asyncio.gather(
-        api.get(f"/designs/{id}", Design),
-        api.get(f"/designs/{id}/explain/{quote(name, safe='')}", Explanation, units=units_of(request)),
+        api.run(api.designs.show, id),
+        api.calculate(None, api.designs.explanation, id, name, units_of(request)),
     )
     judged = line(chain.criterion) if chain.criterion else None
     slopes = sensitivity_lines(chain.sensitivities or [])
@@ -267,10 +290,11 @@ async def _or_stored(
 
 async def _picture(api: Api, id: str) -> tuple[str, str | None]:
     """A design's id, and the picture of the first of its parts, if it has one by now."""
-    parts = await api.get(f"/designs/{id}/measurements", dict[str, ModelMeasurements])
+    parts = await api.run(show_measurements, id, api.database)
     return id, next((f"/api/v1/designs/{id}/models/{name}/model.png" for name in parts), None)
 
 
 async def _newest(api: TheApi, group: str, id: str) -> str:
-    versions = await api.get(f"/{group}/{id}", TemplateVersions)
+    list_versions = {"templates": list_template_versions, "models": list_model_versions}[group]
+    versions = await api.run(list_versions, id, api.catalogues)
     return f"/{group}/{id}/{next(item.version for item in versions.items if item.latest)}"

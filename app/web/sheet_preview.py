@@ -7,9 +7,11 @@ from dataclasses import dataclass
 
 from pydantic import JsonValue
 
-from app.designs.schemas.designs import Design, DesignList, DesignSummary, Preview
+from app.designs.routes.designs import list_designs
+from app.designs.schemas.designs import Design, DesignSummary, Preview
 from app.presentation import numbers
-from app.web.api import Api, Refused, read
+from app.web.api import Api, read
+from app.web.services import Refused
 from app.worksheets.schemas.worksheets import Sheet, SheetCheck
 
 OFFERED = 50  # designs, newest first
@@ -39,8 +41,8 @@ class Tried:
 
 async def offered(api: Api, sheet: Sheet) -> list[DesignSummary]:
     """Designs in which a draft may be tried: those that use the worksheet before all others."""
-    using = await api.get("/designs", DesignList, limit=OFFERED, template=sheet.id)
-    rest = await api.get("/designs", DesignList, limit=OFFERED)
+    using = await api.run(list_designs, api.database, limit=OFFERED, template=sheet.id)
+    rest = await api.run(list_designs, api.database, limit=OFFERED)
     return list({item.id: item for item in (*using.items, *rest.items)}.values())[:OFFERED]
 
 
@@ -48,7 +50,7 @@ async def tried_in(api: Api, id: str, sheet: Sheet, checked: SheetCheck) -> Trie
     """The draft in place of the version that a design uses; as one more step, where it uses none."""
     name, is_added, step = sheet.id, True, dict[str, JsonValue]()
     try:
-        design = await api.get(f"/designs/{id}", Design)
+        design = await api.run(api.designs.show, id)
         name, is_added = _place(design, sheet)
         step = _step(sheet, checked, is_added=is_added)
         path = f"/designs/{id}/preview"

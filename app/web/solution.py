@@ -13,7 +13,8 @@ from app.presentation import numbers
 from app.presentation.units import System
 from app.reference import Reference
 from app.reports.charts import Chart, Series, svg
-from app.web.api import Api, Refused
+from app.web.api import Api
+from app.web.services import Refused
 
 PATIENT = {"Prefer": "wait=5"}  # the page shows how a longer calculation goes on
 ANSWERED, ACCEPTED = 422, 202

@@ -10,7 +10,6 @@ from urllib.parse import urlencode
 from fastapi import Request, Response
 
 from app.designs.schemas.designs import Design
-from app.designs.schemas.network import DesignNetwork
 from app.designs.schemas.solution import DesignRoot, DesignSolution
 from app.presentation import numbers
 from app.presentation.input_text import value_of
@@ -79,8 +78,8 @@ class Asked:
 
 async def solve_page(request: Request, api: Api, id: str) -> Response:
     """The form, and the answer once the form is filled in."""
-    design = await api.get(f"/designs/{id}", Design)
-    network = await api.get(f"/designs/{id}/network", DesignNetwork)
+    design = await api.run(api.designs.show, id)
+    network = await api.run(api.designs.network, id)
     places = varied(design, network)
     question, job = _with_bounds(Asked.of(request), places), request.query_params.get("job", "")
     reply = Reply(None)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from fastapi import Request, Response
 
-from app.designs.schemas.designs import Design, Revision
-from app.web.api import Api, Refused
+from app.designs.routes.revisions import show_revision
+from app.web.api import Api
 from app.web.rendering import show
+from app.web.services import Refused
 from cad.export import MEDIA_TYPES
 
 REASONS = ("/problems/quarantined", "/problems/unknown-template")
@@ -19,9 +20,9 @@ def is_unusable(refused: Refused) -> bool:
 
 async def stored_page(request: Request, api: Api, id: str, number: int | None, reason: str) -> Response:
     """One revision, the newest if none is named, as it is stored."""
-    design = await api.get(f"/designs/{id}", Design)
+    design = await api.run(api.designs.show, id)
     shown = number or design.revision
-    revision = await api.get(f"/designs/{id}/revisions/{shown}", Revision)
+    revision = await api.run(show_revision, id, shown, api.database)
     return show(
         request,
         "stored.html",

@@ -9,16 +9,17 @@ from fastapi import Request, Response
 from pydantic import JsonValue
 
 from app.designs.schemas.designs import Design, Preview, RevisionWorksheet
-from app.designs.schemas.network import DesignNetwork, NetworkName
+from app.designs.schemas.network import NetworkName
 from app.designs.schemas.variants import VariantsOut
 from app.designs.variants.names import BASE, natural
 from app.presentation.input_text import text_of, value_of
 from app.reference import Reference
 from app.schemas.criteria import Criterion
 from app.studies.schemas import StudyEstimate
-from app.web.api import Api, Refused
+from app.web.api import Api
 from app.web.places import outputs, present, set_aside, suggested, varied
 from app.web.rendering import show
+from app.web.services import Refused
 
 LINES = 4
 """Places that the form can vary; the interface takes more."""
@@ -150,9 +151,9 @@ async def study_form(
     estimate: StudyEstimate | None = None,
 ) -> Response:
     """The form, with what was typed, and with what it would take, if that was asked for."""
-    design = await api.get(f"/designs/{id}", Design)
+    design = await api.run(api.designs.show, id)
     governing = await _governing(api, design)
-    network = await api.get(f"/designs/{id}/network", DesignNetwork)
+    network = await api.run(api.designs.network, id)
     revision = await api.get(f"/designs/{id}/revisions/{design.revision}/worksheet", RevisionWorksheet)
     preview = await api.post(f"/designs/{id}/preview", Preview, {})
     places, named = varied(design, network), outputs(network)

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 from fastapi import Request, Response
 
-from app.designs.schemas.designs import Design, RevisionWorksheet
+from app.designs.schemas.designs import RevisionWorksheet
 from app.presentation import numbers
 from app.reference import Reference
 from app.schemas.criteria import Criterion
-from app.studies.schemas import Best, Index, Study, StudyList, StudyRows
+from app.studies.routes.studies import list_studies
+from app.studies.schemas import Best, Index, Study, StudyRows
 from app.web.api import Api, Scalar
 from app.web.rendering import show, units_of
 
@@ -22,7 +23,7 @@ async def study_page(request: Request, api: Api, id: str, notice: str | None = N
     """A study, and the first of its rows."""
     units = units_of(request)
     study = await api.get(f"/studies/{id}", Study, units=units)
-    design = await api.get(f"/designs/{study.design}", Design)
+    design = await api.run(api.designs.show, study.design)
     cursor, sort, where = (request.query_params.get(name, "") for name in ("cursor", "sort", "where"))
     query: dict[str, Scalar] = {"limit": SHOWN, "units": units}
     query |= {name: text for name, text in (("cursor", cursor), ("sort", sort), ("where", where)) if text}
@@ -51,7 +52,7 @@ async def _criteria(api: Api, study: Study, units: str) -> list[Criterion]:
     if not study.criteria:
         return []
     path = f"/designs/{study.design}/revisions/{study.revision}/worksheet"
-    sheet = await api.find(path, RevisionWorksheet, units=units)
+    sheet = await api.get_or_none(path, RevisionWorksheet, units=units)
     return [one for one in (sheet.criteria if sheet else None) or () if one.name in study.criteria]
 
 
@@ -83,7 +84,7 @@ def _limit_of(study: Study, one: Criterion) -> tuple[str, float] | None:
 
 async def studies_of(api: Api, design: str) -> list[Study]:
     """The newest studies of a design."""
-    return (await api.get("/studies", StudyList, design=design, limit=10)).items
+    return (await api.run(list_studies, api.studies, design=design, limit=10)).items
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,11 @@ from fastapi import APIRouter, Depends, Request, Response
 
 from app.studies.schemas import Study, StudyEstimate
 from app.web.actions import AT_ONCE, forms_only, tag_of
-from app.web.api import Api, Refused, TheApi, read
+from app.web.api import Api, TheApi, read
 from app.web.forms import fields
 from app.web.rendering import go, show
 from app.web.routes import Id
+from app.web.services import Refused
 from app.web.solve_page import solve_page
 from app.web.study_form import Typed, again, study_form
 from app.web.study_page import study_page

@@ -8,17 +8,19 @@ from fastapi import Request, Response
 from pydantic import JsonValue
 
 from app.calculations.schemas.evaluations import CalculatedBy, Output, Worksheet
+from app.catalogue.routes.templates import list_template_versions
 from app.catalogue.schemas.declarations import properties
-from app.catalogue.schemas.templates import Accuracy, Template, TemplateVersions
+from app.catalogue.schemas.templates import Accuracy, Template
 from app.presentation.criteria import line
 from app.presentation.input_text import value_of
 from app.reports.pictures import pictures
 from app.web import sheet
 from app.web.accuracy import table
-from app.web.api import Api, Refused, read
+from app.web.api import Api, read
 from app.web.forms import OPTIONS, option_of
 from app.web.limits import is_limit, library, limit_fields, limits_of, with_rows
 from app.web.rendering import show, units_of
+from app.web.services import Refused
 from app.worksheets.schemas.worksheets import Sheet
 
 ABOUT = {"units"}  # of the address, beside the inputs
@@ -32,8 +34,10 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
     typed = typed_in(request)
     inputs, chosen, limits = inputs_of(template, typed)
     tables = await library(api)
-    measured = await api.find(f"{path}/accuracy", Accuracy)
-    written = await api.find(f"/worksheets/{id}/versions/{version}", Sheet) if template.worksheet else None
+    measured = await api.get_or_none(f"{path}/accuracy", Accuracy)
+    written = (
+        await api.get_or_none(f"/worksheets/{id}/versions/{version}", Sheet) if template.worksheet else None
+    )
     body = {"inputs": inputs, **chosen, **({"limits": limits} if limits else {})}
     answer, job, faults = await _tried(api, path, body, units_of(request))
     used = answer.inputs if answer else {}
@@ -45,7 +49,7 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
         "template.html",
         status=422 if faults else 200,
         template=template,
-        versions=(await api.get(f"/templates/{id}", TemplateVersions)).items,
+        versions=(await api.run(list_template_versions, id, api.catalogues)).items,
         written=written,
         accuracy=measured,
         levels=table(measured) if measured else None,

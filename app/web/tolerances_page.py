@@ -11,8 +11,9 @@ from app.designs.schemas.designs import Design
 from app.presentation import bars
 from app.schemas.answers import Quantity
 from app.tolerances.schemas import OutputScatter, ToleranceAnalysis, Yield
-from app.web.api import Api, Refused, read
+from app.web.api import Api, read
 from app.web.rendering import show, units_of
+from app.web.services import Refused
 from templates.core.units.tolerance import is_toleranced
 
 PATIENT = {"Prefer": "wait=60"}
@@ -52,7 +53,7 @@ def toleranced(design: Design) -> bool:
 
 async def tolerances_page(request: Request, api: Api, id: str, job: str | None, *, is_part: bool) -> Response:
     """The analysis of the newest revision, or that of a finished job; alone, or as a part of the page."""
-    design = await api.get(f"/designs/{id}", Design)
+    design = await api.run(api.designs.show, id)
     template = "tolerances_part.html" if is_part else "tolerances_page.html"
     try:
         analysis, later = await _analysis(request, api, id, job)

@@ -8,17 +8,19 @@ from typing import NamedTuple
 from fastapi import APIRouter, Depends, Request, Response
 
 from app.calculations.schemas.evaluations import Output
-from app.catalogue.schemas.templates import Template
-from app.designs.schemas.designs import Design, Preview, Revision
+from app.catalogue.routes.templates import show_template
+from app.designs.routes.revisions import show_revision
+from app.designs.schemas.designs import Design, Preview
 from app.presentation import numbers
 from app.presentation.criteria import line
 from app.schemas.answers import Quantity
 from app.solids.schemas.analyses import AnalysisOutput
 from app.web.actions import AT_ONCE, forms_only, tag_of
-from app.web.api import Api, Refused, TheApi
+from app.web.api import Api, TheApi
 from app.web.forms import Patch, fields
 from app.web.rendering import go, show, units_of
 from app.web.routes import Id, Text
+from app.web.services import Refused
 from templates.core.units.units import compatible, unit
 
 router = APIRouter(include_in_schema=False)
@@ -51,7 +53,7 @@ async def upgrade(id: Id, request: Request, api: TheApi) -> Response:
     """A new revision with the version; where it is refused, the preview with the reason."""
     typed = await fields(request)
     template, version = typed.get("template", ""), typed.get("version", "")
-    design = await api.get(f"/designs/{id}", Design)
+    design = await api.run(api.designs.show, id)
     patch = _patch(design, template, _number(template, version))
     headers = {**AT_ONCE, "If-Match": tag_of(typed.get("revision", ""))}
     noted = {**patch, "note": f"{template} version {version}"}
@@ -89,8 +91,8 @@ async def _page(
     request: Request, api: Api, id: str, template: str, version: str, refused: Refused | None = None
 ) -> Response:
     number = _number(template, version)
-    design = await api.get(f"/designs/{id}", Design)
-    newer = await api.find(f"/templates/{template}/versions/{number}", Template)  # not of a draft
+    design = await api.run(api.designs.show, id)
+    newer = await api.find(show_template, template, number, api.catalogues)  # not of a draft
     used = {name: step.version for name, step in design.steps.items() if step.template == template}
     if not used:
         raise Refused.because(MISSING, f"no step of the design uses {template}")
@@ -102,9 +104,9 @@ async def _page(
         if wrong.status != ILL_NAMED:
             raise
         if newer is None:  # no version at all, or a draft with faults: its own answer says which
-            await api.get(f"/templates/{template}/versions/{number}", Template)
+            await api.run(show_template, template, number, api.catalogues)
         refused = refused or wrong
-    revision = await api.get(f"/designs/{id}/revisions/{design.revision}", Revision)
+    revision = await api.run(show_revision, id, design.revision, api.database)
     before = {criterion.name: criterion.verdict for criterion in revision.criteria or ()}
     return show(
         request,

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from app.catalogue.schemas.templates import Template, TemplateVersions
+from app.catalogue.routes.templates import list_template_versions
+from app.catalogue.schemas.templates import Template
 from app.web.api import Api
 
 
@@ -30,5 +31,5 @@ async def upgrades_of(api: Api, templates: Mapping[str, Template]) -> list[Upgra
 
 
 async def _newest(api: Api, id: str) -> int:
-    versions = (await api.get(f"/templates/{id}", TemplateVersions)).items
+    versions = (await api.run(list_template_versions, id, api.catalogues)).items
     return next(item.version for item in versions if item.latest)

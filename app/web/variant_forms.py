@@ -9,18 +9,17 @@ from __future__ import annotations
 from fastapi import APIRouter, Depends, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from app.designs.schemas.designs import Design
-from app.designs.schemas.network import DesignNetwork
 from app.designs.variant_sheets.grid import Grid
 from app.designs.variant_sheets.service import Kind, read_sheet
 from app.presentation.spreadsheets import XLSX
 from app.schemas.problems import Fault
-from app.web.api import Api, Refused, TheApi
+from app.web.api import Api, TheApi
 from app.web.design_page import design_page
 from app.web.forms import fields
 from app.web.multipart import forms_with_files, parts_of
 from app.web.rendering import go
 from app.web.routes import Id
+from app.web.services import Refused
 from app.web.variant_cells import CsvFile, csv_of, grid_of_form, with_units
 from app.web.variants import EMPTY, RefusedTable, places_of
 from templates.core.errors import InvalidInputs
@@ -41,8 +40,8 @@ router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_with_fil
 async def save_cells(id: Id, request: Request, api: TheApi) -> Response:
     """Save the table as edited in place."""
     typed = await fields(request)
-    design = await api.get(f"/designs/{id}", Design)
-    network = await api.get(f"/designs/{id}/network", DesignNetwork)
+    design = await api.run(api.designs.show, id)
+    network = await api.run(api.designs.network, id)
     units = {name: "" if unit == "1" else unit for name, unit in places_of(network, design).items()}
     grid = with_units(grid_of_form(typed), units)
     file = csv_of(grid)

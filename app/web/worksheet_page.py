@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from fastapi import Request, Response
 
-from app.catalogue.schemas.templates import TemplateList
+from app.solids.routes.models import list_models
 from app.web.api import Api, read
 from app.web.rendering import show
 from app.web.sheet_preview import offered, tried_in
@@ -85,7 +85,7 @@ async def editor_page(
     A version that is not released is previewed in `design`, if one is named.
     """
     answer, models = await asyncio.gather(
-        api.send("GET", f"/worksheets/{id}"), api.get("/models", TemplateList, limit=500)
+        api.send("GET", f"/worksheets/{id}"), api.run(list_models, api.catalogues, limit=500)
     )
     sheet = read(answer, Sheet)
     text = unsaved.text if unsaved else sheet.text

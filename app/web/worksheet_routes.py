@@ -10,10 +10,11 @@ from pydantic import JsonValue
 
 from app.http.roles import needs
 from app.web.actions import forms_only
-from app.web.api import Api, Refused, TheApi
+from app.web.api import Api, TheApi
 from app.web.forms import fields
 from app.web.rendering import go
 from app.web.routes import Id, Text
+from app.web.services import Refused
 from app.web.worksheet_page import Unsaved, editor_page, list_page, start_page
 from app.worksheets.schemas.worksheets import Sheet
 from templates.examples.listing import examples
@@ -150,7 +151,7 @@ async def delete(id: Id, request: Request, api: TheApi) -> Response:
         await api.send("DELETE", f"/worksheets/{id}")
     except Refused as refused:
         return await _explained(id, request, api, refused)
-    before = await api.find(f"/worksheets/{id}", Sheet)
+    before = await api.get_or_none(f"/worksheets/{id}", Sheet)
     return go(f"/worksheets/{id}" if before else "/worksheets")
 
 

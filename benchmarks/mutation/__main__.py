@@ -169,7 +169,10 @@ def recorded(record: Path) -> dict[str, dict[str, Any]]:
 
 
 def is_valid(old: dict[str, Any], new: dict[str, object]) -> bool:
-    """True if an older result still holds: same change, same code, and for a survivor the same tests."""
+    """Return whether an older result still holds.
+
+    Same change, same code, and for a survivor the same tests.
+    """
     same = all(old[name] == new[name] for name in ("file", "diff", "code"))
     is_decided = old["outcome"] not in UNDECIDED
     return same and is_decided and (old["outcome"] == "killed" or old["tests"] == new["tests"])

@@ -48,7 +48,7 @@ class DropCall(Operator):
 
     @classmethod
     def examples(cls) -> tuple[Example, ...]:
-        """One change as it is made."""
+        """Return one change as it is made."""
         return (Example("f(x)\n", "pass\n"),)
 
 

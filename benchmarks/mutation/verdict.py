@@ -52,13 +52,13 @@ class Verdict:
 
     @property
     def share(self) -> float:
-        """Share of mutants killed, equivalent ones left out; 1 if there is none."""
+        """Return the share of mutants killed, equivalent ones left out; 1 if there is none."""
         counted = self.tried - len(self.equivalent)
         return self.killed / counted if counted else 1.0
 
     @property
     def holds(self) -> bool:
-        """Whether each survivor has a reason, enough are killed, and few are called equivalent."""
+        """Return whether each survivor has a reason, enough are killed, and few are called equivalent."""
         is_argued = not self.without_reason and not self.unclear
         return (
             is_argued and self.share >= LEAST_KILLED and len(self.equivalent) <= MOST_EQUIVALENT * self.tried

@@ -36,7 +36,7 @@ class Figure:
 
     @property
     def is_met(self) -> bool | None:
-        """Whether the aim is reached; None without an aim."""
+        """Return whether the aim is reached; None without an aim."""
         if self.aim is None:
             return None
         if self.value is None:
@@ -44,7 +44,7 @@ class Figure:
         return self.value >= self.aim if self.is_floor else self.value <= self.aim
 
     def line(self) -> str:
-        """The figure as a row of a table in Markdown."""
+        """Return the figure as a row of a table in Markdown."""
         sign = "≥" if self.is_floor else "≤"
         aim = "" if self.aim is None else f"{sign} {self.aim:g} {self.unit}".rstrip()
         verdict = {None: "", True: "met", False: "**missed**"}[self.is_met]
@@ -53,7 +53,7 @@ class Figure:
 
 
 def processor_seconds(action: Callable[[], object], repeats: int = 5, warm: int = 1) -> float:
-    """The least processor time of this process for an action, children excluded [s].
+    """Return the least processor time of this process for an action, children excluded [s].
 
     The least of several runs: other work on the machine makes a run longer (caches), never shorter.
     """
@@ -67,10 +67,10 @@ def processor_seconds(action: Callable[[], object], repeats: int = 5, warm: int 
 
 
 def median_seconds(actions: list[Callable[[], object]]) -> float:
-    """The median processor time of different actions, each run once [s]."""
+    """Return the median processor time of different actions, each run once [s]."""
     return median(processor_seconds(action, repeats=1, warm=0) for action in actions)
 
 
 def most_memory(who: int = resource.RUSAGE_SELF) -> float:
-    """The most resident memory so far, of this process or of the largest of its children [MB]."""
+    """Return the most resident memory so far, of this process or of the largest of its children [MB]."""
     return resource.getrusage(who).ru_maxrss * 1024 / 1e6

@@ -20,12 +20,12 @@ SEED, ENGINES = 17, 15  # duties of engines have even numbers
 
 
 def figures() -> list[Figure]:
-    """All lines about films."""
+    """Return all lines about films."""
     return [*reynolds(), mass_conserving(), supplied()]
 
 
 def reynolds() -> list[Figure]:
-    """Mean cost and worst error of the load number, without and with extrapolation."""
+    """Return the mean cost and worst error of the load number, without and with extrapolation."""
     points = list(product(ECCENTRICITIES, WIDTHS))
     truth = np.array([extrapolated_film(eps, ratio, 512, 64)[0].So for eps, ratio in points])
     rows = []
@@ -58,7 +58,7 @@ def _film(
 
 
 def mass_conserving() -> Figure:
-    """One output of the template's example at level `mass_conserving`."""
+    """Return one output of the template's example at level `mass_conserving`."""
     output = ["minimum_film_thickness"]
     spent = processor_seconds(
         lambda: evaluate(OilFilm, OilFilm.example, level="mass_conserving", outputs=output)
@@ -69,7 +69,7 @@ def mass_conserving() -> Figure:
 
 
 def supplied() -> Figure:
-    """Supplied orbits of random engines' bearings."""
+    """Return supplied orbits of random engines' bearings."""
     _march(random_duty(SEED, 1))  # compiles
     duties = [random_duty(SEED, 2 * number) for number in range(ENGINES)]
     spent = median_seconds([lambda duty=duty: _march(duty) for duty in duties])  # type: ignore[misc]

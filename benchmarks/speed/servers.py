@@ -40,7 +40,7 @@ class Server:
 
     @property
     def url(self) -> str:
-        """The root."""
+        """Return the root."""
         return f"http://127.0.0.1:{self.port}"
 
     def processor_seconds(self) -> float:

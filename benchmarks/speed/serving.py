@@ -201,7 +201,7 @@ def build(inner_diameter: float, file: Path) -> None:
 
 
 def large_arrays(server: Server, folder: Path) -> list[Figure]:
-    """Cost of writing the answer of 10⁶ values, in both forms, without the calculation."""
+    """Return the cost of writing the answer of 10⁶ values, in both forms, without the calculation."""
     loads = np.round(np.linspace(6.3, 200, POINTS), 3)
     inputs = {**OIL_FILM, "radial_load": {"value": loads, "unit": "kN"}}
     result = evaluate(OilFilm, inputs, outputs=["minimum_film_thickness"])
@@ -220,7 +220,10 @@ def large_arrays(server: Server, folder: Path) -> list[Figure]:
 
 
 def pages(server: Server, folder: Path) -> list[Figure]:
-    """The page of a design of 60 steps, again and after a change, and its report: time of all processes."""
+    """Return the page of a design of 60 steps, again and after a change, and its report.
+
+    Time of all processes.
+    """
     step = {"template": "oil_film", "version": 1}
     steps = {
         f"film_{n}": {**step, "inputs": {**OIL_FILM, "radial_load": f"{20 + n / 7} kN"}} for n in range(STEPS)

@@ -19,7 +19,7 @@ COMMANDS = {
 
 
 def figures() -> list[Figure]:
-    """Both commands, each in new processes; the least of several."""
+    """Return both commands, each in new processes; the least of several."""
     rows = []
     for name, arguments in COMMANDS.items():
         runs = [measured([sys.executable, "-m", "app", *arguments]) for _ in range(REPEATS + 1)][1:]
@@ -32,7 +32,7 @@ def figures() -> list[Figure]:
 
 
 def measured(command: list[str]) -> tuple[float, float]:
-    """Processor time [s] and most memory [MB] of a process with its children."""
+    """Return the processor time [s] and most memory [MB] of a process with its children."""
     process = subprocess.Popen(
         command, stdout=subprocess.DEVNULL, cwd=Path(__file__).parents[2], env=environment()
     )

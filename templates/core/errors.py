@@ -41,7 +41,7 @@ class Fault:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Every name that the fault is about, its own first."""
+        """Return every name that the fault is about, its own first."""
         return (self.name, *self.also)
 
     def within(self, prefix: str) -> Fault:
@@ -150,12 +150,18 @@ _brief.maxlevel, _brief.maxlist, _brief.maxdict, _brief.maxstring, _brief.maxoth
 
 
 def excerpt(raw: Any) -> str:
-    """Anything that was sent, in a few ASCII characters: short however long or deep it is, fit for JSON."""
+    """Return anything that was sent, in a few ASCII characters.
+
+    Short however long or deep it is, fit for JSON.
+    """
     if isinstance(raw, int) and raw.bit_length() > 200:
         return "a number of more than 60 digits"
     return ascii(_brief.repr(raw))[1:-1][:80] if not isinstance(raw, str) else ascii(raw[:60])
 
 
 def plain(name: str, most: int = 80) -> str:
-    """A name that was sent, short and fit for JSON: lone surrogates are escaped, other letters kept."""
+    """Return a name that was sent, short and fit for JSON.
+
+    Lone surrogates are escaped, other letters kept.
+    """
     return name[:most].encode("utf-8", "backslashreplace").decode("utf-8")

@@ -12,7 +12,7 @@ MOST_COMPARED, SHORTLIST, LONGEST_NAME = 1000, 10, 80
 
 
 def nearest(name: str, declared: Iterable[str]) -> list[str]:
-    """At most three names that are close to `name`, the closest first.
+    """Return at most three names that are close to `name`, the closest first.
 
     `difflib` takes the square of the length, so it sees only the names that share most letters with this one.
     """

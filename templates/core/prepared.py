@@ -38,7 +38,10 @@ def may_write() -> bool:
 
 
 def file(name: str) -> str | bool:
-    """The file for Lark's `cache`, which checks by itself what it finds there; False if there can be none."""
+    """Return the file for Lark's `cache`, which checks by itself what it finds there.
+
+    False if there can be none.
+    """
     kept = place(name)
     return str(kept) if may_write() or kept.is_file() else False
 

@@ -178,7 +178,7 @@ class Cylinder(Template):
         return (self.omega >= 0) | (self.gas_cycle == "none")
 
     def ladder(self) -> tuple[str, ...]:
-        """The levels for which the rod is known well enough."""
+        """Return the levels for which the rod is known well enough."""
         known = not np.isnan(np.asarray(self.I_3)).all()
         return self.levels if known else self.levels[:1]
 

@@ -59,7 +59,7 @@ class Source:
 
 
 def read_sources(path: Path) -> dict[str, Source]:
-    """The sources of a file by their key.
+    """Return the sources of a file by their key.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def read_sources(path: Path) -> dict[str, Source]:
 
 
 def read_rows(path: Path, sources: Mapping[str, Source]) -> tuple[Row, ...]:
-    """The rows of a table, checked.
+    """Return the rows of a table, checked.
 
     Raises
     ------

@@ -39,7 +39,7 @@ class Table:
     rows: tuple[Row, ...]
 
     def row(self, id: str) -> Row | None:
-        """The row of a name; None if there is none."""
+        """Return the row of a name; None if there is none."""
         return next((row for row in self.rows if row.id == id), None)
 
 
@@ -81,7 +81,7 @@ OILS = (
 
 @cache
 def tables() -> dict[str, Table]:
-    """Every table by its id, read once.
+    """Return every table by its id, read once.
 
     Raises
     ------
@@ -115,7 +115,7 @@ def _finishes() -> Table:
 
 
 def table(id: str) -> Table:
-    """One table.
+    """Return one table.
 
     Raises
     ------
@@ -128,7 +128,7 @@ def table(id: str) -> Table:
 
 
 def limits_of(table_id: str, row_id: str) -> Mapping[str, Cited]:
-    """The limits that a row gives, by name, each with its unit and source.
+    """Return the limits that a row gives, by name, each with its unit and source.
 
     Raises
     ------
@@ -146,7 +146,7 @@ def limits_of(table_id: str, row_id: str) -> Mapping[str, Cited]:
 
 
 def fills(input_name: str) -> Iterator[tuple[Row, Cited]]:
-    """The rows whose values an input may take, such as the finishes for `journal_roughness`."""
+    """Yield the rows whose values an input may take, such as the finishes for `journal_roughness`."""
     for one in tables().values():
         names = [column.name for column in one.columns if input_name in column.fills]
         for row in one.rows:
@@ -154,7 +154,7 @@ def fills(input_name: str) -> Iterator[tuple[Row, Cited]]:
 
 
 def _read(name: str, columns: tuple[Column, ...]) -> tuple[Row, ...]:
-    """The rows of a file, whose quantities are those of the columns, in their units."""
+    """Return the rows of a file, whose quantities are those of the columns, in their units."""
     path = _FOLDER / name
     rows = read_rows(path, read_sources(SOURCES))
     units = {column.name: unit(column.unit).text for column in columns}
@@ -166,7 +166,7 @@ def _read(name: str, columns: tuple[Column, ...]) -> tuple[Row, ...]:
 
 
 def _oil(grade: str) -> Row:
-    """A grade of `templates.physics.journals.oil_grades`."""
+    """Return a grade of `templates.physics.journals.oil_grades`."""
     source = basis(grade)
     at_40, at_100 = (float(f(grade)) / MM2_PER_S for f in (viscosity_at_40, viscosity_at_100))
     values = {
@@ -177,6 +177,6 @@ def _oil(grade: str) -> Row:
 
 
 def _words_of_oil(grade: str) -> str:
-    """`sae_15w_40` as SAE 15W-40, `iso_vg_46` as ISO VG 46."""
+    """Return `sae_15w_40` as SAE 15W-40, `iso_vg_46` as ISO VG 46."""
     kind, *rest = grade.upper().split("_")
     return f"{kind} {'-'.join(rest) if kind == 'SAE' else ' '.join(rest)}"

@@ -367,7 +367,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("K", "unseen rise", symbol=r"\Delta T_{1}")
     def unseen(self) -> Array:
-        """By how much the film is hotter somewhere than the one temperature."""
+        """Return by how much the film is hotter somewhere than the one temperature."""
         return self.T_max - self.T_one
 
     @formula("1", "film Reynolds number", symbol=r"\mathrm{Re}", source=ISO)

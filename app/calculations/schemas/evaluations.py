@@ -97,7 +97,7 @@ class Jump(Quantity):
     after: Quantity = Field(description="the output just above")
 
     def in_units(self, system: System) -> Self:
-        """The root, with both sides of the equation, in a system of units."""
+        """Return the root, with both sides of the equation, in a system of units."""
         sides = {"before": self.before.in_units(system), "after": self.after.in_units(system)}
         return super().in_units(system).model_copy(update=sides)
 

@@ -27,12 +27,12 @@ class Declared(BaseModel):
 
     @property
     def has_default(self) -> bool:
-        """Whether a value stands for an empty field."""
+        """Return whether a value stands for an empty field."""
         return "default" in self.model_fields_set
 
     @cached_property
     def is_list(self) -> bool:
-        """Whether it is a list of values or a curve, as its forms say, or its example."""
+        """Return whether it is a list of values or a curve, as its forms say, or its example."""
         has_list = any(_holds_list(example) for example in self.examples)
         return has_list or (bool(self.anyOf) and all(_is_list(form) for form in self.anyOf))
 
@@ -69,7 +69,7 @@ class _Same:
 
 
 def properties(schema: Schema) -> Mapping[str, Declared]:
-    """The declarations in a schema, by name, in its order; read once while steps share the schema."""
+    """Return the declarations in a schema, by name, in its order; read once while steps share the schema."""
     return _read(_Same(schema))
 
 
@@ -79,5 +79,5 @@ def _read(same: _Same) -> Mapping[str, Declared]:
 
 
 def required(schema: Schema) -> frozenset[str]:
-    """The names without which the schema refuses an object."""
+    """Return the names without which the schema refuses an object."""
     return _NAMES.validate_python(schema["required"])

@@ -10,7 +10,6 @@ from fastapi import Header, Path, Query, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.waiting import LONGEST, finished, later, patience, written
-from app.designs import views
 from app.designs.schemas.designs import Design, MappedDesign, Proposal
 from app.designs.service import Designs, Saved
 from app.jobs.service import Jobs
@@ -52,8 +51,7 @@ def shown(
     designs: Designs, id: str, number: int | None, status: int, proposals: Sequence[Proposal] | None = None
 ) -> Response:
     """A design as of a revision, by default the newest; the ETag is that revision."""
-    with designs.database.read() as session:
-        design = views.newest(session, id, number)
+    design = designs.show(id, number)
     if proposals is not None:
         design = MappedDesign(**dict(design), proposals=list(proposals))
     return written(design, status, {"ETag": f'"{design.revision}"'})

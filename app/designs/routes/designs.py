@@ -22,7 +22,6 @@ from app.api.dependencies import (
 from app.api.waiting import accepted, later, written
 from app.designs import repository, views
 from app.designs.bodies import LONGEST_NOTE, PATCH, CopyIn, DesignIn
-from app.designs.explained import explained as explanation
 from app.designs.filtering import TEMPLATE, DesignFilter
 from app.designs.labels import key_of, tags_of
 from app.designs.previewing import Change
@@ -269,13 +268,7 @@ async def explain_name(
     verdict ← value ← formula ← inputs, and limit ← who gave it. `sensitivities` are local slopes to the
     quantities as typed.
     """
-
-    def explained() -> Explanation:
-        with designs.database.read() as session:
-            row = repository.head(session, id).document
-        return explanation(*designs.prepare(row), designs.catalogues, name, units)
-
-    return await threads.run_for(request, explained)
+    return await threads.run_for(request, designs.explanation, id, name, units)
 
 
 def _noted(body: JsonObject) -> tuple[JsonObject, str | None]:

@@ -7,8 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Response
 
 from app.api.dependencies import TheDesigns
-from app.designs import repository
-from app.designs.drives import network_json
+from app.api.waiting import written
 from app.designs.schemas.network import DesignNetwork
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
@@ -21,6 +20,4 @@ Id = Annotated[str, Path(max_length=64)]
 @router.get("/{id}/network", response_model=DesignNetwork, responses=refusals(404))
 def show_network(id: Id, designs: TheDesigns) -> Response:
     """The dependencies of a design: its blocks in order of calculation, its relations, and names for them."""
-    with designs.database.read() as session:
-        document = repository.newest(session, id).document
-    return Response(network_json(document, designs.catalogues), media_type="application/json")
+    return written(designs.network(id))

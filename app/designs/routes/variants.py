@@ -29,6 +29,7 @@ from app.api.dependencies import (
 )
 from app.api.stored import UNAVAILABLE, lost
 from app.api.waiting import LATER, accepted, finished, later, patience, written
+from app.catalogue.catalogues import Catalogues
 from app.designs.bodies import Note
 from app.designs.document import Overrides, Word
 from app.designs.routes.answers import Id, IfMatch, Number, Prefer
@@ -46,9 +47,11 @@ from app.http.attachments import is_at_hand, named, unchanged
 from app.http.clients import TheClient
 from app.http.strict_requests import StrictRoute
 from app.jobs.service import Jobs
+from app.presentation.units import System
 from app.schemas.bounds import Bounded, at_most
 from app.schemas.problems import Responses, refusals
 from app.storage.artifacts import Artifacts
+from app.storage.database import Database
 from cad.stamp import stamped
 
 router = APIRouter(
@@ -100,10 +103,22 @@ def show_variants(
 
     The ETag is the revision, which `PUT` takes as If-Match.
     """
-    with database.read() as session:
-        out = views.variants(session, id, number, catalogues, dict.fromkeys(output))
+    out = variants_of(id, number, database, catalogues, output, units)
     response.headers["ETag"] = f'"{out.revision}"'
-    return out.in_units(units)
+    return out
+
+
+def variants_of(
+    id: str,
+    number: int | None,
+    database: Database,
+    catalogues: Catalogues,
+    outputs: Sequence[str],
+    units: System,
+) -> VariantsOut:
+    """Return the variants of a revision, the newest if none is named, with some outputs of steps."""
+    with database.read() as session:
+        return views.variants(session, id, number, catalogues, dict.fromkeys(outputs)).in_units(units)
 
 
 @router.put(

@@ -33,7 +33,7 @@ class ComparedValue(Measured):
     largest: float | None = Field(None, description="of a long array, in `unit`")
 
     def in_units(self, system: System) -> Self:
-        """The value, or the range, in a system of units."""
+        """Return the value, or the range, in a system of units."""
         shown = super().in_units(system)
         if self.unit is None or shown.unit == self.unit or "least" not in self.model_fields_set:
             return shown

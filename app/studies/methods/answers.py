@@ -42,12 +42,12 @@ class Problem:
 
     @property
     def senses(self) -> Array:
-        """1 for each objective to minimise, -1 to maximise, shape (k,)."""
+        """Return 1 for each objective to minimise, -1 to maximise, shape (k,)."""
         return np.array([1.0 if one.sense == "minimise" else -1.0 for one in self.objectives])
 
     @property
     def signs(self) -> Array:
-        """1 for each criterion with `>=`, -1 with `<=`, shape (m,)."""
+        """Return 1 for each criterion with `>=`, -1 with `<=`, shape (m,)."""
         return np.array([1.0 if one.sign == ">=" else -1.0 for one in self.held])
 
 
@@ -79,7 +79,7 @@ class Columns:
     seconds: float = 0.0
 
     def row(self, number: int) -> Columns:
-        """One row, as columns of a single row."""
+        """Return one row, as columns of a single row."""
         part = slice(number, number + 1)
         arrays = (self.objectives, self.values, self.limits, self.low, self.high)
         objectives, values, limits, low, high = (array[part] for array in arrays)
@@ -87,12 +87,15 @@ class Columns:
         return Columns(objectives, values, limits, low, high, reasons)
 
     def worst(self, problem: Problem) -> Array:
-        """The margin of each criterion at the bad end of its band, shape (N, m); itself if it has none."""
+        """Return the margin of each criterion at the bad end of its band, shape (N, m).
+
+        Itself if it has none.
+        """
         margins = problem.signs * (self.values - self.limits)
         return np.where(np.isfinite(self.low), self.low, margins)
 
     def verdicts(self, problem: Problem) -> tuple[Verdict, ...]:
-        """The verdict on each criterion in the first row."""
+        """Return the verdict on each criterion in the first row."""
         margins = problem.signs * (self.values - self.limits)
         return tuple(map(_verdict, margins[0], self.low[0], self.high[0]))
 
@@ -104,7 +107,7 @@ def _verdict(margin: float, low: float, high: float) -> Verdict:
 
 
 def exact(problem: Problem, objectives: Array, values: Array, limits: Array) -> Columns:
-    """Columns whose criteria have bands of no width; `limits` may be one row for all."""
+    """Return columns whose criteria have bands of no width; `limits` may be one row for all."""
     limits = np.broadcast_to(limits, values.shape)
     margin = problem.signs * (values - limits)
     return Columns(objectives, values, limits, margin, margin)
@@ -123,7 +126,7 @@ class Counted:
         self.seconds = 0.0
 
     def __call__(self, rows: Array) -> Columns:
-        """The results of rows [SI]."""
+        """Return the results of rows [SI]."""
         columns = self._answer(rows)
         self.rows += len(rows)
         self.seconds += columns.seconds
@@ -135,7 +138,7 @@ class AllRefused(InvalidInputs):
 
 
 def all_refused(problem: Problem, columns: Columns, count: int) -> AllRefused:
-    """The error of a search none of whose rows has results, with the reasons given most often."""
+    """Return the error of a search none of whose rows has results, with the reasons given most often."""
     reasons = Counter(columns.reasons.values()).most_common(3)
     listed = "; ".join(f"{times} times: {reason}" for reason, times in reasons) or _absent(problem, columns)
     detail = f"none of {count} rows within the bounds can be calculated ({listed}); change the bounds"
@@ -143,7 +146,7 @@ def all_refused(problem: Problem, columns: Columns, count: int) -> AllRefused:
 
 
 def _absent(problem: Problem, columns: Columns) -> str:
-    """A sentence on the results that no row has."""
+    """Return a sentence on the results that no row has."""
     named = [(one.name, columns.objectives[:, n]) for n, one in enumerate(problem.objectives)]
     named += [(f"criterion {one.name}", columns.values[:, n]) for n, one in enumerate(problem.held)]
     named += [(f"limit of {one.name}", columns.limits[:, n]) for n, one in enumerate(problem.held)]

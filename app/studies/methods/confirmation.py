@@ -60,7 +60,7 @@ class Round:
 
     @property
     def is_met(self) -> bool:
-        """Whether the place has results, and every criterion is met."""
+        """Return whether the place has results, and every criterion is met."""
         return bool(np.isfinite(self.confirmed).all()) and all(one == "met" for one in self.verdicts)
 
 
@@ -83,16 +83,19 @@ class Run:
 
     @property
     def seconds(self) -> float:
-        """The time of the rows [s], as the answers state it."""
+        """Return the time of the rows [s], as the answers state it."""
         return self.explore.seconds + self._confirm.seconds
 
     @property
     def rows(self) -> tuple[int, int]:
-        """Rows asked of the coarse and of the fine level."""
+        """Return rows asked of the coarse and of the fine level."""
         return self.explore.rows, self._confirm.rows
 
     def confirmed(self, unit: Array) -> tuple[list[Round], Columns]:
-        """Places of the unit cube, shape (N, d), at the fine level, and its columns; corrects nothing yet."""
+        """Return places of the unit cube, shape (N, d), at the fine level, and its columns.
+
+        Corrects nothing yet.
+        """
         at = self.problem.space.at(unit)
         self._coarse, fine = self.explore(at), self._confirm(at)
         seen = self.surface.seen(unit, self._coarse)
@@ -114,7 +117,7 @@ class Run:
         )
 
     def unknown_place(self) -> Array:
-        """The place farthest from all confirmed ones, shape (1, d), in the best quarter of the scan.
+        """Return the place farthest from all confirmed ones, shape (1, d), in the best quarter of the scan.
 
         Best is what is nearest to feasible by the coarse level alone, without corrections.
         """
@@ -139,6 +142,6 @@ class Run:
 
 
 def unmet(rounds: Sequence[Round]) -> State:
-    """The state of a search whose agreed places are not met."""
+    """Return the state of a search whose agreed places are not met."""
     verdicts = {verdict for one in rounds for verdict in one.verdicts}
     return "infeasible" if "not_met" in verdicts else "undecided"

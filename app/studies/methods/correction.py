@@ -47,18 +47,18 @@ class Seen:
 
     @property
     def violation(self) -> Array:
-        """The largest relative distance on the wrong side of a limit, shape (N,); zero is feasible."""
+        """Return the largest relative distance on the wrong side of a limit, shape (N,); zero is feasible."""
         worst = np.max(-self.margins, axis=1, initial=0.0)
         return np.where(np.isnan(self.margins).any(axis=1), np.nan, worst)
 
     @property
     def complete(self) -> Mask:
-        """Which rows have all results, shape (N,)."""
+        """Return which rows have all results, shape (N,)."""
         return np.asarray(np.isfinite(np.hstack([self.objectives, self.margins])).all(axis=1))
 
 
 def stacked(columns: Columns) -> Array:
-    """Objectives, values and limits side by side, shape (N, k + 2 m)."""
+    """Return objectives, values and limits side by side, shape (N, k + 2 m)."""
     return np.hstack([columns.objectives, columns.values, columns.limits])
 
 
@@ -75,11 +75,11 @@ class Corrected:
         self.reserve = np.zeros(len(problem.held))
 
     def __call__(self, unit: Array) -> Seen:
-        """The promises at places of the unit cube, shape (N, d)."""
+        """Return the promises at places of the unit cube, shape (N, d)."""
         return self.seen(unit, self.answer(self.problem.space.at(unit)))
 
     def seen(self, unit: Array, columns: Columns) -> Seen:
-        """The promises at places where the coarse level has been asked already."""
+        """Return the promises at places where the coarse level has been asked already."""
         weights = self._weights(unit)
         promise = self._promise(stacked(columns), weights)
         count, held = len(self.problem.objectives), len(self.problem.held)
@@ -103,13 +103,16 @@ class Corrected:
         return any(float(np.linalg.norm(unit - place)) < CLOSE for place in self.places)
 
     def _weights(self, unit: Array) -> Array:
-        """Weight of each confirmed place, shape (N, a); each row adds up to one."""
+        """Return the weight of each confirmed place, shape (N, a); each row adds up to one."""
         if not self.places:
             return np.empty((len(unit), 0))
         return kriging_weights(np.array(self.places), unit)
 
     def _guard(self, values: Array, weights: Array) -> Array:
-        """The half of each band that is bad [SI], shape (N, m), as the fine level had it; none at first."""
+        """Return the half of each band that is bad [SI], shape (N, m), as the fine level had it.
+
+        None at first.
+        """
         if not self.guards:
             return np.zeros_like(values)
         return np.asarray(np.abs(values) * np.maximum(weights @ np.array(self.guards), 0.0))
@@ -126,7 +129,7 @@ class Corrected:
 
 
 def _kriged(weights: Array, values: Array) -> Array:
-    """Values at places interpolated; beyond their own range by no more than its width."""
+    """Return values at places interpolated; beyond their own range by no more than its width."""
     low, high = values.min(axis=0), values.max(axis=0)
     return np.clip(weights @ values, 2 * low - high, 2 * high - low)
 

@@ -25,7 +25,7 @@ class Population(Protocol):
     def __len__(self) -> int: ...
 
     def get(self, name: str) -> Array:
-        """Of all members the variables `X`, the objectives `F` or the constraints `G`."""
+        """Return of all members the variables `X`, the objectives `F` or the constraints `G`."""
         ...
 
 
@@ -35,7 +35,7 @@ class Algorithm(Protocol):
     pop: Population
 
     def ask(self) -> Population | None:
-        """The members to evaluate."""
+        """Return the members to evaluate."""
         ...
 
     def tell(self, *, infills: Population) -> object:
@@ -46,7 +46,7 @@ class Algorithm(Protocol):
 def evolved(
     surface: Corrected, population: Array, seeds: tuple[int, int], generations: int, stages: Stages, name: str
 ) -> Array:
-    """The last population of NSGA-II, as places of the unit cube, shape (P, d).
+    """Return the last population of NSGA-II, as places of the unit cube, shape (P, d).
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def evolved(
 
 
 def _next(surface: Corrected, members: tuple[Array, ...], size: int, seed: int) -> tuple[Array, ...] | None:
-    """The next generation: places, objectives and constraints; None if no new places come up."""
+    """Return the next generation: places, objectives and constraints; None if no new places come up."""
     kinds = surface.problem
     problem = extra("pymoo.core.problem").Problem(
         n_var=len(kinds.space), n_obj=len(kinds.objectives), n_ieq_constr=len(kinds.held) + 1, xl=0.0, xu=1.0
@@ -101,7 +101,10 @@ def _tell(
 
 
 def _for_pymoo(seen: Seen) -> tuple[Array, Array]:
-    """Objectives and constraints, which hold at zero or less; one more says whether a row has results."""
+    """Return objectives and constraints, which hold at zero or less.
+
+    One more says whether a row has results.
+    """
     complete = seen.complete
     objectives = np.where(complete[:, None], seen.objectives, 0.0)
     margins = np.where(complete[:, None], -seen.margins, 0.0)

@@ -9,7 +9,7 @@ from templates.core.errors import Fault, InvalidInputs
 
 
 def extra(module: str) -> ModuleType:
-    """A module of SALib or of pymoo.
+    """Return a module of SALib or of pymoo.
 
     Raises
     ------

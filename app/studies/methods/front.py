@@ -77,7 +77,7 @@ def pareto_front(
     within: float = WITHIN,
     journal: Journal | None = None,
 ) -> Front:
-    """The front of a problem of several objectives; parameters as of `optimise`.
+    """Return the front of a problem of several objectives; parameters as of `optimise`.
 
     What `journal` has kept of an earlier call with equal arguments is not calculated again.
 
@@ -119,7 +119,7 @@ def dominations(objectives: Array) -> Integers:
 
 
 def _state(rounds: list[Round]) -> State | None:
-    """The state in which the search ends with these places; None if it goes on."""
+    """Return the state in which the search ends with these places; None if it goes on."""
     if not all(one.agrees for one in rounds):
         return None
     if all(one.is_met for one in rounds):
@@ -130,7 +130,7 @@ def _state(rounds: list[Round]) -> State | None:
 
 
 def _first(run: Run, count: int) -> Array:
-    """The best rows of the scan, spread as evenly as they are there."""
+    """Return the best rows of the scan, spread as evenly as they are there."""
     seen = run.surface.seen(run.scanned.unit, run.scanned.columns)
     if not (seen.violation == 0).any():  # the feasible places are few: evolution starts from one of them
         return np.vstack([best(run.surface, run.scanned).unit[None], run.scanned.unit[: count - 1]])
@@ -140,7 +140,10 @@ def _first(run: Run, count: int) -> Array:
 
 
 def _chosen(surface: Corrected, population: Array, count: int) -> Array:
-    """Places of a population's front to confirm, far from each other; without a feasible one the nearest."""
+    """Return places of a population's front to confirm, far from each other.
+
+    Without a feasible one the nearest.
+    """
     unit = np.unique(population, axis=0)
     seen = surface(unit)
     feasible = seen.complete & (seen.violation == 0)
@@ -153,7 +156,7 @@ def _chosen(surface: Corrected, population: Array, count: int) -> Array:
 
 
 def _polished(surface: Corrected, unit: Array, objectives: Array) -> Array:
-    """Each place with its first objective as small as it gets while no other grows.
+    """Return each place with its first objective as small as it gets while no other grows.
 
     NSGA-II keeps places in the gaps of its front that are not quite of it.
     """
@@ -166,7 +169,7 @@ def _polished(surface: Corrected, unit: Array, objectives: Array) -> Array:
 
 
 def spread(objectives: Array, count: int) -> list[int]:
-    """Up to `count` rows far from each other, the least of each objective first; shape (N, k)."""
+    """Return up to `count` rows far from each other, the least of each objective first; shape (N, k)."""
     low, high = objectives.min(axis=0), objectives.max(axis=0)
     scaled = (objectives - low) / np.where(high > low, high - low, 1.0)
     chosen = list(dict.fromkeys(int(row) for row in scaled.argmin(axis=0)))

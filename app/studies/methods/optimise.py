@@ -70,7 +70,7 @@ def optimise(
     rounds: int = ROUNDS,
     within: float = WITHIN,
 ) -> Optimum:
-    """The optimum of the first objective of a problem.
+    """Return the optimum of the first objective of a problem.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def optimise(
 
 
 def _next(run: Run) -> Array:
-    """The place to confirm, shape (1, d): the optimum by all that is known.
+    """Return the place to confirm, shape (1, d): the optimum by all that is known.
 
     If nothing is feasible by that, and the place next to the limits is known already, it is a place far from
     all that are known: the corrections may be what is wrong there.
@@ -115,7 +115,7 @@ def _next(run: Run) -> Array:
 
 
 def _state(done: list[Round]) -> State | None:
-    """The state in which the search ends with the last round; None if it goes on."""
+    """Return the state in which the search ends with the last round; None if it goes on."""
     confirmed = done[-1]
     if not np.isfinite(confirmed.confirmed).all():
         return "not_settled"
@@ -130,7 +130,7 @@ def _state(done: list[Round]) -> State | None:
 
 
 def _optimum(run: Run, done: list[Round], state: State | None) -> Optimum:
-    """The optimum, from the rounds done; without a state it is in vain or has not settled."""
+    """Return the optimum, from the rounds done; without a state it is in vain or has not settled."""
     sense = float(run.problem.senses[0])
     met = [one for one in done if one.is_met]
     chosen = done[-1]
@@ -146,7 +146,7 @@ def _optimum(run: Run, done: list[Round], state: State | None) -> Optimum:
 
 
 def violated(problem: Problem, place: Round, scales: Array) -> tuple[Violation, ...]:
-    """The criteria that a place does not meet, the least violated first; `scales` [SI], shape (m,)."""
+    """Return the criteria that a place does not meet, the least violated first; `scales` [SI], shape (m,)."""
     count, held = len(problem.objectives), len(problem.held)
     values, limits = place.confirmed[count : count + held], place.confirmed[count + held :]
     by = (-problem.signs * (values - limits)).tolist()

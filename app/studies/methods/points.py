@@ -23,7 +23,7 @@ class Points(Protocol):
         ...
 
     def rows(self, first: int, last: int) -> Array:
-        """Rows number `first` to `last`, the last one excluded, shape (last - first, d)."""
+        """Return rows number `first` to `last`, the last one excluded, shape (last - first, d)."""
         ...
 
 
@@ -39,7 +39,7 @@ class Table:
         return len(self.values)
 
     def rows(self, first: int, last: int) -> Array:
-        """Rows number `first` to `last`, the last one excluded."""
+        """Return rows number `first` to `last`, the last one excluded."""
         return self.values[first:last]
 
 
@@ -60,7 +60,7 @@ class Grid:
 
     @cached_property
     def axes(self) -> tuple[Array, ...]:
-        """The values [SI] of each variable."""
+        """Return the values [SI] of each variable."""
         return tuple(v.steps(self.steps.get(v.name, 0)) for v in self.space.variables)
 
     @property
@@ -74,7 +74,7 @@ class Grid:
         return prod(self.shape)
 
     def rows(self, first: int, last: int) -> Array:
-        """Rows number `first` to `last`, the last one excluded."""
+        """Return rows number `first` to `last`, the last one excluded."""
         numbers = np.arange(first, min(last, self.count))
         places = np.unravel_index(numbers, self.shape)
         return np.stack([axis[place] for axis, place in zip(self.axes, places, strict=True)], axis=-1)
@@ -89,11 +89,11 @@ class Sobol:
     seed: int
 
     def unit(self, first: int, last: int) -> Array:
-        """The rows as places in the unit cube."""
+        """Return the rows as places in the unit cube."""
         return sobol_sequence(len(self.space), self.seed, first, min(last, self.count))
 
     def rows(self, first: int, last: int) -> Array:
-        """Rows number `first` to `last`, the last one excluded."""
+        """Return rows number `first` to `last`, the last one excluded."""
         return self.space.at(self.unit(first, last))
 
 
@@ -119,15 +119,15 @@ class LatinHypercube:
 
     @cached_property
     def _unit(self) -> Array:
-        """All rows at once: where one lies depends on all others."""
+        """Return all rows at once: where one lies depends on all others."""
         from scipy.stats import qmc
 
         return np.asarray(qmc.LatinHypercube(len(self.space), rng=self.seed).random(self.count))
 
     def unit(self, first: int, last: int) -> Array:
-        """The rows as places in the unit cube."""
+        """Return the rows as places in the unit cube."""
         return self._unit[first:last]
 
     def rows(self, first: int, last: int) -> Array:
-        """Rows number `first` to `last`, the last one excluded."""
+        """Return rows number `first` to `last`, the last one excluded."""
         return self.space.at(self.unit(first, last))

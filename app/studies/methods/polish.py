@@ -84,7 +84,7 @@ class _Tangent:
         self.places: list[Place] = []
 
     def unit(self, z: Array) -> Array:
-        """The place in the unit cube for values of the free variables."""
+        """Return the place in the unit cube for values of the free variables."""
         place = self._start.copy()
         place[self.free] = np.clip(z, 0.0, 1.0)
         return place
@@ -123,7 +123,7 @@ class _Tangent:
         return float(both[0, 0]), across[0], both[0, 1:], across[1:]
 
     def _steps(self, place: Array) -> tuple[Array, Array]:
-        """Two steps for each free variable, to both sides, or to one side at a bound."""
+        """Return two steps for each free variable, to both sides, or to one side at a bound."""
         z = place[self.free]
         below = np.where(z < STEP, 2 * STEP, -STEP)
         above = np.where(z > 1 - STEP, -2 * STEP, STEP)
@@ -135,12 +135,15 @@ class _Tangent:
 
 
 def _refused(free: int, held: int) -> Linear:
-    """A flat place so bad that the line search comes back from it."""
+    """Return a flat place so bad that the line search comes back from it."""
     return REFUSED, np.zeros(free), np.full(held, -1.0), np.zeros((held, free))
 
 
 def _slopes(middle: Array, one: Array, other: Array, a: Array, b: Array) -> Array:
-    """Slopes at 0 of the parabola through (0, middle), (a, one), (b, other); of a line if one is missing."""
+    """Return slopes at 0 of the parabola through (0, middle), (a, one), (b, other).
+
+    Of a line if one is missing.
+    """
     a, b = a[:, None], b[:, None]
     with np.errstate(all="ignore"):
         first, second = (one - middle) / a, (other - middle) / b
@@ -151,7 +154,7 @@ def _slopes(middle: Array, one: Array, other: Array, a: Array, b: Array) -> Arra
 
 
 def polished(scaled: Scaled, start: Array, accuracy: float = ACCURACY) -> Place:
-    """The best place on the way of SLSQP from a start, to an accuracy of the scaled objective."""
+    """Return the best place on the way of SLSQP from a start, to an accuracy of the scaled objective."""
     tangent = _Tangent(scaled, start, scaled.surface.problem.space.continuous)
     first = tangent(start[tangent.free])
     if tangent.free.size and first[0] < REFUSED:
@@ -165,7 +168,10 @@ def _slsqp(tangent: _Tangent, start: Array, held: int, accuracy: float) -> None:
 
 
 def relaxed(scaled: Scaled, place: Place) -> Place:
-    """The place of least violation near a place: the violation t becomes the objective, margins + t >= 0."""
+    """Return the place of least violation near a place.
+
+    The violation t becomes the objective, margins + t >= 0.
+    """
     tangent = _Tangent(scaled, place.unit, scaled.surface.problem.space.continuous)
     start = place.unit[tangent.free]
     margins = tangent(start)[2]

@@ -71,7 +71,10 @@ def _places(space: Space, seed: int) -> Array:
 
 
 def scales(columns: Columns) -> Array:
-    """The scale [SI] of each criterion, shape (m,): its limit, or its value where the limit is zero."""
+    """Return the scale [SI] of each criterion, shape (m,).
+
+    Its limit, or its value where the limit is zero.
+    """
     with np.errstate(all="ignore"):
         return np.array([_scale(*pair) for pair in zip(columns.limits.T, columns.values.T, strict=True)])
 
@@ -84,7 +87,7 @@ def _scale(limits: Array, values: Array) -> float:
 
 
 def best(surface: Corrected, scanned: Scan, starts: tuple[Array, ...] = ()) -> Place:
-    """The best place that the polish finds from the best of the scan, and from `starts` besides."""
+    """Return the best place that the polish finds from the best of the scan, and from `starts` besides."""
     seen = surface.seen(scanned.unit, scanned.columns)
     scaled = Scaled(surface, *middle_and_width(seen.objectives[seen.complete]))
     count = AGAIN if starts else STARTS
@@ -98,14 +101,17 @@ def best(surface: Corrected, scanned: Scan, starts: tuple[Array, ...] = ()) -> P
 
 
 def middle_and_width(objectives: Array) -> tuple[Array, Array]:
-    """The middle and the width of each objective, shape (N, k), over rows; no width is zero."""
+    """Return the middle and the width of each objective, shape (N, k), over rows; no width is zero."""
     low, middle, high = np.percentile(objectives, [10, 50, 90], axis=0)
     sizes = [high - low, np.abs(middle), np.ones_like(middle)]
     return middle, np.select([size > 0 for size in sizes], sizes)
 
 
 def _starts(space: Space, unit: Array, seen: Seen, count: int) -> list[int]:
-    """Rows of the scan to polish: the best, no two close together or of the same combination of lists."""
+    """Return rows of the scan to polish.
+
+    The best, no two close together or of the same combination of lists.
+    """
     rows = np.flatnonzero(seen.complete)
     order = rows[np.lexsort((seen.objectives[rows, 0], seen.violation[rows]))].astype(np.int64)
     if not space.continuous.all():

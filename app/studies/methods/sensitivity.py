@@ -24,7 +24,7 @@ CONFIDENCE = 0.95
 
 
 def slopes(points: Local, output: str, y: Array) -> Slopes:
-    """The slopes of an output at a point from its values [SI] at the rows of `points`.
+    """Return the slopes of an output at a point from its values [SI] at the rows of `points`.
 
     Raises
     ------
@@ -51,13 +51,13 @@ class MorrisPoints:
 
     @cached_property
     def unit(self) -> Array:
-        """All rows as places in the unit cube."""
+        """Return all rows as places in the unit cube."""
         sample = extra("SALib.sample.morris").sample
         problem, random = _problem(self.space), np.random.default_rng(self.seed)
         return np.asarray(sample(problem, self.trajectories, num_levels=self.levels, seed=random))
 
     def rows(self, first: int, last: int) -> Array:
-        """Rows number `first` to `last`, the last one excluded."""
+        """Return rows number `first` to `last`, the last one excluded."""
         return self.space.at(self.unit[first:last])
 
 
@@ -80,7 +80,7 @@ class Effects:
 
 
 def effects(points: MorrisPoints, output: str, y: Array) -> Effects:
-    """The elementary effects of an output from its values [SI] at the rows of `points`.
+    """Return the elementary effects of an output from its values [SI] at the rows of `points`.
 
     Raises
     ------
@@ -127,13 +127,13 @@ class SobolPoints:
 
     @cached_property
     def unit(self) -> Array:
-        """All rows as places in the unit cube."""
+        """Return all rows as places in the unit cube."""
         sample = extra("SALib.sample.sobol").sample
         problem, random = _problem(self.space), np.random.default_rng(self.seed)
         return np.asarray(sample(problem, self.base, calc_second_order=False, seed=random))
 
     def rows(self, first: int, last: int) -> Array:
-        """Rows number `first` to `last`, the last one excluded."""
+        """Return rows number `first` to `last`, the last one excluded."""
         return self.space.at(self.unit[first:last])
 
 
@@ -151,7 +151,7 @@ class Indices:
 
 
 def indices(points: SobolPoints, output: str, y: Array) -> Indices:
-    """The Sobol' indices of an output from its values [SI] at the rows of `points`.
+    """Return the Sobol' indices of an output from its values [SI] at the rows of `points`.
 
     Raises
     ------
@@ -176,7 +176,7 @@ def indices(points: SobolPoints, output: str, y: Array) -> Indices:
 
 
 def _problem(space: Space) -> dict[str, object]:
-    """The unit cube as a problem of SALib."""
+    """Return the unit cube as a problem of SALib."""
     return {"num_vars": len(space), "names": space.names, "bounds": [[0.0, 1.0]] * len(space)}
 
 

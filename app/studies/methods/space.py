@@ -37,7 +37,7 @@ class Interval:
             raise _bounds(self.name, "spacing `log` needs bounds above zero")
 
     def at(self, u: Array) -> Array:
-        """The values [SI] at places `u` from 0 to 1."""
+        """Return the values [SI] at places `u` from 0 to 1."""
         if self.spacing == "log":
             values = self.low * np.exp(u * math.log(self.high / self.low))
         else:
@@ -45,7 +45,7 @@ class Interval:
         return np.where(u >= 1.0, self.high, np.clip(values, self.low, self.high))
 
     def place(self, values: Array) -> Array:
-        """The places from 0 to 1 of values [SI] within the bounds."""
+        """Return the places from 0 to 1 of values [SI] within the bounds."""
         if self.spacing == "log":
             places = np.log(values / self.low) / math.log(self.high / self.low)
         else:
@@ -53,7 +53,7 @@ class Interval:
         return np.clip(places, 0.0, 1.0)
 
     def steps(self, count: int) -> Array:
-        """`count` values [SI], the bounds among them."""
+        """Return `count` values [SI], the bounds among them."""
         if count < 2:
             raise InvalidInputs([Fault(self.name, "steps", f"{self.name}: a grid needs at least 2 steps")])
         return self.at(np.linspace(0.0, 1.0, count))
@@ -78,17 +78,17 @@ class Values:
             raise InvalidInputs([Fault(self.name, "values", detail)])
 
     def at(self, u: Array) -> Array:
-        """The values at places `u` from 0 to 1: each has an equal share of them."""
+        """Return the values at places `u` from 0 to 1: each has an equal share of them."""
         index = np.minimum(np.floor(u * len(self.values)).astype(np.int64), len(self.values) - 1)
         return np.array(self.values)[index]
 
     def place(self, values: Array) -> Array:
-        """The middle of the share of the nearest value of the list."""
+        """Return the middle of the share of the nearest value of the list."""
         nearest = np.abs(values[..., None] - np.array(self.values)).argmin(axis=-1)
         return np.asarray((nearest + 0.5) / len(self.values))
 
     def steps(self, count: int) -> Array:
-        """All values, whatever the count."""
+        """Return all values, whatever the count."""
         return np.array(self.values)
 
 
@@ -106,20 +106,20 @@ class Space:
 
     @property
     def names(self) -> list[str]:
-        """The names of the variables, in the order of the columns."""
+        """Return the names of the variables, in the order of the columns."""
         return [variable.name for variable in self.variables]
 
     @property
     def continuous(self) -> Mask:
-        """Which variables take any value between two bounds, shape (d,)."""
+        """Return which variables take any value between two bounds, shape (d,)."""
         return np.array([isinstance(variable, Interval) for variable in self.variables], dtype=bool)
 
     def at(self, unit: Array) -> Array:
-        """Rows [SI] from rows of the unit cube, shape (N, d)."""
+        """Return rows [SI] from rows of the unit cube, shape (N, d)."""
         return _by_column([v.at(u) for v, u in zip(self.variables, unit.T, strict=True)], unit)
 
     def place(self, rows: Array) -> Array:
-        """Rows of the unit cube from rows [SI], shape (N, d)."""
+        """Return rows of the unit cube from rows [SI], shape (N, d)."""
         return _by_column([v.place(x) for v, x in zip(self.variables, rows.T, strict=True)], rows)
 
 

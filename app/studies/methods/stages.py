@@ -38,7 +38,7 @@ class Journal(Protocol):
     """A store of stages."""
 
     def stored(self, name: str) -> Stage | None:
-        """The stage of a name, as it was kept last."""
+        """Return the stage of a name, as it was kept last."""
         ...
 
     def keep(self, name: str, stage: Stage) -> None:
@@ -69,7 +69,7 @@ class Stages:
         following: Callable[[int, tuple[Array, ...]], tuple[Array, ...] | None],
         count: int,
     ) -> tuple[Array, ...]:
-        """The arrays after `count` steps, or after the one that has nothing to follow it.
+        """Return the arrays after `count` steps, or after the one that has nothing to follow it.
 
         Parameters
         ----------
@@ -93,5 +93,5 @@ class Stages:
         return stage.arrays
 
     def once(self, name: str, make: Callable[[], Array]) -> Array:
-        """The result of a stage of a single step."""
+        """Return the result of a stage of a single step."""
         return self.stepped(name, lambda: (), lambda number, arrays: (make(),), 1)[0]

@@ -11,7 +11,7 @@ from app.studies.methods.optimise import Optimum, optimise
 def trade(
     problem: Problem, levels: Mapping[str, Answer], confirm: Answer, *, seed: int
 ) -> dict[str, Optimum]:
-    """For each level the optimum that it finds alone, confirmed once and not corrected.
+    """Return for each level the optimum that it finds alone, confirmed once and not corrected.
 
     The `best` of an optimum has `at`, `promise`, `confirmed` and `verdicts`; rows and cost stand beside it.
     All levels are scanned at the same rows.

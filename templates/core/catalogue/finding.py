@@ -38,7 +38,7 @@ class Catalogue(Generic[T]):
 
     @cached_property
     def ids(self) -> tuple[str, ...]:
-        """Every id, sorted."""
+        """Return every id, sorted."""
         return tuple(sorted({id for id, _ in self.versions}))
 
     def of(self, id: str) -> dict[int, type[T]]:

@@ -26,7 +26,9 @@ DIGITS = 3  # significant digits of a recorded number beyond the precision to wh
 
 
 def record(cls: type[Template], more: Iterable[Mapping[str, Any]] = ()) -> dict[str, Any]:
-    """The golden record of one version: SI inputs and SI results of the example and of steps around it.
+    """Return the golden record of one version.
+
+    SI inputs and SI results of the example and of steps around it.
 
     Parameters
     ----------
@@ -46,7 +48,10 @@ def record(cls: type[Template], more: Iterable[Mapping[str, Any]] = ()) -> dict[
 
 
 def codes(refusal: InvalidInputs) -> list[str]:
-    """Why inputs are refused: each code once, because how many faults one cause makes is not a result."""
+    """Return why inputs are refused.
+
+    Each code once, because how many faults one cause makes is not a result.
+    """
     return sorted({fault.code for fault in refusal.faults})
 
 
@@ -77,7 +82,10 @@ def freeze(cls: type[Template], folder: Path) -> Path:
 
 
 def _as_text(content: Mapping[str, Any]) -> str:
-    """A record as JSON with a line for each case; numbers with `DIGITS` more than its precision asks for."""
+    """Return a record as JSON with a line for each case.
+
+    Numbers with `DIGITS` more than its precision asks for.
+    """
     lists = {name: value for name, value in content.items() if isinstance(value, list)}
     parts = [f"{_json(name)}: {_json(value)}" for name, value in content.items() if name not in lists]
     for name, cases in lists.items():
@@ -152,7 +160,7 @@ def _given(cls: type[Template], others: Mapping[str, Any] | None = None) -> dict
 
 
 def _steps(declared: Input, value: Any) -> list[Any]:
-    """Other values of one input: the other options, a number more or fewer, 10 % below and above."""
+    """Return other values of one input: the other options, a number more or fewer, 10 % below and above."""
     if value is None or isinstance(value, tuple):
         return []
     if isinstance(declared, Choice):
@@ -184,7 +192,7 @@ def _plain(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _without_nan(value: NDArray[Any]) -> Any:
-    """As JSON, null where there is none."""
+    """Return an array as JSON, null for NaN."""
     plain = value.astype(object)
     plain[np.isnan(value)] = None
     return plain.tolist()

@@ -39,7 +39,9 @@ class _Text:
 
 
 def load(path: Path, content: bytes, digest: str = "") -> ModuleType:
-    """The module that the content of a file makes; made once for each digest, by default that of the content.
+    """Return the module that the content of a file makes.
+
+    Made once for each digest, by default that of the content.
 
     Raises
     ------
@@ -83,7 +85,10 @@ def text_of(module: ModuleType) -> str | None:
 
 
 def is_outside(cls: type) -> bool:
-    """True if a class comes from outside the packages of this program: a team's file, worksheet or model."""
+    """Return whether a class comes from outside the packages of this program.
+
+    A team's file, worksheet or model.
+    """
     return cls.__module__.partition(".")[0] in (OUTSIDE, WORKSHEETS, BROUGHT)
 
 

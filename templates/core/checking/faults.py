@@ -20,6 +20,6 @@ class FileFault:
 
     @property
     def sentence(self) -> str:
-        """The fault in one line, such as `line 12: …; correct this line`."""
+        """Return the fault in one line, such as `line 12: …; correct this line`."""
         where = f"line {self.line}: " if self.line else ""
         return f"{where}{self.what}; {self.remedy}"

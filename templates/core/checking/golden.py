@@ -20,12 +20,18 @@ NEW_VERSION = "undo the edit, and put the change into a new version"
 
 
 def records(path: Path) -> tuple[Path, ...]:
-    """The files in which a golden record may stand: beside a team's file, or in a folder `golden` there."""
+    """Return the files in which a golden record may stand.
+
+    Beside a team's file, or in a folder `golden` there.
+    """
     return path.with_suffix(".json"), path.parent / "golden" / f"{path.stem}.json"
 
 
 def faults_of_release(cls: type[Template], path: Path) -> Iterator[FileFault]:
-    """Results that differ from the golden record, which quarantine; a digest that does, which is reported."""
+    """Yield results that differ from the golden record, which quarantine.
+
+    A digest that does, which is reported.
+    """
     for file in records(path):
         if file.is_file():
             yield from _against(cls, file)

@@ -54,7 +54,7 @@ class Estimate:
 
     @property
     def is_exact(self) -> bool:
-        """Whether the band has no width."""
+        """Return whether the band has no width."""
         if isinstance(self.error, float):
             return self.error == 0
         return not self.error.any()
@@ -81,7 +81,7 @@ def spread(value: Value, axes: int) -> Value:
 
 
 def band(value: Value, error: Value) -> Bounds:
-    """From where to where the truth may lie, for values of a stated relative error.
+    """Return the range in which the truth may lie, for values of a stated relative error.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def band(value: Value, error: Value) -> Bounds:
 
 
 def _band_of_one(value: float, error: float) -> tuple[float, float]:
-    """As `band`, of a single value, at a tenth of the cost."""
+    """Return the `band` of a single value, at a tenth of the cost."""
     if math.isnan(value) or math.isnan(error):
         return math.nan, math.nan
     if error >= 1:
@@ -120,7 +120,7 @@ def _band_of_one(value: float, error: float) -> tuple[float, float]:
 
 
 def band_relative_to(value: Value, error: Value, scale: Value) -> Bounds:
-    """From where to where the truth may lie, for an error relative to a scale, such as 90°.
+    """Return the range in which the truth may lie, for an error relative to a scale such as 90°.
 
     The scale is that of the values calculated; that of the truth may be larger by 1/(1 - e).
     """
@@ -158,7 +158,7 @@ def value_and_bounds(
 def _own_shifts(
     side: Relation, estimates: Mapping[str, Estimate], values: Mapping[str, Value]
 ) -> Iterator[Shift]:
-    """Each uncertain name of a side at both ends of its band, the others kept."""
+    """Yield a side with each uncertain name at both ends of its band, the others kept."""
     for name in sorted(side.names):
         if not estimates[name].is_exact:
             low, high = estimates[name].bounds()
@@ -184,7 +184,10 @@ def relative_width(value: float, low: float, high: float) -> float | None:
 
 
 def aligned(estimates: Mapping[str, Estimate], axes: int) -> Mapping[str, Estimate]:
-    """Estimates whose arrays broadcast together: those of points alone go with places along a curve too."""
+    """Return estimates whose arrays broadcast together.
+
+    Those of points alone go with places along a curve too.
+    """
     if not axes:
         return estimates
     return {name: _aligned(estimate, axes) for name, estimate in estimates.items()}

@@ -75,7 +75,7 @@ def compare(
 
 
 def _spread(values: Mapping[str, Value], estimates: Mapping[str, Estimate], axes: int) -> Mapping[str, Value]:
-    """Shifted values, those of points alone as arrays that go with a curve."""
+    """Return shifted values, those of points alone as arrays that go with a curve."""
     return {name: v if estimates[name].axes else spread(v, axes) for name, v in values.items()}
 
 
@@ -87,7 +87,10 @@ def side_of(side: Relation, estimates: Mapping[str, Estimate]) -> Value:
 
 
 def verdicts(sign: Sign, value: Value, limit: Value, value_bounds: Bounds, limit_bounds: Bounds) -> Codes:
-    """The verdict where each side lies in its band; equality meets, a bound that is NaN decides nothing."""
+    """Return the verdict where each side lies in its band.
+
+    Equality meets, a bound that is NaN decides nothing.
+    """
     safe, bad = _opposed(sign, value_bounds, limit_bounds)
     if all(isinstance(end, float) for end in (value, limit, *safe, *bad)):
         if value != value or limit != limit:
@@ -104,7 +107,7 @@ def verdicts(sign: Sign, value: Value, limit: Value, value_bounds: Bounds, limit
 
 
 def _opposed(sign: Sign, value: Bounds, limit: Bounds) -> tuple[Bounds, Bounds]:
-    """Pairs (a, b): a criterion is met if a ≥ b in the first, and not met if a < b in the second."""
+    """Return pairs (a, b): a criterion is met if a ≥ b in the first, and not met if a < b in the second."""
     if sign == ">=":
         return (value[0], limit[1]), (value[1], limit[0])
     return (limit[0], value[1]), (limit[1], value[0])

@@ -55,7 +55,7 @@ class Limit:
 
     @cached_property
     def remedy(self) -> str:
-        """A sentence on the input to give."""
+        """Return a sentence on the input to give."""
         unit = "" if self.unit == "1" else f" in {self.unit}"
         row = f", or a row of {self.library}" if self.library else ""
         other = f", or {self.default[1]}" if self.default else ""
@@ -97,22 +97,22 @@ class Criterion:
 
     @cached_property
     def limits_by_name(self) -> dict[str, Limit]:
-        """The limits that it declares."""
+        """Return the limits that it declares."""
         return {limit.name: limit for limit in self.limits}
 
     @cached_property
     def limits_last(self) -> tuple[str, ...]:
-        """The names in the order of the text, those of limits behind the others."""
+        """Return the names in the order of the text, those of limits behind the others."""
         return tuple(sorted(self.names, key=self.limits_by_name.__contains__))
 
     @cached_property
     def all_names(self) -> frozenset[str]:
-        """Its names."""
+        """Return its names."""
         return frozenset(self.names)
 
     @cached_property
     def stated(self) -> Mapping[str, Any]:
-        """The members that every judgement of it has, by name."""
+        """Return the members that every judgement of it has, by name."""
         return {
             "name": self.name,
             "words": self.words,
@@ -125,17 +125,17 @@ class Criterion:
 
     @cached_property
     def scale(self) -> Unit:
-        """The unit in which value and limit are shown."""
+        """Return the unit in which value and limit are shown."""
         return unit(self.unit)
 
     @cached_property
     def is_temperature(self) -> bool:
-        """Whether temperatures are compared, whose ratios mean nothing."""
+        """Return whether temperatures are compared, whose ratios mean nothing."""
         return bool(self.scale.base == registry.kelvin)
 
     @cached_property
     def subject(self) -> str | None:
-        """The name that is judged, where the value is a name alone."""
+        """Return the name that is judged, where the value is a name alone."""
         return self.value.only_name
 
 
@@ -249,7 +249,7 @@ def _limit(name: str, raw: Any, meanings: Mapping[str, Described]) -> Limit:
 
 
 def _default(text: str, meanings: Mapping[str, Described], wanted: str) -> tuple[str, str]:
-    """Of `min(speed_range)` the function and the name."""
+    """Return the function and the name of a default such as `min(speed_range)`."""
     match = _DEFAULT.fullmatch(text)
     if match is None or match[2] not in meanings:
         raise FaultyText("syntax", f"a default is min(NAME) or max(NAME) of an input, not {excerpt(text)}")

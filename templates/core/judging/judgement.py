@@ -68,17 +68,20 @@ class Judgement:
 
     @property
     def is_certain(self) -> bool:
-        """Whether nothing about the verdict is unverified, or of an error that nobody stated."""
+        """Return whether nothing about the verdict is unverified, or of an error that nobody stated."""
         return self.is_stated and self.unverified is None
 
     @property
     def misses(self) -> bool:
-        """Whether the value, its error aside, lies beyond the limit."""
+        """Return whether the value, its error aside, lies beyond the limit."""
         return self.margin is not None and self.margin < 0
 
 
 def sentence(judgement: Judgement) -> str:
-    """A verdict as a sentence about the case: `film 1.53 um < permissible_film 2 um (131 %): not met`."""
+    """Return a verdict as a sentence about the case: `film 1.53 um < permissible_film 2 um (131 %).
+
+    Not met`.
+    """
     sign = ">=" if ">=" in judgement.require else "<="
     left, right = (side.strip() for side in judgement.require.split(sign))
     opposite = {">=": "<", "<=": ">"}[sign] if judgement.misses else sign

@@ -50,7 +50,7 @@ class Instead:
 
     @property
     def rows(self) -> Codes:
-        """The verdicts that stand in: what does not exist cannot be violated for certain."""
+        """Return the verdicts that stand in: what does not exist cannot be violated for certain."""
         codes = self.judgement.rows
         return np.where(np.equal(codes, NOT_MET), NOT_CHECKED, codes).astype(np.int8)
 
@@ -119,7 +119,10 @@ def judge(
 
 
 def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: Mapping[str, Absent]) -> Parts:
-    """A criterion of which names have no value; the side that has one is reported if it is a single value."""
+    """Return a criterion of which names have no value.
+
+    The side that has one is reported if it is a single value.
+    """
     parts: Parts = {"verdict": "not_checked"}
     for name, side in (("value", criterion.value), ("limit", criterion.limit)):
         if side.names <= estimates.keys():
@@ -207,7 +210,7 @@ def _own_place(point: tuple[int, ...], shape: tuple[int, ...]) -> tuple[int, ...
 
 
 def _numbers(criterion: Criterion, parts: Parts, worst: Worst, estimates: Mapping[str, Estimate]) -> Parts:
-    """Value, limit, band and what follows from them, in the unit of the criterion."""
+    """Return the value, limit, band and what follows from them, in the unit of the criterion."""
     scale, is_temperature = criterion.scale, criterion.is_temperature
     subject = estimates[criterion.subject] if criterion.subject else None
     needs = _needs(worst, subject) if parts["verdict"] == "undecided" else None

@@ -24,7 +24,10 @@ class Summary:
 
 
 def worst_first(judgements: Iterable[Judgement]) -> list[Judgement]:
-    """Criteria in order: not met, undecided, not checked, met; inside each by utilisation, largest first."""
+    """Return criteria in order: not met, undecided, not checked, met.
+
+    Inside each by utilisation, largest first.
+    """
     return sorted(judgements, key=rank)
 
 

@@ -27,17 +27,17 @@ class Worst:
 
     @property
     def is_known(self) -> bool:
-        """Whether the band of the value is known."""
+        """Return whether the band of the value is known."""
         return not (math.isnan(self.low) or math.isnan(self.high))
 
     @property
     def is_limit_known(self) -> bool:
-        """Whether the band of the limit is known."""
+        """Return whether the band of the limit is known."""
         return not (math.isnan(self.limit_low) or math.isnan(self.limit_high))
 
     @property
     def is_limit_exact(self) -> bool:
-        """Whether the limit has no error."""
+        """Return whether the limit has no error."""
         return self.limit_low == self.limit_high
 
 
@@ -84,7 +84,9 @@ def worst_of_rows(criterion: Criterion, compared: Compared, count: int) -> tuple
 
 
 def _clearance(criterion: Criterion, sides: list[Array]) -> Array:
-    """Distance of the worst bound from the limit, on its safe side; relative where the limit is not zero.
+    """Return the distance of the worst bound from the limit, on its safe side.
+
+    Relative where the limit is not zero.
 
     Where the band is open or not known the value itself counts; what does not exist has a finite number too,
     so that it differs from what is not asked about.

@@ -15,7 +15,10 @@ from templates.core.language.spec import Declaration, Formula, Profile
 
 
 def absence(self: Calculation, declaration: Formula[Any]) -> str | None:
-    """Why a result may be NaN without being a fault: an optional input is missing, or it does not exist."""
+    """Return why a result may be NaN without being a fault.
+
+    An optional input is missing, or it does not exist.
+    """
     missing = sorted(self.ledger.missing & self.ancestors(declaration.attribute))
     if missing:
         return f"needs {', '.join(self.declarations[name].name for name in missing)}"
@@ -23,7 +26,7 @@ def absence(self: Calculation, declaration: Formula[Any]) -> str | None:
 
 
 def _explained(self: Calculation, declaration: Formula[Any]) -> str | None:
-    """Why a result beneath this one exists at no point, if its formula noted that."""
+    """Return why a result beneath this one exists at no point, if its formula noted that."""
     explaining = [mask for mask in self.ledger.masks if mask.explains and mask.where.all()]
     if not explaining:
         return None
@@ -32,7 +35,7 @@ def _explained(self: Calculation, declaration: Formula[Any]) -> str | None:
 
 
 def refusal(self: Calculation, declaration: Formula[Any], value: float) -> Fault:
-    """The fault of a formula's result outside its domain, with the inputs that it follows from."""
+    """Return the fault of a formula's result outside its domain, with the inputs that it follows from."""
     meaning = declaration.meaning.at(self.level)
     beneath = sorted(self.depends_on(declaration.attribute) & self.declarations.keys())
     used = (self.declarations[n].name for n in beneath)
@@ -47,7 +50,10 @@ def refusal(self: Calculation, declaration: Formula[Any], value: float) -> Fault
 
 
 def whole(self: Calculation, declaration: Formula[Any], value: Array) -> Array:
-    """The profile of a single point: refused unless all of it means something, or none of it exists."""
+    """Return the profile of a single point.
+
+    Refused unless all of it means something, or none of it exists.
+    """
     inside = declaration.meaning.at(self.level).admits(value)
     if not inside.all():
         why = absence(self, declaration) if np.isnan(value).any() else None
@@ -58,7 +64,10 @@ def whole(self: Calculation, declaration: Formula[Any], value: Array) -> Array:
 
 
 def masked(self: Calculation, declaration: Formula[Any], value: Array) -> Array:
-    """The results with NaN where they mean nothing, the reason noted; a profile is masked as a whole."""
+    """Return the results with NaN where they mean nothing, the reason noted.
+
+    A profile is masked as a whole.
+    """
     meaning = declaration.meaning.at(self.level)
     inside = meaning.admits(value)
     if inside.all():
@@ -76,7 +85,10 @@ def masked(self: Calculation, declaration: Formula[Any], value: Array) -> Array:
 
 
 def outside_published(declaration: Declaration, value: Any, level: str = "") -> Notice | None:
-    """A warning that names the limit where a value leaves its published range; None where it does not."""
+    """Return a warning that names the limit where a value leaves its published range.
+
+    None where it does not.
+    """
     meaning = declaration.meaning.at(level)
     if meaning.published_si is None:
         return None

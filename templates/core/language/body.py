@@ -25,12 +25,12 @@ class Body(ABC):
 
     @abstractmethod
     def __call__(self, template: Any) -> Any:
-        """The SI value for the values of a template."""
+        """Return the SI value for the values of a template."""
 
     def seconds(self, points: int) -> float:
-        """The time that it takes at so many points, as an order of magnitude [s]."""
+        """Return the time that it takes at so many points, as an order of magnitude [s]."""
         return 0.0
 
     @abstractmethod
     def latex(self, symbols: Mapping[str, str], times: str) -> str:
-        """The expression in LaTeX, with symbols or numbers in the place of attributes."""
+        """Return the expression in LaTeX, with symbols or numbers in the place of attributes."""

@@ -23,10 +23,10 @@ class Written(Protocol):
 
     @property
     def text(self) -> str:
-        """The worksheet as it was written."""
+        """Return the worksheet as it was written."""
 
     def digest(self) -> str:
-        """SHA-256 of what it calculates, without prose and layout."""
+        """Return the SHA-256 of what it calculates, without prose and layout."""
 
 
 class Calculation:
@@ -77,7 +77,7 @@ class Calculation:
         self.__setattr__(name, None)
 
     def as_given(self, attribute: str) -> Any:
-        """The value of an input as it was given, or its default; NaN where its formula has to make it.
+        """Return the value of an input as it was given, or its default; NaN where its formula has to make it.
 
         Name the attribute by a literal: the language reads from the source which inputs a formula depends on.
         """
@@ -85,14 +85,14 @@ class Calculation:
 
     @classmethod
     def ancestors(cls, attribute: str) -> frozenset[str]:
-        """The attributes that are evaluated for this one, directly or not, itself included."""
+        """Return the attributes that are evaluated for this one, directly or not, itself included."""
         if attribute not in cls._ancestry:
             cls._ancestry[attribute] = frozenset(cls._beneath(attribute))
         return cls._ancestry[attribute]
 
     @classmethod
     def dependencies(cls, attribute: str) -> frozenset[str]:
-        """The ancestors, and the inputs that any of them reads as given.
+        """Return the ancestors, and the inputs that any of them reads as given.
 
         Formulas beneath an input's default may read the input as given: this is not an order of evaluation.
         """
@@ -103,7 +103,10 @@ class Calculation:
         return cls._dependencies[attribute]
 
     def depends_on(self, attribute: str) -> frozenset[str]:
-        """The dependencies of an attribute here: an input read as given counts only where it was given."""
+        """Return the dependencies of an attribute here.
+
+        An input read as given counts only where it was given.
+        """
         ancestors = self.ancestors(attribute)
         return ancestors | (self.dependencies(attribute) & self.ledger.handed)
 

@@ -22,7 +22,7 @@ BROKEN = "inconsistent"
 
 
 def suspects(template: Calculation, rule: Requirement) -> tuple[str, ...]:
-    """The inputs that can have broken a rule of a single point, by API name.
+    """Return the inputs that can have broken a rule of a single point, by API name.
 
     Those that were given come before those that follow from others, else in the order of the rule.
     """
@@ -47,7 +47,7 @@ def _compared(result: Outcome) -> Iterator[Operand]:
 
 
 def _inputs_of(template: Calculation, side: Operand) -> set[str]:
-    """The inputs from which a side follows; every one where it cannot be written."""
+    """Return the inputs from which a side follows; every one where it cannot be written."""
     if side.node is None:
         return set(template.inputs)
     read = (node.attr for node in ast.walk(side.node) if isinstance(node, ast.Attribute))
@@ -56,7 +56,10 @@ def _inputs_of(template: Calculation, side: Operand) -> set[str]:
 
 
 def by_cause(faults: Iterable[Fault]) -> list[Fault]:
-    """The faults of broken rules joined by the input that explains most of them; others as they are."""
+    """Return the faults of broken rules joined by the input that explains most of them.
+
+    Others as they are.
+    """
     faults = list(faults)
     broken = [fault for fault in faults if fault.code == BROKEN]
     return [fault for fault in faults if fault.code != BROKEN] + list(_joined(broken))
@@ -70,7 +73,7 @@ def _joined(broken: Sequence[Fault]) -> Iterator[Fault]:
 
 
 def _commonest(broken: Sequence[Fault]) -> str:
-    """The input that most rules can have been broken by; of several the one that they name first."""
+    """Return the input that most rules can have been broken by; of several the one that they name first."""
     places: dict[str, list[int]] = {}
     for fault in broken:
         for place, name in enumerate(fault.names):

@@ -34,7 +34,7 @@ class Rung:
 def climb(
     template: Template, outputs: Iterable[str], tolerance: float, *, per_point: bool = False
 ) -> Iterator[Rung]:
-    """The levels that answer a request with a tolerance; one, unless each point is to have its own.
+    """Yield the levels that answer a request with a tolerance; one, unless each point is to have its own.
 
     It is the cheapest level whose errors are within the tolerance for all outputs, else the finest; and the
     starting level where that states no error for an output. What has no value needs no error.
@@ -48,7 +48,10 @@ def climb(
 
 
 def reachable(cls: type[Template], ladder: tuple[str, ...]) -> tuple[str, ...]:
-    """The levels that a tolerance may choose: none beyond the default one, if that states no error at all."""
+    """Return the levels that a tolerance may choose.
+
+    None beyond the default one, if that states no error at all.
+    """
     measured = accuracy(cls)
     if cls.default_level not in ladder or (measured and measured.states_any(cls.default_level)):
         return ladder
@@ -73,7 +76,7 @@ class _Search:
 
     @cached_property
     def start(self) -> str:
-        """The level that answers when nothing is known of any error."""
+        """Return the level that answers when nothing is known of any error."""
         return self.template.starting_level()
 
     @cached_property
@@ -85,13 +88,13 @@ class _Search:
         return {}
 
     def at(self, level: str) -> Template:
-        """The template at a level, all points; kept, with what it has computed."""
+        """Return the template at a level, all points; kept, with what it has computed."""
         if level not in self._at:
             self._at[level] = at_level(self.template, level)
         return self._at[level]
 
     def common(self) -> str:
-        """The one level that serves all points."""
+        """Return the one level that serves all points."""
         for level in self.ladder:
             rung = self.at(level)
             if self._met(rung, None).all() or (level == self.start and not self._stated(rung).all()):
@@ -99,7 +102,7 @@ class _Search:
         return self.ladder[-1]
 
     def by_point(self) -> Iterator[Rung]:
-        """The levels, each with the points at which it is the cheapest that serves."""
+        """Yield the levels, each with the points at which it is the cheapest that serves."""
         left = np.ones(self.template.shape_of_points(), dtype=bool)
         for level in self.ladder:
             rung = self.at(level) if left.all() else at_level(self.template, level, left)
@@ -122,7 +125,7 @@ class _Search:
         return stays[left] if stays.shape == left.shape else stays
 
     def _met(self, rung: Template, where: Mask | None) -> Mask:
-        """At which points all errors are within the tolerance; at none if the level refuses."""
+        """Return at which points all errors are within the tolerance; at none if the level refuses."""
         met = np.ones((), dtype=bool)
         if self.measured is None:
             return ~met
@@ -149,7 +152,7 @@ class _Search:
         return there if where is None or where.all() else there[where]
 
     def _stated(self, rung: Template) -> Mask:
-        """At which points every output that has a value has an error."""
+        """Return at which points every output that has a value has an error."""
         stated = np.ones((), dtype=bool)
         if self.measured is None:
             return ~stated

@@ -64,7 +64,7 @@ class _Recording(NDArrayOperatorsMixin):
         return bool(self.value)
 
     def __getattr__(self, name: str) -> Any:
-        """Any other attribute of numpy's values, as `shape` and `max`, of the plain value."""
+        """Return any other attribute of numpy's values, as `shape` and `max`, of the plain value."""
         if name.startswith("__") or name == "value":
             raise AttributeError(name)
         return getattr(self.value, name)
@@ -90,7 +90,7 @@ class Operand(_Recording):
 
     @property
     def attribute(self) -> str | None:
-        """The attribute of the template whose value this is, if it is one's."""
+        """Return the attribute of the template whose value this is, if it is one's."""
         match self.node:
             case ast.Attribute(value=ast.Name(id="self"), attr=name):
                 return name
@@ -98,7 +98,7 @@ class Operand(_Recording):
 
     @property
     def constant(self) -> float | None:
-        """The number, if nothing of the template was used for it."""
+        """Return the number, if nothing of the template was used for it."""
         return self.node.value if isinstance(self.node, ast.Constant) else None  # type: ignore[return-value]
 
 
@@ -114,12 +114,12 @@ class Comparison:
 
     @property
     def actual(self) -> Sign:
-        """The sign that is true of the values: the opposite one where the comparison does not hold."""
+        """Return the sign that is true of the values: the opposite one where the comparison does not hold."""
         return self.sign if np.all(plain(self.holds) | ~np.asarray(self.where)) else _OPPOSITE[self.sign]
 
     @property
     def ordered(self) -> tuple[Operand, Operand]:
-        """The side that must be smaller, then the one that must be larger."""
+        """Return the side that must be smaller, then the one that must be larger."""
         return (self.left, self.right) if self.sign in ("<", "<=") else (self.right, self.left)
 
     @property
@@ -135,7 +135,7 @@ class Comparison:
 
 
 def worst_share(small: Any, large: Any, where: Truth = True) -> float | None:
-    """The largest ratio of what must be smaller to what must be larger, over the points in `where`.
+    """Return the largest ratio of what must be smaller to what must be larger, over the points in `where`.
 
     None if no point has both values, or one of the values is not an amount: below 0, or 0 as the larger.
     """
@@ -161,7 +161,7 @@ class Outcome(_Recording):
     equated: tuple[Operand, ...] = ()
 
     def decisive(self, where: Truth = True) -> Iterator[Comparison]:
-        """The comparisons on which the truth depends, each with the points at which it does.
+        """Yield the comparisons on which the truth depends, each with the points at which it does.
 
         Of alternatives the last counts, at points where no other holds: the others say where it does not
         apply.
@@ -178,11 +178,11 @@ class Outcome(_Recording):
 
     @property
     def has_comparisons(self) -> bool:
-        """Whether it follows from any comparison."""
+        """Return whether it follows from any comparison."""
         return self.comparison is not None or any(part.has_comparisons for part in self.parts)
 
     def negated(self) -> Outcome:
-        """The opposite truth: `<` becomes `>=`, "all" becomes "any"."""
+        """Return the opposite truth: `<` becomes `>=`, "all" becomes "any"."""
         value, one = np.logical_not(self.value), self.comparison
         opposite = one and replace(one, sign=_OPPOSITE[one.sign], holds=value)
         parts = tuple(part.negated() for part in self.parts)
@@ -220,26 +220,26 @@ class _Recorded:
         return _read(name, getattr(self._template, name))
 
     def as_given(self, attribute: str) -> Any:
-        """An input as it was given; an operand without its formula."""
+        """Return an input as it was given; an operand without its formula."""
         return _read(attribute, self._template.as_given(attribute))
 
 
 def _read(attribute: str, value: Any) -> Any:
-    """A value of the template as an operand, if it is a number or an array."""
+    """Return a value of the template as an operand, if it is a number or an array."""
     if not isinstance(value, (int, float, np.ndarray)) or isinstance(value, bool):
         return value
     return Operand(value, ast.Attribute(ast.Name("self"), attribute))
 
 
 def plain(value: Any) -> Any:
-    """A value without what was recorded about it."""
+    """Return a value without what was recorded about it."""
     if isinstance(value, _Recording):
         return value.value
     return type(value)(map(plain, value)) if type(value) in (list, tuple) else value
 
 
 def _recorded(ufunc: np.ufunc, inputs: Sequence[Any], result: Any) -> Any:
-    """The result of a ufunc with what it follows from."""
+    """Return the result of a ufunc with what it follows from."""
     if ufunc in _SIGNS:
         left, right = map(_operand, inputs)
         return Outcome(result, Comparison(left, _SIGNS[ufunc], right, result))
@@ -254,7 +254,7 @@ def _recorded(ufunc: np.ufunc, inputs: Sequence[Any], result: Any) -> Any:
 
 
 def _calculated(ufunc: np.ufunc, inputs: Sequence[Any]) -> ast.expr | None:
-    """The expression of a ufunc's result."""
+    """Return the expression of a ufunc's result."""
     nodes = _nodes(inputs)
     if nodes is None:
         return None
@@ -271,7 +271,7 @@ def _call(name: str, arguments: Sequence[Any]) -> ast.expr | None:
 
 
 def _nodes(values: Sequence[Any]) -> list[ast.expr] | None:
-    """The expressions of values, or None if one of them cannot be written."""
+    """Return the expressions of values, or None if one of them cannot be written."""
     nodes = [_operand(value).node for value in values]
     return None if any(node is None for node in nodes) else nodes  # type: ignore[return-value]
 
@@ -283,7 +283,7 @@ def _operand(value: Any) -> Operand:
 
 
 def _written(value: Any) -> ast.expr | None:
-    """A number that the rule names, if it is one."""
+    """Return a number that the rule names, if it is one."""
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
         return None
     if value == math.pi:

@@ -40,7 +40,10 @@ class Root:
 def confirmed(
     requested: SampledCurve, scanned: SampledCurve, places: Sequence[Place], bounds: tuple[float, float]
 ) -> list[Root]:
-    """The solutions at the level requested; one of the scan where that has none near, or after so many."""
+    """Return the solutions at the level requested.
+
+    One of the scan where that has none near, or after so many.
+    """
     most = CONFIRMED if requested.chooses or _is_finer(requested, scanned) else len(places)
     near = [_at_requested(requested, scanned, place, bounds) for place in places[:most]]
     checked = [*near, *(None for _ in places[most:])]
@@ -49,13 +52,13 @@ def confirmed(
 
 
 def _shown(curve: SampledCurve, bounds: tuple[float, float]) -> float:
-    """The distance of the bounds in the declared unit."""
+    """Return the distance of the bounds in the declared unit."""
     scale = curve.x.scale
     return float(scale.from_si(bounds[1])) - float(scale.from_si(bounds[0]))
 
 
 def _distinct(roots: list[Root], span: float) -> list[Root]:
-    """Each solution once: two of the scan may have moved to the same one."""
+    """Return each solution once: two of the scan may have moved to the same one."""
     kept: list[Root] = []
     for root in roots:
         if not (kept and root.confirmed and root.value - kept[-1].value <= ALIKE * span):
@@ -71,7 +74,7 @@ def _is_finer(requested: SampledCurve, scanned: SampledCurve) -> bool:
 def _at_requested(
     requested: SampledCurve, scanned: SampledCurve, place: Place, bounds: tuple[float, float]
 ) -> Root | None:
-    """The solution near one of the scan; None where the level requested has none there."""
+    """Return the solution near one of the scan; None where the level requested has none there."""
     try:
         outputs = requested.outputs(np.array([place.x]))
     except InvalidInputs:
@@ -109,14 +112,14 @@ def _polished(
 
 
 def _slope(curve: SampledCurve, x: float, bounds: tuple[float, float]) -> float:
-    """The slope of the curve, from values within the bounds; NaN where there is none."""
+    """Return the slope of the curve, from values within the bounds; NaN where there is none."""
     step = STEP * (abs(x) or bounds[1] - bounds[0])
     low, high = max(bounds[0], x - step), min(bounds[1], x + step)
     return (curve.miss(high) - curve.miss(low)) / (high - low)
 
 
 def _unconfirmed(scanned: SampledCurve, place: Place) -> Root:
-    """A solution at the level of the scan."""
+    """Return a solution at the level of the scan."""
     root = _root(scanned, place, place.x, scanned.outputs(np.array([place.x])))
     return replace(root, confirmed=False)
 

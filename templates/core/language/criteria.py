@@ -56,7 +56,7 @@ class Evaluated:
 
     @cached_property
     def computed(self) -> frozenset[str]:
-        """The names of outputs that have to be computed here: not those that were given."""
+        """Return the names of outputs that have to be computed here: not those that were given."""
         template = self.template
         if template.ledger.handed.isdisjoint(template._results):
             return template._result_names
@@ -64,7 +64,7 @@ class Evaluated:
         return frozenset(n for n, f in template.formulas.items() if f.attribute not in handed)
 
     def value(self, name: str) -> Value:
-        """The SI value of an output that exists; NaN in an array where there is none."""
+        """Return the SI value of an output that exists; NaN in an array where there is none."""
         answer, formula = self.answers[name], self.template.formulas[name]
         if self.is_joined:
             return (self.shown_in.get(name) or formula.meaning.scale).to_si(answer.value)
@@ -75,7 +75,7 @@ class Evaluated:
 
 
 def judged(evaluated: Evaluated) -> list[Judgement]:
-    """The criteria of a template whose outputs were evaluated, worst first."""
+    """Return the criteria of a template whose outputs were evaluated, worst first."""
     template = evaluated.template
     return worst_first(judged_alone(evaluated, c) for c in template.declared_criteria if is_due(evaluated, c))
 
@@ -112,7 +112,7 @@ def _instead(evaluated: Evaluated, criterion: Criterion) -> Instead | None:
 
 
 def judged_alone(evaluated: Evaluated, criterion: Criterion) -> Judgement:
-    """One criterion whose outputs were evaluated."""
+    """Return one criterion whose outputs were evaluated."""
     estimates, absent = estimates_of(evaluated, criterion)
     subject = criterion.subject or ""
     shown = evaluated.shown_in[subject].text if subject in evaluated.shown_in else None
@@ -124,7 +124,7 @@ def judged_alone(evaluated: Evaluated, criterion: Criterion) -> Judgement:
 
 
 def notes(evaluated: Evaluated, criterion: Criterion) -> dict[str, str | None]:
-    """The notes of a judgement on its level, on the truth of its error, and on its sources."""
+    """Return the notes of a judgement on its level, on the truth of its error, and on its sources."""
     source = _with_those_of_limits(evaluated, criterion) if evaluated.limits else criterion.source
     return {**level_and_truth(evaluated, criterion.subject), "source": source}
 
@@ -136,7 +136,7 @@ def level_and_truth(evaluated: Evaluated, output: str | None) -> dict[str, str |
 
 
 def estimates_of(evaluated: Evaluated, criterion: Criterion) -> tuple[dict[str, Estimate], dict[str, Absent]]:
-    """The values of the names of a criterion with their errors, and why some have none."""
+    """Return the values of the names of a criterion with their errors, and why some have none."""
     estimates: dict[str, Estimate] = {}
     absent: dict[str, Absent] = {}
     limits = criterion.limits_by_name
@@ -154,14 +154,14 @@ def estimates_of(evaluated: Evaluated, criterion: Criterion) -> tuple[dict[str, 
 
 
 def _with_those_of_limits(evaluated: Evaluated, criterion: Criterion) -> str | None:
-    """The source of the criterion, and those of the limits that a library gave."""
+    """Return the source of the criterion, and those of the limits that a library gave."""
     given = [evaluated.limits[limit.name] for limit in criterion.limits if limit.name in evaluated.limits]
     sources = [criterion.source, *(limit.source for limit in given)]
     return "; ".join(dict.fromkeys(filter(None, sources))) or None
 
 
 def estimate_of(evaluated: Evaluated, name: str) -> Estimate | Absent:
-    """The value of an input or output with its error, or why there is none."""
+    """Return the value of an input or output with its error, or why there is none."""
     estimate = evaluated.estimates.get(name)
     if estimate is None:
         find = _estimate_of_output if name in evaluated.computed else _estimate_of_input
@@ -184,7 +184,7 @@ def _estimate_of_input(evaluated: Evaluated, name: str) -> Estimate | Absent:
 
 
 def _limit(evaluated: Evaluated, limit: Limit, others: Mapping[str, Estimate]) -> Estimate | Absent:
-    """A limit of the user: one for all, one for each point, or a curve beside a curve."""
+    """Return a limit of the user: one for all, one for each point, or a curve beside a curve."""
     given = evaluated.limits.get(limit.name)
     if given is None:
         return _default(evaluated, limit) if limit.default else _not_given(limit)
@@ -200,7 +200,10 @@ def _limit(evaluated: Evaluated, limit: Limit, others: Mapping[str, Estimate]) -
 
 
 def _default(evaluated: Evaluated, limit: Limit) -> Estimate | Absent:
-    """A limit that nobody gave: an end of an input that is a list, where that is declared and given."""
+    """Return a limit that nobody gave.
+
+    An end of an input that is a list, where that is declared and given.
+    """
     if limit.default is not None:
         function, name = limit.default
         with np.errstate(all="ignore"):
@@ -216,7 +219,7 @@ def _not_given(limit: Limit) -> Absent:
 
 
 def _stated_reason(evaluated: Evaluated, missing: Missing) -> Absent | None:
-    """Why an output has no value, where the criterion says so and the output beside it has one."""
+    """Return why an output has no value, where the criterion says so and the output beside it has one."""
     beside = evaluated.answers.get(missing.beside)
     return Absent((), missing.reason) if beside and beside.value is not None else None
 
@@ -243,14 +246,14 @@ def _estimate_of_output(evaluated: Evaluated, name: str) -> Estimate | Absent:
 
 
 def _where_it_has_a_scale(error: Any, scale: Value) -> tuple[Any, bool, Value | None]:
-    """An error that says nothing at the points where what it is relative to does not exist."""
+    """Return an error that says nothing at the points where what it is relative to does not exist."""
     if not np.ndim(scale):
         return float("nan"), False, None
     return np.where(np.isnan(scale), np.nan, error), False, scale
 
 
 def _scale(evaluated: Evaluated, name: str) -> Value | None:
-    """To what the error of an output is relative [SI], as its table says; None if to the output itself.
+    """Return what an output's error is relative to [SI], as its table says; None if to the output itself.
 
     The largest of several outputs, such as the four stiffnesses, counts; NaN stands for a size that is no
     output. The error of an angle is relative to 90°.
@@ -267,14 +270,14 @@ def _scale(evaluated: Evaluated, name: str) -> Value | None:
 
 
 def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Absent:
-    """Why an output does not exist: optional inputs to give, or a reason of its own."""
+    """Return why an output does not exist: optional inputs to give, or a reason of its own."""
     missing = sorted(template.ledger.missing & template.ancestors(formula.attribute))
     give = tuple(template.declarations[attribute].name for attribute in missing)
     return Absent(give, reason or absence(template, formula))
 
 
 def error_of(evaluated: Evaluated, name: str) -> tuple[Any, bool]:
-    """The relative error of an output, and whether any was stated.
+    """Return the relative error of an output, and whether any was stated.
 
     A template of which no errors were measured, or one without levels whose table does not name the output,
     states none; its band has no width. Of a level an error that is not known is NaN, and decides nothing.
@@ -289,7 +292,7 @@ def error_of(evaluated: Evaluated, name: str) -> tuple[Any, bool]:
 
 
 def along_of(template: Template, names: Iterable[str]) -> Along | None:
-    """The places of the first curve among some names, if there is one."""
+    """Return the places of the first curve among some names, if there is one."""
     for name in names:
         curve = template.formulas.get(name)
         if isinstance(curve, Profile) and curve.axes == 1:
@@ -308,7 +311,7 @@ def _places(template: Template, axis: Declaration) -> Along | None:
 
 
 def warned(cls: type[Template], judgements: list[Judgement]) -> Iterator[Notice]:
-    """A warning for every criterion that declares one and is not met, or whose value misses its limit.
+    """Yield a warning for every criterion that declares one and is not met, or whose value misses its limit.
 
     Where the limit lies within the error of a value that misses it, the verdict is undecided: a film of 1 nm
     whose error is not known is warned of all the same. So is a check of a worksheet that cannot be judged.
@@ -321,5 +324,5 @@ def warned(cls: type[Template], judgements: list[Judgement]) -> Iterator[Notice]
 
 
 def _about(cls: type[Template], judgement: Judgement) -> str:
-    """The name that a warning is about: the first of its criterion."""
+    """Return the name that a warning is about: the first of its criterion."""
     return next(c for c in cls.declared_criteria if c.name == judgement.name).names[0]

@@ -68,7 +68,7 @@ def meetings(curve: SampledCurve, samples: Samples) -> Meetings:
 
 
 def _exact(samples: Samples) -> Iterator[Place]:
-    """Samples that have the target exactly; of neighbours that all do, the first."""
+    """Yield samples that have the target exactly; of neighbours that all do, the first."""
     zero = np.flatnonzero(samples.miss == 0)
     for run in np.split(zero, np.flatnonzero(np.diff(zero) > 1) + 1):
         if run.size:
@@ -78,12 +78,12 @@ def _exact(samples: Samples) -> Iterator[Place]:
 
 
 def _sign(miss: Array, i: int) -> float:
-    """On which side of the target a sample is; 0 beyond the bounds, or where there is no value."""
+    """Return on which side of the target a sample is; 0 beyond the bounds, or where there is no value."""
     return float(np.nan_to_num(np.sign(miss[i]))) if 0 <= i < miss.size else 0.0
 
 
 def _touching(curve: SampledCurve, samples: Samples) -> list[Place]:
-    """Extrema that come within rounding of the target without crossing it."""
+    """Return extrema that come within rounding of the target without crossing it."""
     spread = float(np.nanmax(samples.miss) - np.nanmin(samples.miss))
     size = min(abs(curve.wanted) or spread, spread)
     near = samples.nearest()
@@ -94,7 +94,7 @@ def _touching(curve: SampledCurve, samples: Samples) -> list[Place]:
 
 
 def _best_of_neighbours(samples: Samples, near: list[int]) -> list[int]:
-    """Of samples that follow each other, the nearest to the target."""
+    """Return the nearest to the target of each run of consecutive samples."""
     best: list[int] = []
     for i in near:
         if best and i - best[-1] <= 2:
@@ -105,7 +105,10 @@ def _best_of_neighbours(samples: Samples, near: list[int]) -> list[int]:
 
 
 def _closed(curve: SampledCurve, samples: Samples, i: int) -> Place | Leap:
-    """The crossing between two samples, closed in to rounding; a leap, if the output has no such value."""
+    """Return the crossing between two samples, closed in to rounding.
+
+    A leap, if the output has no such value.
+    """
     low, high = (float(samples.x[k]) for k in (i, i + 1))
     root = float(brentq(curve.miss, low, high, xtol=1e-300, rtol=4e-15, disp=False))
     size = max(abs(curve.wanted), float(np.nanmax(np.abs(samples.miss))) * JUMP)

@@ -70,7 +70,7 @@ def limits(
     le: float | None = None,
     published: tuple[float | None, float | None] = (None, None),
 ) -> tuple[Bounds, Bounds]:
-    """Domain and published range at one level of fidelity, for `per_level`, in the declared unit."""
+    """Return domain and published range at one level of fidelity, for `per_level`, in the declared unit."""
     return Bounds(ge=ge, le=le), Bounds(ge=published[0], le=published[1])
 
 
@@ -183,7 +183,7 @@ def on_paper(words: str | Mapping[str, str]) -> Callable[[F], F]:
 
 
 def by_name(declarations: Mapping[str, Any]) -> dict[str, Any]:
-    """Declarations by API name instead of by attribute.
+    """Return declarations by API name instead of by attribute.
 
     Raises
     ------

@@ -13,7 +13,7 @@ from templates.core.language.spec import Choice, Curve, Formula, Input, Table, T
 def declared_criteria(
     name: str, raw: Any, inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]
 ) -> tuple[Criterion, ...]:
-    """The criteria that a class declares.
+    """Return the criteria that a class declares.
 
     Raises
     ------
@@ -43,7 +43,7 @@ def _check_defaults(criterion: Criterion, inputs: Mapping[str, Input]) -> None:
 
 
 def meanings_of(inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]) -> dict[str, Described]:
-    """Unit and words of the names that a criterion may use: neither words nor tables."""
+    """Return the unit and words of the names that a criterion may use: neither words nor tables."""
     declared = {**inputs, **formulas}
     return {
         name: Described(one.meaning.unit, one.meaning.words)

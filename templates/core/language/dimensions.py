@@ -30,12 +30,12 @@ Checked = Formula[Any] | Requirement
 
 
 def faults(cls: type[Template]) -> list[str]:
-    """The faults of a template's dimensions, a sentence for each formula or rule."""
+    """Return the faults of a template's dimensions, a sentence for each formula or rule."""
     return [fault for _, fault in faults_by_part(cls)]
 
 
 def faults_by_part(cls: type[Template]) -> Iterator[tuple[Checked, str]]:
-    """Each formula or rule whose dimensions are wrong, with a sentence that says how."""
+    """Yield each formula or rule whose dimensions are wrong, with a sentence that says how."""
     with np.errstate(all="ignore"):
         template = cls.from_quantities(cls.example)
         for part in _checked(cls):
@@ -44,7 +44,7 @@ def faults_by_part(cls: type[Template]) -> Iterator[tuple[Checked, str]]:
 
 
 def _checked(cls: type[Template]) -> Iterator[Checked]:
-    """The formulas and rules of Python; bodies of a worksheet were checked when it was read."""
+    """Yield the formulas and rules of Python; bodies of a worksheet were checked when it was read."""
     parts: list[Checked] = [d for d in cls.declarations.values() if isinstance(d, (Formula, Derived))]
     parts += cls.requirements
     yield from (part for part in parts if not isinstance(part.function, Body))
@@ -81,7 +81,7 @@ def _fault_of_rule(template: Template, rule: Requirement) -> str | None:
 
 
 def _applied(template: Template, function: Callable[..., Any]) -> Any:
-    """The function of a template, on quantities for its attributes."""
+    """Return the function of a template, on quantities for its attributes."""
     values = {name: _quantity(template, name) for name in attributes_used(function)}
     return rebound(function, {})(_Record(values))
 
@@ -101,7 +101,7 @@ def _quantity(template: Template, name: str) -> Any:
 
 
 def _magnitude(result: Any, declared: str) -> Any:
-    """The SI magnitude of a result, or None if it does not measure what is declared."""
+    """Return the SI magnitude of a result, or None if it does not measure what is declared."""
     wanted = unit(declared).base
     quantity = result if isinstance(result, pint.Quantity) else registry.Quantity(result, "")
     if quantity.dimensionality != registry.get_dimensionality(wanted):
@@ -114,7 +114,7 @@ def _units(result: Any) -> str:
 
 
 def rebound(function: Callable[..., Any], copies: dict[Any, Any]) -> Callable[..., Any]:
-    """The same function, in a scope where every physics function checks its border."""
+    """Return the same function, in a scope where every physics function checks its border."""
     if function in copies:
         return copies[function]
     if hasattr(function, "border"):
@@ -134,7 +134,7 @@ def rebound(function: Callable[..., Any], copies: dict[Any, Any]) -> Callable[..
 
 
 def _names(code: CodeType) -> set[str]:
-    """The names that a function's code refers to, in nested functions too."""
+    """Return the names that a function's code refers to, in nested functions too."""
     nested = (constant for constant in code.co_consts if isinstance(constant, CodeType))
     return set(code.co_names).union(*map(_names, nested))
 
@@ -148,7 +148,10 @@ def _in_scope(value: Any, copies: dict[Any, Any]) -> Any:
 
 
 def _bordered(function: Callable[..., Any]) -> Callable[..., Any]:
-    """A function marked by `units(...)`, on quantities: arguments are checked, the result gets its unit."""
+    """Return a function marked by `units(...)`, on quantities.
+
+    Arguments are checked, the result gets its unit.
+    """
     arguments, returns = function.border  # type: ignore[attr-defined]
 
     @wraps(function)
@@ -167,12 +170,12 @@ def _bordered(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _outside(result: Any, declared: str) -> Any:
-    """A result in its declared unit; whether something holds has none."""
+    """Return a result in its declared unit; whether something holds has none."""
     return result if np.asarray(result).dtype == bool else registry.Quantity(result, unit(declared).base)
 
 
 def _inside(function: Callable[..., Any], argument: tuple[str, Any], declared: str | None) -> Any:
-    """The magnitude of an argument, if it measures what the border declares."""
+    """Return the magnitude of an argument, if it measures what the border declares."""
     name, value = argument
     if declared is None:
         return value

@@ -100,7 +100,7 @@ def evaluate(
 def _judged(
     rungs: list[Rung], whole: _Part, shown_in: Mapping[str, Unit], limits: Mapping[str, GivenLimit]
 ) -> list[Judgement]:
-    """The criteria whose outputs were evaluated."""
+    """Return the criteria whose outputs were evaluated."""
     template, is_joined = rungs[0].template, rungs[0].where is not None
     measured = accuracy(type(template))
     return judged(
@@ -137,7 +137,7 @@ def _part(template: Template, names: list[str], shown_in: Mapping[str, Unit]) ->
 
 
 def _joined(rungs: list[Rung], parts: list[_Part]) -> _Part:
-    """The answers of several levels, each at its own points, as arrays over all points."""
+    """Return the answers of several levels, each at its own points, as arrays over all points."""
     answers = {
         name: _joined_answer(rungs, rungs[0].template.formulas[name], [part.answers[name] for part in parts])
         for name in parts[0].answers
@@ -166,7 +166,7 @@ def _scattered(
 
 
 def _answers(template: Template, names: list[str], shown_in: Mapping[str, Unit]) -> dict[str, Answer]:
-    """Outputs in their units; one that is neither an array nor words is a single value."""
+    """Return outputs in their units; one that is neither an array nor words is a single value."""
     answers, absent = {}, template.ledger.absent
     for name in names:
         formula = template.formulas[name]
@@ -189,7 +189,10 @@ def _answers(template: Template, names: list[str], shown_in: Mapping[str, Unit])
 
 
 def _words(template: Template, formula: Text[Any], value: Any) -> Answer:
-    """An answer in words; an empty word is none, and there is none where a mask of anything beneath lies."""
+    """Return an answer in words.
+
+    An empty word is none, and there is none where a mask of anything beneath lies.
+    """
     why = absence(template, formula) or "there is nothing to tell here"
     if isinstance(value, str):
         return Answer(value or None, None, reason=None if value else why)
@@ -208,7 +211,7 @@ def _words(template: Template, formula: Text[Any], value: Any) -> Answer:
 def _with_reasons(
     template: Template, formula: Formula[Any], si: Array
 ) -> tuple[Array, NDArray[np.object_] | None]:
-    """The values with NaN where a mask of anything beneath covers them, and the reason for each NaN.
+    """Return the values with NaN where a mask of anything beneath covers them, and the reason for each NaN.
 
     A profile has one reason as a whole.
     """
@@ -231,7 +234,10 @@ def _with_reasons(
 
 
 def is_reported(template: Template, declared: Input) -> bool:
-    """True if an answer reports an input: it is given, or has a default that is not an output as well."""
+    """Return whether an answer reports an input.
+
+    It is given, or has a default that is not an output as well.
+    """
     if declared.name in template.ledger.typed:
         return True
     if isinstance(declared, Derived):
@@ -240,7 +246,7 @@ def is_reported(template: Template, declared: Input) -> bool:
 
 
 def echoes_of(template: Template) -> dict[str, UsedInput]:
-    """The inputs as they were used: those given, and the defaults that an answer reports."""
+    """Return the inputs as they were used: those given, and the defaults that an answer reports."""
     echoes, given = {}, template.ledger.typed
     for name, declared in template.inputs.items():
         typed = given.get(name)
@@ -254,7 +260,7 @@ def echoes_of(template: Template) -> dict[str, UsedInput]:
 
 
 def _echo(template: Template, declared: Input, typed: str | None) -> UsedInput:
-    """An input that is an option, or whose default is a formula."""
+    """Return an input that is an option, or whose default is a formula."""
     value = getattr(template, declared.attribute)
     source = "default" if typed is None else "given"
     return (
@@ -266,7 +272,7 @@ def _echo(template: Template, declared: Input, typed: str | None) -> UsedInput:
 
 @lru_cache(maxsize=4096)  # worksheets come and go
 def default_of(declared: Given) -> UsedInput:
-    """The constant default of an input, as it is used."""
+    """Return the constant default of an input, as it is used."""
     assert declared.default is not None
     return _shown(declared, declared.default.si, "default")
 
@@ -278,14 +284,17 @@ def _shown(declared: Given | Derived[Any], si: Any, source: str) -> UsedInput:
 
 
 def _with_nulls(shown: Array) -> list[Any]:
-    """An array as a list, None where a default follows from an input that means nothing."""
+    """Return an array as a list, None where a default follows from an input that means nothing."""
     plain = shown.astype(object)
     plain[np.isnan(shown)] = None
     return plain.tolist()
 
 
 def _standing(cls: type[Template], given: Mapping[str, Any]) -> list[Notice]:
-    """The warnings that hold whatever is calculated from these inputs: of the version, and of tolerances."""
+    """Return the warnings that hold whatever is calculated from these inputs.
+
+    Of the version, and of tolerances.
+    """
     noted = tolerances.unused(given)
     if cls.withdrawn:
         detail = f"{cls.id} version {cls.version} is withdrawn: {cls.withdrawn}"
@@ -294,7 +303,7 @@ def _standing(cls: type[Template], given: Mapping[str, Any]) -> list[Notice]:
 
 
 def answers_at_level(template: Template, outputs: Iterable[str]) -> tuple[dict[str, Answer], dict[str, Any]]:
-    """Answers in declared units and error estimates of a template at its level, without warnings.
+    """Return answers in declared units and error estimates of a template at its level, without warnings.
 
     Raises
     ------
@@ -309,7 +318,7 @@ def answers_at_level(template: Template, outputs: Iterable[str]) -> tuple[dict[s
 def evaluate_at_level(
     template: Template, outputs: Iterable[str]
 ) -> tuple[dict[str, Answer], dict[str, Any], list[Notice]]:
-    """Answers in declared units, error estimates, and all warnings so far of a template at its level.
+    """Return answers in declared units, error estimates, and all warnings so far of a template at its level.
 
     What the template has computed before is not computed again.
 
@@ -323,7 +332,7 @@ def evaluate_at_level(
 
 
 def notices_of(template: Template) -> list[Notice]:
-    """All warnings so far of a template at its level, but for those of criteria."""
+    """Return all warnings so far of a template at its level, but for those of criteria."""
     return [*_standing(type(template), template.ledger.typed), *_noticed([Rung(template, None)])]
 
 
@@ -340,6 +349,6 @@ def criterion_warnings(
 
 
 def _noticed(rungs: list[Rung]) -> list[Notice]:
-    """The warnings of all levels, each once."""
+    """Return the warnings of all levels, each once."""
     noticed = (notice for rung in rungs for notice in rung.template.ledger.warnings)
     return list(dict.fromkeys([*noticed, *(notice for rung in rungs for notice in remarks(rung.template))]))

@@ -25,7 +25,7 @@ from templates.core.units.units import Value, unit
 
 
 def read_inputs(cls: type[Calculation], raw: Mapping[str, Any]) -> tuple[dict[str, Typed | str], list[Fault]]:
-    """Every input that was given, read in its unit, and what is wrong with the others."""
+    """Return every input that was given, read in its unit, and what is wrong with the others."""
     typed: dict[str, Typed | str] = {}
     faults = unknown_names(filterfalse(cls.inputs.__contains__, raw), cls.inputs, "input")
     for name, declared in cls.inputs.items():
@@ -109,7 +109,7 @@ class PlainText(NamedTuple):
 
 
 def plain(cls: type[Calculation], raw: Mapping[str, Any]) -> Plain | None:
-    """The inputs of most requests, read and admitted at once; None if any needs a further look."""
+    """Return the inputs of most requests, read and admitted at once; None if any needs a further look."""
     left_out = _defaults.get(cls) or _left_out(cls)
     typed: dict[str, Typed | str] = {}
     values = left_out.values.copy()
@@ -142,7 +142,7 @@ _defaults: WeakKeyDictionary[type[Calculation], LeftOut] = WeakKeyDictionary()
 
 
 def _left_out(cls: type[Calculation]) -> LeftOut:
-    """What stands for the inputs of a version that are not given."""
+    """Return what stands for the inputs of a version that are not given."""
     intake, needed = Intake(), set[str]()
     for name, declared in cls.inputs.items():
         default = None if isinstance(declared, Derived) else declared.default
@@ -159,7 +159,10 @@ def _left_out(cls: type[Calculation]) -> LeftOut:
 
 @lru_cache(maxsize=4096)  # who varies one input sends the others again
 def plain_text(declared: Input, text: str) -> PlainText | None:
-    """An input as typed and its value [SI], if that needs no further look; for texts short enough to keep."""
+    """Return an input as typed and its value [SI], if that needs no further look.
+
+    For texts short enough to keep.
+    """
     try:
         typed = _read_one(declared, text)
     except FaultyText:
@@ -169,7 +172,7 @@ def plain_text(declared: Input, text: str) -> PlainText | None:
 
 
 def _plain_value(declared: Input, typed: Typed) -> np.float64 | None:
-    """One number within its bounds and the published range."""
+    """Return one number within its bounds and the published range."""
     si, bounds = typed.si, declared.plain
     if bounds and isinstance(si, float) and typed.tolerance is None and bounds[0] <= si <= bounds[1]:
         value = np.float64(si)
@@ -186,7 +189,10 @@ def _note_missing(declared: Input, intake: Intake) -> None:
 
 
 def _bounded(declared: Input, typed: Typed) -> tuple[Any, Fault | Mask | None]:
-    """The value and what is wrong with it; a faulty point of an array is masked, and is not a fault."""
+    """Return the value and what is wrong with it.
+
+    A faulty point of an array is masked, and is not a fault.
+    """
     if isinstance(declared, Table):
         return _rows(declared, typed.si)
     if isinstance(typed.si, np.ndarray) and is_single(declared):
@@ -204,7 +210,7 @@ def _bounded(declared: Input, typed: Typed) -> tuple[Any, Fault | Mask | None]:
 
 
 def _end_outside(declared: Declaration, si: Value, tolerance: Tolerance) -> Fault | None:
-    """The fault of a tolerance by which a single value may lie outside its bounds."""
+    """Return the fault of a tolerance by which a single value may lie outside its bounds."""
     ends = (si + tolerance.lower, si + tolerance.upper)
     outside = next((end for end in ends if not declared.meaning.admits(end)), None)
     if outside is None:
@@ -216,7 +222,7 @@ def _end_outside(declared: Declaration, si: Value, tolerance: Tolerance) -> Faul
 
 
 def _along_a_cycle(declared: Curve, typed: Typed) -> tuple[Any, Fault | None]:
-    """A curve means something as a whole: one point out of its domain refuses it."""
+    """Return a curve means something as a whole: one point out of its domain refuses it."""
     meaning, value = declared.meaning, typed.si
     if not isinstance(value, np.ndarray):
         detail = f"{meaning.words} is a curve: give an array over the {declared.along}, in {meaning.unit}"
@@ -226,7 +232,7 @@ def _along_a_cycle(declared: Curve, typed: Typed) -> tuple[Any, Fault | None]:
 
 
 def _rows(declared: Table, value: Any) -> tuple[tuple[tuple[float, ...], ...], Fault | None]:
-    """The rows of a table; a single row may stand alone."""
+    """Return the rows of a table; a single row may stand alone."""
     rows = np.atleast_2d(value)
     fits = rows.ndim == 2 and rows.shape[1] == len(declared.columns) and len(rows) <= declared.most
     if not fits or not np.all(declared.meaning.admits(rows)):
@@ -257,7 +263,7 @@ def _masked_points(
 
 
 def as_typed(cls: type[Calculation], name: str, value: Any) -> Any:
-    """An SI value as if it had been typed in the declared unit."""
+    """Return an SI value as if it had been typed in the declared unit."""
     declared = cls.inputs.get(name)
     if declared is None or isinstance(declared, Choice):
         return value
@@ -310,13 +316,16 @@ def is_curve(self: Calculation, attribute: str) -> bool:
 
 
 def points_of(self: Calculation, arrays: Mapping[str, Array]) -> tuple[int, ...]:
-    """The shape of the points that arrays of inputs, by attribute, make; a curve is one thing for each."""
+    """Return the shape of the points that arrays of inputs, by attribute, make.
+
+    A curve is one thing for each.
+    """
     shapes = (array.shape[:-1] if is_curve(self, name) else array.shape for name, array in arrays.items())
     return np.broadcast_shapes(*shapes)
 
 
 def violations(self: Calculation, rules: Iterable[Requirement]) -> list[Fault]:
-    """The faults of the rules that do not hold; points of arrays are masked instead."""
+    """Return the faults of the rules that do not hold; points of arrays are masked instead."""
     faults: list[Fault] = []
     missing = self.ledger.missing
     for rule in rules:
@@ -334,14 +343,14 @@ def violations(self: Calculation, rules: Iterable[Requirement]) -> list[Fault]:
 
 
 def _violation(self: Calculation, rule: Requirement) -> Fault:
-    """The fault of a rule that does not hold."""
+    """Return the fault of a rule that does not hold."""
     name, *also = names = suspects(self, rule)
     values = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in names)
     return Fault(name, BROKEN, f"{rule.sentence}, but {values}; {rule.remedy}", tuple(also))
 
 
 def _violated_points(self: Calculation, rule: Requirement, holds: NDArray[np.bool_]) -> list[Mask]:
-    """The mask of the points at which a rule does not hold, if there are any."""
+    """Return the mask of the points at which a rule does not hold, if there are any."""
     if holds.all():
         return []
     names = tuple(self.inputs[name].attribute for name in rule.names)
@@ -349,7 +358,7 @@ def _violated_points(self: Calculation, rule: Requirement, holds: NDArray[np.boo
 
 
 def remarks(self: Calculation) -> Iterator[Notice]:
-    """A warning for every rule that refuses nothing, where it does not hold."""
+    """Yield a warning for every rule that refuses nothing, where it does not hold."""
     for rule in self._remarks:
         if not np.all(rule.function(self)):
             yield from (Notice(rule.warning, name, f"{rule.sentence}; {rule.remedy}") for name in rule.names)

@@ -48,7 +48,10 @@ class Condition:
         return not template.ledger.typed.keys().isdisjoint(self.inputs)
 
     def added(self, template: Template, output: str) -> float:
-        """The addition to the error: 0 where the inputs do not matter, NaN where it was not measured."""
+        """Return the addition to the error.
+
+        0 where the inputs do not matter, NaN where it was not measured.
+        """
         beneath = template.dependencies(template.formulas[output].attribute)
         if beneath.isdisjoint(template.inputs[name].attribute for name in self.inputs):
             return 0.0
@@ -69,7 +72,7 @@ class Accuracy:
 
     @cached_property
     def cases(self) -> dict[str, dict[str, dict[str, Array]]]:
-        """Errors of single cases of inputs, by case, level and output, in the same cells."""
+        """Return errors of single cases of inputs, by case, level and output, in the same cells."""
         return {case: _tables(levels) for case, levels in self.content.get("cases", {}).items()}
 
     def states_any(self, level: str) -> bool:
@@ -81,11 +84,13 @@ class Accuracy:
 
     @cached_property
     def outputs(self) -> frozenset[str]:
-        """The outputs of which errors were measured at any level."""
+        """Return the outputs of which errors were measured at any level."""
         return frozenset(output for table in self.errors.values() for output in table)
 
     def of(self, template: Template, outputs: Iterable[str]) -> dict[str, Any]:
-        """The errors that `evaluate` reports: of a text none, 0 where the level is irrelevant, or estimates.
+        """Return the errors that `evaluate` reports.
+
+        Of a text none, 0 where the level is irrelevant, or estimates.
 
         An estimate is the largest relative error to expect at the template's level, of a profile relative to
         its largest absolute value; NaN where none is stated. Scalars, or arrays of the shape of the points.
@@ -93,7 +98,7 @@ class Accuracy:
         return self.expected(template, template.level, outputs)
 
     def expected(self, template: Template, level: str, outputs: Iterable[str]) -> dict[str, Any]:
-        """The errors stated for a level in the cell in which the template lies at its own level."""
+        """Return the errors stated for a level in the cell in which the template lies at its own level."""
         names, levels = list(outputs), self.errors
         if self.cases:
             levels = self.cases.get(template.measured_case(), levels)
@@ -115,7 +120,7 @@ class Accuracy:
         return errors
 
     def truth(self, level: str, output: str) -> str | None:
-        """The name of the solution against which an output was measured; None if none is stated."""
+        """Return the name of the solution against which an output was measured; None if none is stated."""
         truths: Mapping[str, str] = self.content.get("levels", {}).get(level or SINGLE, {}).get("truth", {})
         return truths.get(output)
 
@@ -126,7 +131,7 @@ class Accuracy:
         )
 
     def _cell(self, template: Template) -> tuple[Any, Any, Any]:
-        """Row and column of the cell in which each point lies, and whether it lies in any."""
+        """Return row and column of the cell in which each point lies, and whether it lies in any."""
         first, second = (getattr(template, axis) for axis in self.axes)
         if isinstance(first, float) and isinstance(second, float):  # NumPy would take ten times as long
             row, in_rows = _place(self._edges[0], first)
@@ -158,19 +163,22 @@ def _looked_up(table: Array, cell: Any) -> Any:
 
 
 def _place(edges: list[float], value: float) -> tuple[int, bool]:
-    """As `_places`, of one value."""
+    """Return the `_places` of one value."""
     place = min(max(bisect_right(edges, value) - 1, 0), len(edges) - 2)
     return place, bool(edges[0] <= value <= edges[-1])
 
 
 def _places(grid: Array, values: Array) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """The cell of the grid in which each value lies, and whether it lies in any."""
+    """Return the cell of the grid in which each value lies, and whether it lies in any."""
     cells = np.clip(np.searchsorted(grid, values, side="right") - 1, 0, grid.size - 2)
     return cells, (values >= grid[0]) & (values <= grid[-1])
 
 
 def accuracy_file(cls: type[Template]) -> Path | None:
-    """The file of the measured errors of a version; None of a worksheet, of which none are measured."""
+    """Return the file of the measured errors of a version.
+
+    None of a worksheet, of which none are measured.
+    """
     path = file_of(cls)
     return path and path.with_suffix(".accuracy.json")
 
@@ -179,7 +187,7 @@ _cache: dict[Any, Accuracy | None] = {}
 
 
 def accuracy(cls: type[Template]) -> Accuracy | None:
-    """The measured errors of a version, if they were measured."""
+    """Return the measured errors of a version, if they were measured."""
     if cls.sheet:
         return None
     if cls not in _cache:
@@ -196,7 +204,7 @@ def _loaded(path: Path) -> Accuracy:
 
 
 def _tables(levels: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Array]]:
-    """Errors by level and output as arrays over the cells, NaN for null."""
+    """Return errors by level and output as arrays over the cells, NaN for null."""
     return {
         level: {output: np.array(table, dtype=float) for output, table in outputs.items()}
         for level, outputs in levels.items()
@@ -204,13 +212,15 @@ def _tables(levels: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Arra
 
 
 def truth_of(cls: type[Template], level: str, output: str) -> str | None:
-    """The name of the truth of an output's error at a level; None if no error is stated there."""
+    """Return the name of the truth of an output's error at a level; None if no error is stated there."""
     measured = accuracy(cls)
     return measured.truth(level, output) if measured else None
 
 
 def absolute_error(template: Template, output: str, error: Any) -> Any:
-    """The estimated error of an output in its SI unit, from the `error` stated; NaN where that says nothing.
+    """Return the estimated error of an output in its SI unit, from the `error` stated.
+
+    NaN where that says nothing.
 
     Of a profile it is the same at all its places. See `relative_to` for what errors are relative to.
     """
@@ -225,7 +235,9 @@ def absolute_error(template: Template, output: str, error: Any) -> Any:
 
 
 def relative_to(template: Template, output: str) -> Any:
-    """The reference [SI] of the error of an output that is not a profile: itself, or what the table names.
+    """Return the reference [SI] of the error of an output that is not a profile.
+
+    Itself, or what the table names.
 
     The table's `relative_to` has by output a size [SI] (of an angle, 90°), or a list of outputs, the largest
     of which counts, or null for a size that is not an output.
@@ -247,7 +259,7 @@ class NextLevel:
 
 
 def next_levels(template: Template, output: str) -> tuple[NextLevel, ...]:
-    """The levels that answer these inputs with a smaller stated error of an output, cheapest first.
+    """Return the levels that answer these inputs with a smaller stated error of an output, cheapest first.
 
     Smaller at one point at least, and measured against the same truth as the error at the template's level.
     The errors are looked up where the template lies at its own level; nothing is calculated at another.
@@ -263,7 +275,7 @@ def next_levels(template: Template, output: str) -> tuple[NextLevel, ...]:
 
 
 def at_level(template: Template, level: str, where: NDArray[np.bool_] | None = None) -> Template:
-    """The template at a level, if that takes as many points at once.
+    """Return the template at a level, if that takes as many points at once.
 
     Raises
     ------

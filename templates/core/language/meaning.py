@@ -27,7 +27,7 @@ class Bounds:
     le: float | None = None
 
     def in_si(self, scale: Unit) -> Bounds:
-        """The same limits in SI."""
+        """Return the same limits in SI."""
         limits = (getattr(self, side) for side, _ in _RELATIONS)
         return Bounds(*(None if limit is None else float(scale.to_si(limit)) for limit in limits))
 
@@ -45,7 +45,7 @@ class Bounds:
         return inside
 
     def interval(self) -> tuple[float, float]:
-        """The least and the greatest finite number within the limits."""
+        """Return the least and the greatest finite number within the limits."""
         low, high = -sys.float_info.max, sys.float_info.max
         low = low if self.gt is None else max(low, math.nextafter(self.gt, math.inf))
         low = low if self.ge is None else max(low, self.ge)
@@ -54,14 +54,14 @@ class Bounds:
         return low, high
 
     def text(self, name: str) -> str:
-        """In words: `> 0 mm and ≤ 5 mm`."""
+        """Return the bounds in words: `> 0 mm and ≤ 5 mm`."""
         scale = "" if name == "1" else f" {name}"
         limits = ((sign, getattr(self, side)) for side, sign in _RELATIONS)
         return " and ".join(f"{sign} {limit:.6g}{scale}" for sign, limit in limits if limit is not None)
 
     @property
     def open(self) -> bool:
-        """Whether there is no limit at all."""
+        """Return whether there is no limit at all."""
         return all(getattr(self, side) is None for side, _ in _RELATIONS)
 
 
@@ -90,7 +90,7 @@ class Meaning:
     per_level: Mapping[str, tuple[Bounds, Bounds]] = field(default_factory=dict, hash=False)
 
     def at(self, level: str) -> Meaning:
-        """The meaning of the number at a level of fidelity, which may have limits of its own."""
+        """Return the meaning of the number at a level of fidelity, which may have limits of its own."""
         return self._at_levels.get(level, self) if self.per_level else self
 
     @cached_property
@@ -100,12 +100,12 @@ class Meaning:
 
     @property
     def wanted(self) -> str:
-        """The demand on the value, in words: `a whole number ≥ 3 and ≤ 200`, `> 0 mm`, `finite`."""
+        """Return the demand on the value, in words: `a whole number ≥ 3 and ≤ 200`, `> 0 mm`, `finite`."""
         limits = self.domain.text(self.unit)
         return " ".join(filter(None, ("a whole number" if self.integer else "", limits))) or "finite"
 
     def with_unit(self, si: float) -> str:
-        """An SI value in the declared unit, for a message."""
+        """Return an SI value in the declared unit, for a message."""
         return f"{self.scale.from_si(float(si)):.6g}{'' if self.unit == '1' else ' ' + self.unit}"
 
     def admits(self, value: Any) -> Any:
@@ -120,27 +120,27 @@ class Meaning:
 
     @cached_property
     def scale(self) -> Unit:
-        """The declared unit, reduced to SI."""
+        """Return the declared unit, reduced to SI."""
         return unit(self.unit)
 
     @cached_property
     def domain_si(self) -> Bounds | None:
-        """The domain in SI, or None where every finite value means something."""
+        """Return the domain in SI, or None where every finite value means something."""
         return None if self.domain.open else self.domain.in_si(self.scale)
 
     @cached_property
     def interval(self) -> tuple[float, float]:
-        """The finite numbers [SI] within the domain, as the least and the greatest of them."""
+        """Return the finite numbers [SI] within the domain, as the least and the greatest of them."""
         return (self.domain_si or Bounds()).interval()
 
     @cached_property
     def published_si(self) -> Bounds | None:
-        """The published range in SI, or None where the source states none."""
+        """Return the published range in SI, or None where the source states none."""
         return None if self.published.open else self.published.in_si(self.scale)
 
 
 def api_name(words: str) -> str:
-    """The words as an API name: `minimum film thickness` → `minimum_film_thickness`."""
+    """Return the words as an API name: `minimum film thickness` → `minimum_film_thickness`."""
     return re.sub(r"[^a-z0-9]+", "_", words.lower()).strip("_")
 
 
@@ -148,7 +148,7 @@ _API_NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 
 
 def _named(words: str, name: str | None) -> str:
-    """The explicit name, else the words as one.
+    """Return the explicit name, else the words as one.
 
     Raises
     ------
@@ -210,7 +210,7 @@ def meaning(
     absent: str | None = None,
     per_level: Mapping[str, tuple[Bounds, Bounds]] | None = None,
 ) -> Meaning:
-    """The keywords that every declaration shares, as a `Meaning`; bounds are in the declared unit."""
+    """Return the keywords that every declaration shares, as a `Meaning`; bounds are in the declared unit."""
     return Meaning(
         words=words,
         unit=unit,

@@ -9,5 +9,5 @@ from templates.core.language.calculation import Calculation
 
 
 def file_of(cls: type[Calculation]) -> Path | None:
-    """The file that declares a class; None where a worksheet does."""
+    """Return the file that declares a class; None where a worksheet does."""
     return None if cls.sheet else Path(inspect.getfile(cls))

@@ -17,7 +17,7 @@ _ONE_AT_A_TIME = threading.RLock()
 
 
 def parse(source: str) -> ast.Module:
-    """The syntax tree of Python source.
+    """Return the syntax tree of Python source.
 
     Raises
     ------
@@ -29,7 +29,7 @@ def parse(source: str) -> ast.Module:
 
 
 def lines_of(cls: type) -> tuple[list[str], int]:
-    """The source lines of a class and the number of the first, found by `inspect` in a syntax tree.
+    """Return the source lines of a class and the number of the first, found by `inspect` in a syntax tree.
 
     Raises
     ------

@@ -56,7 +56,7 @@ def read_question(
 
 
 def _unknown(cls: type[Template], name: str, faults: list[Fault]) -> Input | None:
-    """The declaration of the unknown, if it is a quantity that can take any value."""
+    """Return the declaration of the unknown, if it is a quantity that can take any value."""
     declared = cls.inputs.get(name)
     if declared is None:
         fault = unknown_name(name, _solvable(cls), "input")
@@ -103,7 +103,7 @@ def _faulty_inputs(
     declared: Input | None,
     ends: tuple[float, float],
 ) -> list[Fault]:
-    """The faults of the other inputs, seen with the unknown in the middle of its bounds."""
+    """Return the faults of the other inputs, seen with the unknown in the middle of its bounds."""
     curves = [name for name, d in cls.inputs.items() if isinstance(d, (Curve, Table))]
     arrays = [name for name, value in raw.items() if _is_array(value) and name not in curves]
     faults = [Fault(f"inputs.{n}", "not_a_number", "solve takes single values, not arrays") for n in arrays]
@@ -122,5 +122,5 @@ def _is_array(value: Any) -> bool:
 
 
 def typed_values(declared: Input, si: Value) -> Typed:
-    """Values of the unknown [SI] as if they had been typed."""
+    """Return values of the unknown [SI] as if they had been typed."""
     return Typed(None, declared.meaning.unit, si, {})

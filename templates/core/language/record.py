@@ -32,12 +32,12 @@ class Record:
 
     @property
     def has_arrays(self) -> bool:
-        """Whether an array or a table was left out."""
+        """Return whether an array or a table was left out."""
         return any(isinstance(value, list) for value in (*self.taken.values(), *self.computed.values()))
 
 
 def record(template: Template) -> Record:
-    """Every declared value that the template has so far."""
+    """Return every declared value that the template has so far."""
     record = Record()
     declared, handed = template.declarations, template.ledger.handed
     for attribute, value in vars(template).items():
@@ -53,7 +53,7 @@ def record(template: Template) -> Record:
 
 
 def restored(cls: type[Template], record: Record, level: str | None) -> Template:
-    """A template with the values of a record, at the level at which they were calculated."""
+    """Return a template with the values of a record, at the level at which they were calculated."""
     taken, computed = _values(cls, record.taken), _values(cls, record.computed)
     optional = (d for d in cls.inputs.values() if isinstance(d, Given) and d.optional and not d.alternative)
     missing = {d.attribute for d in optional if record.taken.get(d.attribute, 0.0) is None}

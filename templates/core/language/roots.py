@@ -60,7 +60,7 @@ class Roots:
 
 
 def roots_of(requested: SampledCurve, cheap: SampledCurve, bounds: tuple[float, float]) -> Roots:
-    """Every solution between bounds [SI]: scanned on the cheap curve, confirmed on the one requested.
+    """Return every solution between bounds [SI]: scanned on the cheap curve, confirmed on the one requested.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def _warnings(
 
 
 def _moved_away(scanned: SampledCurve, samples: Samples, level: str | None) -> Unreachable:
-    """The error where the solutions of the scan are none between the bounds at the level requested."""
+    """Return the error where the solutions of the scan are none between the bounds at the level requested."""
     error = scanned.unreachable(samples)
     there = scanned.level
     detail = (
@@ -110,14 +110,14 @@ def _moved_away(scanned: SampledCurve, samples: Samples, level: str | None) -> U
 
 
 def _jump(curve: SampledCurve, leap: Leap) -> Jump:
-    """A leap in declared units."""
+    """Return a leap in declared units."""
     output = curve.y.scale
     sides = (float(output.from_si(side)) for side in (leap.before, leap.after))
     return Jump(float(curve.x.scale.from_si(leap.x)), *sides)
 
 
 def _traced(curve: SampledCurve, even: Samples) -> TracedCurve:
-    """The samples of the scan in declared units."""
+    """Return the samples of the scan in declared units."""
     x, y = curve.x.scale, curve.y.scale
     return TracedCurve(
         np.asarray(x.from_si(even.x)),
@@ -137,7 +137,7 @@ def _not_monotone(curve: SampledCurve, residual: Array) -> list[Notice]:
 
 
 def _others(curve: SampledCurve, lowest: Root, roots: list[Root], more: int) -> list[Notice]:
-    """The warning that there are several solutions, which names the others."""
+    """Return the warning that there are several solutions, which names the others."""
     others = [root for root in roots if root is not lowest]
     if not others:
         return []
@@ -149,7 +149,7 @@ def _others(curve: SampledCurve, lowest: Root, roots: list[Root], more: int) -> 
 
 
 def _unsettled(curve: SampledCurve, roots: list[Root]) -> list[Notice]:
-    """A warning if a finer level still misses the target after the last step."""
+    """Return a warning if a finer level still misses the target after the last step."""
     worst = max((root.miss for root in roots if root.confirmed), default=0.0)
     if worst <= MISSED:
         return []

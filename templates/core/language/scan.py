@@ -41,23 +41,26 @@ class Samples:
     reasons: NDArray[np.object_]
 
     def joined(self, other: Samples) -> Samples:
-        """Both, in ascending order, each value of the unknown once."""
+        """Return both, in ascending order, each value of the unknown once."""
         x = np.concatenate([self.x, other.x])
         x, first = np.unique(x, return_index=True)
         miss, reasons = (np.concatenate([getattr(self, n), getattr(other, n)]) for n in ("miss", "reasons"))
         return Samples(x, miss[first], reasons[first])
 
     def crossings(self) -> NDArray[np.intp]:
-        """The samples after which the output crosses the target before the next one."""
+        """Return the samples after which the output crosses the target before the next one."""
         return np.flatnonzero(np.sign(self.miss[:-1]) * np.sign(self.miss[1:]) < 0)
 
     def beside(self) -> NDArray[np.intp]:
-        """The samples after which the output is nearer to the target than its step: it may jump there."""
+        """Return the samples after which the output is nearer to the target than its step.
+
+        It may jump there.
+        """
         near = np.minimum(np.abs(self.miss[:-1]), np.abs(self.miss[1:])) < np.abs(np.diff(self.miss))
         return np.flatnonzero(near)
 
     def edges(self) -> NDArray[np.intp]:
-        """The samples after which the output begins or ends to exist."""
+        """Return the samples after which the output begins or ends to exist."""
         return np.flatnonzero(np.isnan(self.miss[:-1]) != np.isnan(self.miss[1:]))
 
     def nearest(self) -> NDArray[np.intp]:
@@ -69,7 +72,7 @@ class Samples:
         return np.flatnonzero((side != 0) & nearer & (np.abs(here) <= NEAR * self._steps())) + 1
 
     def _steps(self) -> Array:
-        """The larger of the steps to both neighbours."""
+        """Return the larger of the steps to both neighbours."""
         steps = np.abs(np.diff(self.miss))
         return np.maximum(steps[:-1], steps[1:])
 
@@ -98,25 +101,25 @@ class SampledCurve(ABC):
 
     @abstractmethod
     def outputs(self, x: Array) -> Outputs:
-        """The output at values of the unknown [SI]."""
+        """Return the output at values of the unknown [SI]."""
 
     @abstractmethod
     def at_level(self, level: str) -> Self:
-        """The same curve, all of it at one level."""
+        """Return the same curve, all of it at one level."""
 
     @abstractmethod
     def level_at(self, x: float) -> str | None:
-        """The level at one value; raises InvalidInputs where the output is refused there."""
+        """Return the level at one value; raises InvalidInputs where the output is refused there."""
 
     @property
     @abstractmethod
     def level(self) -> str | None:
-        """The level of all samples; None where a tolerance chooses it, or there are no levels."""
+        """Return the level of all samples; None where a tolerance chooses it, or there are no levels."""
 
     @property
     @abstractmethod
     def chooses(self) -> bool:
-        """Whether a tolerance chooses the level at each sample."""
+        """Return whether a tolerance chooses the level at each sample."""
 
     @property
     def rows(self) -> int:
@@ -124,14 +127,14 @@ class SampledCurve(ABC):
         return CELLS
 
     def at_one_level(self, x: Array) -> tuple[Self, Samples]:
-        """The samples, and the curve at the level at which they were calculated."""
+        """Return the samples, and the curve at the level at which they were calculated."""
         first = self.outputs(x[: self.rows])
         fixed = self if first.level is None else self.at_level(first.level)
         samples = self._samples(x[: self.rows], first)
         return fixed, samples.joined(fixed.sample(x[self.rows :]))
 
     def sample(self, x: Array) -> Samples:
-        """The output at these values, in as many calls as its level needs."""
+        """Return the output at these values, in as many calls as its level needs."""
         samples = Samples(np.empty(0), np.empty(0), np.empty(0, dtype=object))
         for start in range(0, x.size, self.rows):
             part = x[start : start + self.rows]
@@ -139,11 +142,11 @@ class SampledCurve(ABC):
         return samples
 
     def miss(self, value: float) -> float:
-        """Output minus target at one value [SI]; NaN where the template refuses."""
+        """Return the output minus target at one value [SI]; NaN where the template refuses."""
         return self.miss_of(self.outputs(np.array([value])))
 
     def miss_of(self, outputs: Outputs) -> float:
-        """The same of the output at one value."""
+        """Return the same of the output at one value."""
         return float(outputs.values[0]) - self.wanted
 
     def scan(self, low: float, high: float) -> tuple[Self, Samples, Samples]:
@@ -159,7 +162,7 @@ class SampledCurve(ABC):
         return curve, even, samples
 
     def unreachable(self, samples: Samples) -> Unreachable:
-        """The error that says what can be reached between the bounds, and why the target cannot."""
+        """Return the error that says what can be reached between the bounds, and why the target cannot."""
         meaning, name = self.y, self.y.name
         if np.isnan(samples.miss).all():
             detail = f"{name} has no value anywhere between the bounds; give other bounds or inputs"
@@ -191,12 +194,12 @@ class TargetCurve(SampledCurve):
 
     @property
     def level(self) -> str | None:
-        """The level of all samples; None where a tolerance chooses it, or there are no levels."""
+        """Return the level of all samples; None where a tolerance chooses it, or there are no levels."""
         return self.fidelity.get("level")
 
     @property
     def chooses(self) -> bool:
-        """Whether a tolerance chooses the level at each sample."""
+        """Return whether a tolerance chooses the level at each sample."""
         return "tolerance" in self.fidelity
 
     @property
@@ -208,20 +211,20 @@ class TargetCurve(SampledCurve):
         return max(1, min(most, CELLS // max(1, longest)))
 
     def at_level(self, level: str) -> TargetCurve:
-        """The same curve, all of it at one level."""
+        """Return the same curve, all of it at one level."""
         return replace(self, fidelity={"level": level})
 
     def evaluation(self, values: Any) -> Evaluation:
-        """The output at values of the unknown [SI]."""
+        """Return the output at values of the unknown [SI]."""
         raw = {**self.raw, self.declared.name: typed_values(self.declared, values)}
         return evaluate(self.cls, raw, outputs=[self.formula.name], **self.fidelity)
 
     def level_at(self, x: float) -> str | None:
-        """The level at one value; raises InvalidInputs where the output is refused there."""
+        """Return the level at one value; raises InvalidInputs where the output is refused there."""
         return self.evaluation(x).level
 
     def outputs(self, x: Array) -> Outputs:
-        """The output at values of the unknown [SI]."""
+        """Return the output at values of the unknown [SI]."""
         evaluation = self.evaluation(x)
         answer, error = evaluation.outputs[self.formula.name], evaluation.error[self.formula.name]
         si = self.formula.meaning.scale.to_si(np.asarray(answer.value, dtype=float))
@@ -238,26 +241,29 @@ def _magnitude(raw: Any) -> Any:
 
 
 def _reasons(answer: Answer, count: int) -> NDArray[np.object_]:
-    """Why there is no value at each point; None where there is one."""
+    """Return why there is no value at each point; None where there is one."""
     if answer.reasons is not None:
         return np.broadcast_to(answer.reasons, (count,))
     return np.full(count, answer.reason, dtype=object)
 
 
 def evenly(low: float, high: float, count: int = SAMPLES) -> Array:
-    """Values from one bound to the other: even in the logarithm where both are positive and far apart."""
+    """Return values from one bound to the other.
+
+    Even in the logarithm where both are positive and far apart.
+    """
     if low > 0 and high > DECADE * low:
         return np.geomspace(low, high, count)
     return np.linspace(low, high, count)
 
 
 def _inside(low: float, high: float) -> Array:
-    """The points that divide an interval, without its ends."""
+    """Return the points that divide an interval, without its ends."""
     return np.linspace(low, high, PARTS + 1)[1:-1]
 
 
 def _divided(samples: Samples, turn: int) -> NDArray[np.intp]:
-    """The intervals in which something happens, by the sample before each; so many of each kind."""
+    """Return the intervals in which something happens, by the sample before each; so many of each kind."""
     crossed = samples.beside()[:CROSSINGS] if turn < CROSSED else np.empty(0, dtype=np.intp)
     near = samples.nearest()
     near = near[np.argsort(np.abs(samples.miss[near]), kind="stable")][:EXTREMA]

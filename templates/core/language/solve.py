@@ -85,7 +85,10 @@ def solve(
 
 
 def _cheap(cls: type[Template], fidelity: dict[str, Any]) -> dict[str, Any]:
-    """The fidelity of the scan: the one requested, or the default level where that may take few points."""
+    """Return the fidelity of the scan.
+
+    The one requested, or the default level where that may take few points.
+    """
     if not cls.most_points or ((level := fidelity.get("level")) and level not in cls.most_points):
         return fidelity
     return {"level": cls.default_level}

@@ -37,7 +37,7 @@ class Declaration:
 
     @cached_property
     def plain(self) -> tuple[float, float] | None:
-        """From where to where a single number is admitted [SI]; None where more than that is to check."""
+        """Return the range of admitted single numbers [SI]; None where more has to be checked."""
         return None if self.meaning.integer else self.meaning.interval
 
 
@@ -96,7 +96,7 @@ class Choice(Declaration):
 
     @property
     def required(self) -> bool:
-        """Whether the template cannot do without it."""
+        """Return whether the template cannot do without it."""
         return self.default is None
 
 
@@ -123,7 +123,7 @@ class Formula(Declaration, Generic[T]):
 
     @cached_property
     def unremarkable(self) -> tuple[float, float] | None:
-        """From where to where a single result needs no further look [SI]; None where any does."""
+        """Return the range in which a single result needs no further check [SI]; None if all do."""
         meaning = self.meaning
         if meaning.per_level or meaning.assumes:
             return None
@@ -133,17 +133,17 @@ class Formula(Declaration, Generic[T]):
 
     @cached_property
     def expression(self) -> ast.expr:
-        """The syntax tree of what the formula returns."""
+        """Return the syntax tree of what the formula returns."""
         return returned(self.function)
 
     @cached_property
     def uses(self) -> tuple[str, ...]:
-        """The attributes that the formula refers to, in order of appearance."""
+        """Return the attributes that the formula refers to, in order of appearance."""
         return attributes_used(self.function)
 
     @cached_property
     def uses_as_given(self) -> tuple[str, ...]:
-        """The inputs whose given value it reads, without the formula of their default."""
+        """Return the inputs whose given value it reads, without the formula of their default."""
         return inputs_read_as_given(self.function)
 
 
@@ -176,7 +176,7 @@ class Profile(Formula[T]):
         return np.all(places, axis=tuple(range(-self.axes, 0)))
 
     def spread(self, points: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Points as an array that goes with the profile."""
+        """Return points as an array that goes with the profile."""
         return points[(..., *(None,) * self.axes)]
 
 
@@ -208,12 +208,12 @@ class Shared(Generic[T]):
 
     @cached_property
     def uses(self) -> tuple[str, ...]:
-        """The attributes of the template that it refers to."""
+        """Return the attributes of the template that it refers to."""
         return attributes_used(self.function)
 
     @cached_property
     def uses_as_given(self) -> tuple[str, ...]:
-        """The inputs whose given value it reads, without the formula of their default."""
+        """Return the inputs whose given value it reads, without the formula of their default."""
         return inputs_read_as_given(self.function)
 
 
@@ -235,10 +235,10 @@ class Requirement:
 
     @cached_property
     def uses(self) -> tuple[str, ...]:
-        """The attributes of the template that the rule refers to."""
+        """Return the attributes of the template that the rule refers to."""
         return attributes_used(self.function)
 
     @cached_property
     def uses_as_given(self) -> tuple[str, ...]:
-        """The inputs whose given value it reads, without the formula of their default."""
+        """Return the inputs whose given value it reads, without the formula of their default."""
         return inputs_read_as_given(self.function)

@@ -13,7 +13,7 @@ from templates.core.language.parsing import parse
 
 
 def returned(function: Callable[..., Any]) -> ast.expr:
-    """The expression that a function of one `return` returns.
+    """Return the expression that a function of one `return` returns.
 
     Raises
     ------
@@ -32,7 +32,7 @@ def returned(function: Callable[..., Any]) -> ast.expr:
 
 
 def syntax(function: Callable[..., Any]) -> ast.FunctionDef:
-    """The syntax tree of a function."""
+    """Return the syntax tree of a function."""
     tree = parse(textwrap.dedent(inspect.getsource(function))).body[0]
     assert isinstance(tree, ast.FunctionDef)
     return tree
@@ -46,7 +46,10 @@ def attributes_used(function: Callable[..., Any]) -> tuple[str, ...]:
 
 
 def inputs_read_as_given(function: Callable[..., Any]) -> tuple[str, ...]:
-    """The names x in `self.as_given("x")` within a method: the value is used, the formula of x is not."""
+    """Return the names x in `self.as_given("x")` within a method.
+
+    The value is used, the formula of x is not.
+    """
     if isinstance(function, Body):
         return ()
     return _in_order(function, _read_as_given)

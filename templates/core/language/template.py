@@ -90,28 +90,30 @@ class Template(Calculation):
 
     @classmethod
     def _own_words(cls) -> set[str]:
-        """The attributes of the bases that are part of the language."""
+        """Return the attributes of the bases that are part of the language."""
         bases = (vars(base) for base in cls.__mro__[1:])
         return {name for own in bases for name, v in own.items() if not isinstance(v, Declaration)}
 
     @classmethod
     def title(cls) -> str:
-        """The first sentence of the docstring."""
+        """Return the first sentence of the docstring."""
         return cls.summary().split(". ")[0].rstrip(".")
 
     @classmethod
     def summary(cls) -> str:
-        """The first paragraph of the docstring, or of its module."""
+        """Return the first paragraph of the docstring, or of its module."""
         return " ".join(cls.documentation().split("\n\n")[0].split())
 
     @classmethod
     def documentation(cls) -> str:
-        """The docstring of the class, or of its module."""
+        """Return the docstring of the class, or of its module."""
         return inspect.cleandoc(cls.__dict__.get("__doc__") or inspect.getmodule(cls).__doc__ or cls.__name__)
 
     @classmethod
     def from_quantities(cls, raw: Mapping[str, Any], pending: Collection[str] = ()) -> Self:
-        """A template from what a user typed: read, convert to SI, check; once, before any formula runs.
+        """Return a template from what a user typed: read, convert to SI, check.
+
+        Once, before any formula runs.
 
         `pending` are inputs that come later: they are not missed, and no rule about them is checked.
 
@@ -133,7 +135,10 @@ class Template(Calculation):
         return cls._checked(intake.values, ledger, pending)
 
     def at(self, level: str, where: NDArray[np.bool_] | None = None) -> Self:
-        """The same inputs at another level; only those points of arrays where `where` holds, if given."""
+        """Return the same inputs at another level.
+
+        Only those points of arrays where `where` holds, if given.
+        """
         names = (declared.attribute for declared in self.inputs.values())
         values = {name: vars(self)[name] for name in names if name in self.ledger.handed}
         masks = self._own_masks()
@@ -144,13 +149,13 @@ class Template(Calculation):
         return type(self)({**values, "level": level}, ledger)
 
     def shape_of_points(self) -> tuple[int, ...]:
-        """The shape of the points that the inputs make; a curve is one thing for each."""
+        """Return the shape of the points that the inputs make; a curve is one thing for each."""
         given = vars(self)
         arrays = {name: given[name] for name in self.ledger.handed if isinstance(given[name], np.ndarray)}
         return points_of(self, arrays) if arrays else ()
 
     def ladder(self) -> tuple[str, ...]:
-        """The levels that can calculate these inputs, cheapest first."""
+        """Return the levels that can calculate these inputs, cheapest first."""
         return self.levels
 
     def is_measured(self) -> bool:
@@ -158,22 +163,22 @@ class Template(Calculation):
         return True
 
     def measured_case(self) -> str:
-        """The measured case of such inputs, where errors were measured apart for several."""
+        """Return the measured case of such inputs, where errors were measured apart for several."""
         return ""
 
     def starting_level(self) -> str:
-        """The level that is taken when none is requested."""
+        """Return the level that is taken when none is requested."""
         ladder = self.ladder()
         return self.default_level if self.default_level in ladder else ladder[-1]
 
     def _own_masks(self) -> list[Mask]:
-        """The masks that come from inputs; those of formulas follow again at the new level."""
+        """Return the masks that come from inputs; those of formulas follow again at the new level."""
         inputs = {declared.attribute for declared in self.inputs.values()}
         return [mask for mask in self.ledger.masks if inputs.issuperset(mask.names)]
 
     @classmethod
     def from_si(cls, values: Mapping[str, Any]) -> Self:
-        """A template from SI values by API name, checked like a user's."""
+        """Return a template from SI values by API name, checked like a user's."""
         return cls.from_quantities({name: as_typed(cls, name, value) for name, value in values.items()})
 
     @classmethod
@@ -184,7 +189,7 @@ class Template(Calculation):
 
     @classmethod
     def _kept(cls, self: Self, pending: Collection[str]) -> Self:
-        """The template, if it keeps its rules."""
+        """Return the template, if it keeps its rules."""
         with np.errstate(all="ignore"):
             faults = violations(self, cls._due(pending) if pending else cls.requirements)
         if faults:
@@ -193,7 +198,7 @@ class Template(Calculation):
 
     @classmethod
     def _due(cls, pending: Collection[str]) -> list[Requirement]:
-        """The rules that are not about inputs which are pending."""
+        """Return the rules that are not about inputs which are pending."""
         return [rule for rule in cls.requirements if not cls._waits(rule, pending)]
 
     @classmethod
@@ -204,7 +209,7 @@ class Template(Calculation):
         return not (attributes.isdisjoint(beneath) and frozenset(pending).isdisjoint(rule.names))
 
     def inputs_si(self) -> dict[str, Any]:
-        """Every input in SI by API name, defaults included."""
+        """Return every input in SI by API name, defaults included."""
         with np.errstate(all="ignore"):
             return {name: getattr(self, declared.attribute) for name, declared in self.inputs.items()}
 

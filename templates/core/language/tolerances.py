@@ -17,7 +17,7 @@ DETAIL = (
 
 
 def unused(given: Mapping[str, Any]) -> Iterator[Notice]:
-    """A warning for every quantity, as typed or as read, that has a tolerance."""
+    """Yield a warning for every quantity, as typed or as read, that has a tolerance."""
     for name, value in given.items():
         has_one = value.tolerance is not None if isinstance(value, Typed) else is_toleranced(value)
         if has_one:

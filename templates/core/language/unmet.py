@@ -20,7 +20,7 @@ CODE = "tolerance_unmet"
 def unmet(
     cls: type[Template], values: Mapping[str, Any], errors: Mapping[str, Any], level: Any, tolerance: float
 ) -> list[Notice]:
-    """A warning for every output whose error is larger, and one for all whose error is not stated.
+    """Return a warning for every output whose error is larger, and one for all whose error is not stated.
 
     `values` and `errors` are those of the answer, None or NaN where there is none; an output without a value
     needs no error.
@@ -36,7 +36,7 @@ def unmet(
 
 
 def _of_values(formula: Formula[Any], value: Any, error: Any) -> Array:
-    """The errors of those points that have a value, in a row."""
+    """Return the errors of those points that have a value, in a row."""
     if value is None:
         return np.empty(0)
     there = ~np.isnan(value)

@@ -115,7 +115,7 @@ def symbols(cls: type[Template]) -> dict[str, str]:
 
 @cached(LRUCache(_KEPT, getsizeof=getsizeof), lock=Lock())
 def mathml(latex: str) -> str:
-    """LaTeX as MathML that browsers draw themselves; what it quotes of a user's words is escaped."""
+    """Return LaTeX as MathML that browsers draw themselves; what it quotes of a user's words is escaped."""
     import latex2mathml.converter  # long beside a command that writes no formula
 
     # latex2mathml copies texts as they are: signs of its own stand for the brackets of markup meanwhile.

@@ -29,12 +29,12 @@ class Row:
 
     @property
     def latex(self) -> str:
-        """The whole line as LaTeX."""
+        """Return the whole line as LaTeX."""
         return "=".join(part for part in (self.symbol, self.expression, self.numbers, self.result) if part)
 
     @property
     def mathml(self) -> str:
-        """The whole line as MathML."""
+        """Return the whole line as MathML."""
         return mathml(self.latex)
 
 

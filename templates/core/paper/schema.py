@@ -58,7 +58,7 @@ def describe(cls: type[Template]) -> dict[str, Any]:
 
 
 def inputs_schema(cls: type[Template]) -> dict[str, Any]:
-    """JSON Schema of the object `inputs`; bounds are in the unit named beside them."""
+    """Return the JSON Schema of the object `inputs`; bounds are in the unit named beside them."""
     return {
         "type": "object",
         "additionalProperties": False,
@@ -68,7 +68,9 @@ def inputs_schema(cls: type[Template]) -> dict[str, Any]:
 
 
 def limits_schema(cls: type[Template]) -> dict[str, Any]:
-    """JSON Schema of the object `limits`: what the criteria compare with and the calculation does not take.
+    """Return the JSON Schema of the object `limits`.
+
+    What the criteria compare with and the calculation does not take.
 
     A choice of the library stands once, before all limits; a limit that its rows fill names it as `from`.
     """
@@ -87,7 +89,7 @@ def _limit(limit: Limit) -> dict[str, Any]:
 
 
 def outputs_schema(cls: type[Template]) -> dict[str, Any]:
-    """JSON Schema of the object `outputs`."""
+    """Return the JSON Schema of the object `outputs`."""
     return {"type": "object", "properties": {name: _output(out) for name, out in cls.formulas.items()}}
 
 
@@ -193,7 +195,10 @@ def _declared_beneath(cls: type[Template], attributes: Iterable[str]) -> Iterato
 
 
 def declared_limits(cls: type[Template]) -> list[dict[str, Any]]:
-    """Every bound and rule, in words: where a value is refused, and where an answer carries a warning."""
+    """Return every bound and rule, in words.
+
+    Where a value is refused, and where an answer carries a warning.
+    """
     ranges: list[dict[str, Any]] = []
     for declared in cls.declarations.values():
         meaning = declared.meaning

@@ -191,7 +191,10 @@ def _joined(
     *,
     is_filled: bool = False,
 ) -> str:
-    """Both sides with the sign between them: as demanded, or the one that is true of numbers filled in."""
+    """Return both sides with the sign between them.
+
+    As demanded, or the one that is true of numbers filled in.
+    """
     attributes = {name: (text, 1 if r"\," in text else 3) for name, text in texts.items()}
     writer = Writer({}, attributes, {}, times)
     left, right = comparison.left, comparison.right

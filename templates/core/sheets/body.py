@@ -34,7 +34,10 @@ def operations_seconds(operations: int, points: int) -> float:
 
 
 def unequal_lengths(body: Body, template: Any) -> InvalidInputs:
-    """The refusal where lists of different lengths meet: it names the result, or the inputs of a rule."""
+    """Return the refusal where lists of different lengths meet.
+
+    It names the result, or the inputs of a rule.
+    """
     declared = getattr(template, "declarations", {}).get(body.name)
     names = body.inputs or (declared.name if declared else f"line {body.line}",)
     detail = "lists of different lengths meet here; give lists of one length"
@@ -54,7 +57,7 @@ class TreeBody(Body):
         self.first: tuple[str, ...] = ()  # the formulas of a long chain beneath it, the deepest first
 
     def __call__(self, template: Any) -> Any:
-        """The SI value for the values of a template.
+        """Return the SI value for the values of a template.
 
         Raises
         ------
@@ -85,7 +88,7 @@ class TreeBody(Body):
 
     @cached_property
     def _letters(self) -> dict[str, str]:
-        """The symbols of curves, which are called by their names."""
+        """Return the symbols of curves, which are called by their names."""
         return {one.sign: named_symbol(one.sign) for one, _ in self._explained}
 
 

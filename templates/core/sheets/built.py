@@ -61,7 +61,10 @@ class Built:
             self.named[name] = Named(name, unit, words, statement.kind)
 
     def declarations(self) -> dict[str, Part]:
-        """Declarations and rules for another class; each learns its attribute from the class it is in."""
+        """Return declarations and rules for another class.
+
+        Each learns its attribute from the class it is in.
+        """
         return {name: copy(part) for name, part in self.parts.items()}
 
     def inputs_beneath(self, names: tuple[str, ...]) -> tuple[str, ...]:

@@ -108,7 +108,9 @@ class Reader:
         return float(unit(unit_text).from_si(value))
 
     def typed(self, statement: Parsed, tree: lark.Tree[Any], unit_text: str, name: str) -> Any:
-        """A value without names as a user types it: a text where it is one number, else a list or a number.
+        """Return a value without names as a user types it.
+
+        A text where it is one number, else a list or a number.
 
         Raises
         ------

@@ -21,7 +21,7 @@ class SheetFault:
 
     @property
     def sentence(self) -> str:
-        """The fault in one line: `line 9, column 5: …; write …`."""
+        """Return the fault in one line: `line 9, column 5: …; write …`."""
         remedy = f"; {self.remedy}" if self.remedy else ""
         return f"line {self.line}, column {self.column}: {self.message}{remedy}"
 

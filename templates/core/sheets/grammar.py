@@ -41,12 +41,12 @@ class Parsed:
 
     @property
     def kind(self) -> str:
-        """The kind of declaration: given, formula, and so on."""
+        """Return the kind of declaration: given, formula, and so on."""
         return str(self.tree.data)
 
     @property
     def parts(self) -> list[Any]:
-        """Its words and parts that say something, None where an optional one is left out."""
+        """Return its words and parts that say something, None where an optional one is left out."""
         return self.tree.children
 
     def text_of(self, tree: lark.Tree[Any]) -> str:
@@ -89,7 +89,10 @@ def parsed(chunk: Chunk) -> Parsed:
 
 @lru_cache(maxsize=REMEMBERED)
 def _tree(text: str) -> tuple[lark.Tree[Any], tuple[str, ...]]:
-    """The tree of a statement, and its words; of an edited worksheet most statements are the old ones."""
+    """Return the tree of a statement, and its words.
+
+    Of an edited worksheet most statements are the old ones.
+    """
     reader = _parser.parse_interactive(text)
     tokens: list[lark.Token] = list(reader.iter_parse())
     tree: lark.Tree[Any] = reader.feed_eof(tokens[-1])  # type: ignore[no-untyped-call]

@@ -84,7 +84,7 @@ class LinearBody(Body):
         self.__qualname__ = f"line {line}"
 
     def __call__(self, template: Any) -> Any:
-        """The unknown [SI]; NaN where the equations do not determine it, and the ledger says why.
+        """Return the unknown [SI]; NaN where the equations do not determine it, and the ledger says why.
 
         Raises
         ------

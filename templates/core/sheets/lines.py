@@ -25,7 +25,7 @@ class Chunk:
 
     @property
     def last_line(self) -> int:
-        """The last line of the statement."""
+        """Return the last line of the statement."""
         return self.line + self.text.count("\n")
 
 

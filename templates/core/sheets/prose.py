@@ -18,7 +18,7 @@ def title_of(chunks: Iterable[Chunk]) -> str:
 
 
 def markdown_of(chunk: Chunk) -> str:
-    """Prose as Markdown; a remark as its text."""
+    """Return prose as Markdown; a remark as its text."""
     if chunk.kind == "remark":
         return chunk.text.removeprefix("//").strip()
     return "\n".join(line.removeprefix(">").removeprefix(" ") for line in chunk.text.split("\n"))

@@ -63,21 +63,21 @@ class Sheet:
 
     @property
     def title(self) -> str:
-        """The first heading; empty where there is none."""
+        """Return the first heading; empty where there is none."""
         return title_of(self.chunks)
 
     @property
     def tests(self) -> tuple[SheetTest, ...]:
-        """The tests that it holds; `run_tests` runs them."""
+        """Return the tests that it holds; `run_tests` runs them."""
         return tuple(self.built.tests)
 
     @cached_property
     def names(self) -> tuple[Named, ...]:
-        """The names that formulas may use, for completion."""
+        """Return the names that formulas may use, for completion."""
         return tuple(self.built.named.values())
 
     def digest(self) -> str:
-        """SHA-256 of the statements and the version of the language; prose and layout do not count."""
+        """Return the SHA-256 of the statements and the language version, without prose and layout."""
         return self._digest
 
     @cached_property
@@ -88,7 +88,7 @@ class Sheet:
 
     @cached_property
     def statements(self) -> tuple[Statement, ...]:
-        """Every statement with prose and remarks, in the order of the lines."""
+        """Return every statement with prose and remarks, in the order of the lines."""
         lines = {statement.chunk.line: statement for statement in self.built.statements}
         written = latex_of(self.template("worksheet", 1), self.built)
         return tuple(self._statement(chunk, lines.get(chunk.line), written) for chunk in self.chunks)

@@ -59,7 +59,7 @@ class SolveBody(Body):
         self.__qualname__ = f"line {line}"
 
     def __call__(self, template: Any) -> Any:
-        """The root [SI]; NaN where there is none, and the ledger says why."""
+        """Return the root [SI]; NaN where there is none, and the ledger says why."""
         for name in self.first:
             getattr(template, name)
         values = {name: attrgetter(name)(template) for name in self._others}

@@ -42,7 +42,7 @@ def _any(*conditions: Value) -> Value:
 
 
 def _chosen(condition: Value, one: Value, other: Value) -> Value:
-    """Either value, wherever the condition is known; both are calculated."""
+    """Return either value where the condition is known; both are calculated."""
     if isinstance(condition, np.ndarray) or isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
         if isinstance(condition, np.ndarray) and condition.dtype == bool:  # all of it is known
             return np.where(condition, one, other)

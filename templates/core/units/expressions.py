@@ -60,7 +60,10 @@ class Scope(Protocol):
         """
 
     def function(self, name: str) -> Callable[[list[Part]], Part] | None:
-        """A function of the user's own, called with its arguments; None if there is none of this name."""
+        """Return a function of the user's own, called with its arguments.
+
+        None if there is none of this name.
+        """
 
     def spend(self) -> None:
         """Count an operation.
@@ -93,7 +96,9 @@ def checked(tree: lark.Tree[Any], scope: Scope) -> Part:
 
 
 def built(tree: lark.Tree[Any]) -> Any:
-    """The tree of an expression of which no name is known yet: every unit, function and number is checked.
+    """Return the tree of an expression of which no name is known yet.
+
+    Every unit, function and number is checked.
 
     Raises
     ------

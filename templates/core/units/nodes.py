@@ -53,7 +53,7 @@ class Item:
 
     @property
     def text(self) -> str:
-        """The reference as it is written: `loads.main_load_x[2]`."""
+        """Return the reference as it is written: `loads.main_load_x[2]`."""
         return f"{self.name}[{self.index}]"
 
 

@@ -11,7 +11,9 @@ _PART = re.compile(r"([*·/]?)(?:\(([^)]*)\)|([^*·/()]+))")
 
 
 def quotient(over: str, under: str) -> str:
-    """A unit divided by another, as `units.unit` reads it; of temperatures by that of their difference.
+    """Return a unit divided by another, as `units.unit` reads it.
+
+    Of temperatures by that of their difference.
 
     In base units of SI, where the names of both are too long together.
     """

@@ -53,19 +53,19 @@ class Relation:
 
     @cached_property
     def whole_names(self) -> frozenset[str]:
-        """The names whose values are used whole, not an item of them."""
+        """Return the names whose values are used whole, not an item of them."""
         if not self.items:
             return self.names
         return frozenset(node.name for node in nodes_of(self.tree) if isinstance(node, Name))
 
     @cached_property
     def only_name(self) -> str | None:
-        """The name, where the relation is nothing but a name."""
+        """Return the name, where the relation is nothing but a name."""
         return self.tree.name if isinstance(self.tree, Name) else None
 
     @cached_property
     def tests(self) -> tuple[tuple[str, str], ...]:
-        """Each choice that it tests, with the word."""
+        """Return each choice that it tests, with the word."""
         nodes = (node.arguments for node in applied_in(self.tree) if node.operation is IS)
         return tuple((choice.name, word.text) for choice, word in nodes if isinstance(choice, Name))
 
@@ -81,12 +81,12 @@ class Relation:
 
     @cached_property
     def has_lists(self) -> bool:
-        """Whether it makes or sums up lists; every other operation goes place by place."""
+        """Return whether it makes or sums up lists; every other operation goes place by place."""
         return any(node.operation in LISTWISE for node in applied_in(self.tree))
 
     @cached_property
     def has_conditions(self) -> bool:
-        """Whether anything in it depends on a condition."""
+        """Return whether anything in it depends on a condition."""
         return any(node.operation in CONDITIONS for node in applied_in(self.tree))
 
     def kind(self, kinds: Mapping[str, Kind]) -> Kind:
@@ -117,7 +117,7 @@ class Relation:
 
     @cached_property
     def _constant(self) -> Value:
-        """The value of a relation without names: computed once."""
+        """Return the value of a relation without names: computed once."""
         return self._calculated({})
 
     def _calculated(self, values: Mapping[str, Value]) -> Value:

@@ -65,7 +65,10 @@ def power(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -
 
 
 def plain_number(node: Any) -> float | None:
-    """The value of a pure number, or of one divided by another, such as 1/3; None of everything else."""
+    """Return the value of a pure number, or of one divided by another, such as 1/3.
+
+    None of everything else.
+    """
     match node:
         case Constant(value=value, kind=kind) if is_number(kind):
             return value
@@ -124,6 +127,6 @@ def in_words(kind: Kind) -> str:
 
 @cache
 def _named() -> dict[str, Any]:
-    """Derived units that engineers call by name, and what they are in SI base units."""
+    """Return the derived units that engineers call by name, and what they are in SI base units."""
     names = ("N", "Pa", "N·m", "W", "Pa·s", "N/m", "N·m/rad", "W/(m·K)", "J/(kg·K)")
     return {name: registry.Unit(registry.get_base_units(name.replace("·", "*"))[1]) for name in names}

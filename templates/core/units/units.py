@@ -58,7 +58,7 @@ class Unit:
 
     @property
     def absolute(self) -> bool:
-        """Whether this is a temperature scale with a zero of its own, such as degC."""
+        """Return whether this is a temperature scale with a zero of its own, such as degC."""
         return self.offset != 0.0
 
     def to_si(self, value: Value) -> Value:
@@ -180,7 +180,10 @@ def _remedy(want: Unit) -> str:
 
 
 def _meant(got: Unit, want: Unit) -> str:
-    """A hint on well-known slips of the pen: Pint takes C for coulomb, F for farad, U for an enzyme unit."""
+    """Return a hint on well-known slips of the pen.
+
+    Pint takes C for coulomb, F for farad, U for an enzyme unit.
+    """
     if want.base == registry.kelvin and got.text in ("C", "F"):
         return f" ({got.text} is not a temperature: write deg{got.text})"
     return " (U is not a turn: write rpm or rev/min)" if got.text.startswith("U/") else ""

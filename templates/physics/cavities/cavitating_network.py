@@ -52,7 +52,7 @@ class Ring:
         return np.concatenate([rows, rows[:1]])
 
     def cells(self) -> Array:
-        """(N,) areas dphi dzeta of the cells around the nodes."""
+        """Return (N,) areas dphi dzeta of the cells around the nodes."""
         around = dual_widths(self.phi)
         return np.outer(np.append(around[0] + around[-1], around[1:-1]), dual_widths(self.zeta)).ravel()
 
@@ -79,7 +79,7 @@ def _snapped(nodes: Array, places: Array) -> Array:
 
 
 def _inside(groove: Groove, phi: Array, zeta: Array) -> Mask:
-    """Nodes of a groove; a groove narrower than the mesh still has the node that was moved to it."""
+    """Return nodes of a groove; a groove narrower than the mesh still has the node that was moved to it."""
     around = np.abs(_wrapped(phi - groove.centre)) <= groove.width / 2 + 1e-9
     return around[:, None] & (zeta <= groove.length + 1e-9)
 

@@ -42,7 +42,10 @@ class ColumnScaledSum:
 
     @classmethod
     def of(cls, first: csc_array, second: csc_array) -> ColumnScaledSum:
-        """The sum of two square matrices of one size; one pattern with the whole diagonal is cheapest."""
+        """Return the sum of two square matrices of one size.
+
+        One pattern with the whole diagonal is cheapest.
+        """
         count = first.shape[0]
         column = np.repeat(np.arange(count), np.diff(first.indptr))
         if _has_pattern_of(second, first) and np.count_nonzero(first.indices == column) == count:
@@ -60,7 +63,10 @@ class ColumnScaledSum:
     def at(
         cls, row: NDArray[np.integer], column: NDArray[np.integer], values: Array, count: int
     ) -> ColumnScaledSum:
-        """Both by their places, column by column, the whole diagonal among them; values (2, places)."""
+        """Return both by their places, column by column, the whole diagonal among them.
+
+        Values (2, places).
+        """
         starts = np.zeros(count + 1, np.int32)
         np.cumsum(np.bincount(column, minlength=count), out=starts[1:])
         pattern = csc_array((np.zeros(row.size), row.astype(np.int32), starts), shape=(count, count))
@@ -89,7 +95,9 @@ class ColumnScaledSum:
         return np.asarray(self.scaled(by_first, by_second) @ np.ones(by_first.size))
 
     def factorised(self, by_first: Array, by_second: Array, diagonal: Array) -> Callable[[Array], Array]:
-        """A function that solves for the scaled sum: by a banded LU where all values are near the diagonal.
+        """Return a function that solves for the scaled sum.
+
+        By a banded LU where all values are near the diagonal.
 
         Raises
         ------
@@ -109,7 +117,7 @@ class ColumnScaledSum:
 
     @cached_property
     def width(self) -> int:
-        """How far from the diagonal the farthest value is."""
+        """Return how far from the diagonal the farthest value is."""
         return int(np.abs(self.pattern.indices - self.column).max(initial=0))
 
     def diagonals(self) -> Array:

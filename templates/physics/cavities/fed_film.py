@@ -76,12 +76,12 @@ class Place:
 
     @property
     def eps(self) -> float:
-        """Relative eccentricity [-]."""
+        """Return the relative eccentricity [-]."""
         return min(float(np.tanh(np.hypot(*self.y))), ECCENTRICITY_LIMIT)
 
     @property
     def attitude(self) -> float:
-        """Angle from the load to the narrowest gap [rad]."""
+        """Return the angle from the load to the narrowest gap [rad]."""
         return float(np.arctan2(self.y[1], self.y[0]))
 
     def moved(self, step: Array) -> "Place":
@@ -162,7 +162,9 @@ class Search:
     """Grooves, which stand still, or none: then the line that feeds turns with the journal."""
 
     def balance(self) -> tuple[Place, SolvedRing] | None:
-        """The place and its film on the coarse mesh, by Newton's method; steps are halved when it turns back.
+        """Return the place and its film on the coarse mesh, by Newton's method.
+
+        Steps are halved when it turns back.
 
         The mesh follows the grooves, so that the force has steps; where the search hunts about one, the place
         nearest to rest is taken.
@@ -217,7 +219,7 @@ class Search:
         return missing, np.asarray(np.linalg.solve(film.K, missing))
 
     def _step_with_line(self, place: Place, film: LinearFilm) -> tuple[Array, Array]:
-        """Likewise; only along the line of centres, since the film turns as a whole."""
+        """Return the force along the line of centres alone, since the film turns as a whole."""
         borne = float(np.hypot(*film.force))
         missing = (self.load - borne) * film.force / borne
         along = (self.load - borne) / (film.force / borne @ film.K[:, 0])

@@ -74,7 +74,7 @@ class Loaded:
 
     @property
     def line_turns(self) -> bool:
-        """Whether the line of supply turns with the journal."""
+        """Return whether the line of supply turns with the journal."""
         return not self.feed.grooves and not self.bore.is_lobed
 
     def lie(self, e: Array) -> Lie:
@@ -110,7 +110,10 @@ def balance(loaded: Loaded) -> Balance:
 
 
 def _ladders(loaded: Loaded) -> list[tuple[tuple[int, int], ...]]:
-    """Meshes to refine over; in a bore of lobes also without the coarsest, which may miss some of them."""
+    """Return meshes to refine over.
+
+    In a bore of lobes also without the coarsest, which may miss some of them.
+    """
     return [MESHES, MESHES[1:]] if loaded.bore.is_lobed and not loaded.feed.grooves else [MESHES]
 
 
@@ -172,7 +175,7 @@ def _agreed(
 def _searched(
     loaded: Loaded, e: Array, nodes: Nodes, pockets: list[Pocket], near: ShapedFilm | None
 ) -> tuple[ShapedFilm, Array]:
-    """Newton's method on one mesh."""
+    """Return Newton's method on one mesh."""
     film = _solved(loaded, e, nodes, pockets, near)
     wanted = np.array([loaded.So, 0.0])
     for _ in range(_STEPS):

@@ -77,13 +77,13 @@ class ShapedFilm:
 
     @cached_property
     def shear(self) -> float:
-        """Shear force on the journal; over the full circle, or by the oil there is."""
+        """Return the shear force on the journal; over the full circle, or by the oil there is."""
         fill = 1 - self.void
         return float((fill / self.H.nodes * self.nodes.weight).sum())
 
     @cached_property
     def load_couple(self) -> float:
-        """What pressure adds to the friction on the journal, from half of ∬ H dP.
+        """Return what pressure adds to the friction on the journal, from half of ∬ H dP.
 
         In a plain bearing it is So eps sin(attitude)/2, the couple of load and reaction.
         """
@@ -92,7 +92,7 @@ class ShapedFilm:
 
     @cached_property
     def side_flow(self) -> float:
-        """Oil that leaves at both ends, but not straight from a pocket, Q/(R³ psi omega_h)."""
+        """Return oil that leaves at both ends, but not straight from a pocket, Q/(R³ psi omega_h)."""
         loss = self.network.loss(self.solution.P, self.solution.void).reshape(self.nodes.shape)
         ends = [-1] if self.nodes.is_half else [0, -1]
         out = -sum(loss[:, end][~self.fed[:, end]].sum() for end in ends)
@@ -100,7 +100,7 @@ class ShapedFilm:
 
     @cached_property
     def peak(self) -> tuple[float, float]:
-        """Largest pressure, and its angle from the load [rad], by a parabola around."""
+        """Return the largest pressure, and its angle from the load [rad], by a parabola around."""
         i, j = np.unravel_index(self.P.argmax(), self.P.shape)
         n = self.nodes.shape[0]
         phi, column = self.nodes.phi[:-1], self.P[:, j]

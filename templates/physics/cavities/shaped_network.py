@@ -50,12 +50,12 @@ class Nodes:
 
     @property
     def is_half(self) -> bool:
-        """Whether they span half the width, of which the other half is the mirror image."""
+        """Return whether they span half the width, of which the other half is the mirror image."""
         return bool(self.zeta[0] == 0)
 
     @cached_property
     def around(self) -> Array:
-        """(n,) widths of the cells around the nodes [rad]."""
+        """Return (n,) widths of the cells around the nodes [rad]."""
         widths = dual_widths(self.phi)
         return np.append(widths[0] + widths[-1], widths[1:-1])
 
@@ -71,7 +71,7 @@ class Nodes:
 
     @cached_property
     def steps(self) -> tuple[csr_array, csr_array]:
-        """Differences between neighbours around and across, (edges, nodes) each."""
+        """Return differences between neighbours around and across, (edges, nodes) each."""
         n, m = self.shape
         turn = csr_array((np.ones(n), (np.arange(n), np.arange(1, n + 1) % n)), shape=(n, n)) - eye_array(n)
         axial = eye_array(m - 1, m, k=1) - eye_array(m - 1, m)
@@ -168,7 +168,10 @@ def _conducted(nodes: Nodes, around: Array, across: Array) -> csc_array:
 
 
 def fed(nodes: Nodes, pockets: list[Pocket]) -> tuple[Array, Mask]:
-    """Fixed pressures P [-], −1 for none, and nodes that pockets feed, (n, m + 1); ambient at the ends."""
+    """Return the fixed pressures P [-], −1 for none, and nodes that pockets feed, (n, m + 1).
+
+    Ambient at the ends.
+    """
     P = np.full(nodes.shape, -1.0)
     P[:, -1] = 0.0
     if not nodes.is_half:

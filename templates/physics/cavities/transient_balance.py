@@ -25,7 +25,7 @@ class Journal:
     """(m + 1,) axial places of the nodes, 0 (middle) … 1 (end)."""
 
     def gap(self, eps: Array, phi: Array) -> Array:
-        """H at angles [-]."""
+        """Return H at angles [-]."""
         return np.asarray(1 - eps[0] * np.cos(phi) - eps[1] * np.sin(phi))
 
     def load(self, P: Array) -> Array:
@@ -62,7 +62,7 @@ class Balance:
         return np.asarray(flow - np.roll(flow, 1, axis=0) + axial - np.pad(axial[:, :-1], ((0, 0), (1, 0))))
 
     def by_fill(self, fill: Array) -> Array:
-        """T fill, (n, m)."""
+        """Return T fill, (n, m)."""
         after, ahead = np.maximum(self.carried, 0), np.minimum(self.carried, 0)
         flow = after[:, None] * fill + ahead[:, None] * np.roll(fill, -1, axis=0)
         return np.asarray((flow - np.roll(flow, 1, axis=0) + self.stored[:, None] * fill) * self.width)
@@ -89,7 +89,7 @@ class Balance:
         return np.moveaxis(solution[rows], -1, 0)
 
     def _couplings(self, alpha: Array, beta: Array, rows: Index) -> list[tuple[Index, Index, Array]]:
-        """Row, column and value of the entries of A alpha + T beta: itself, around, and across."""
+        """Return row, column and value of the entries of A alpha + T beta: itself, around, and across."""
         A, T = self.diagonals()
         after, ahead = np.maximum(self.carried, 0)[:, None], np.minimum(self.carried, 0)[:, None]
         conductance, following = self.round[:, None] * self.width, np.roll(rows, -1, axis=0)

@@ -69,7 +69,7 @@ class Closed:
 
     @cached_property
     def initial(self) -> Array:
-        """p₁V₁^γ over (dead volume)^γ [Pa], (…, 1)."""
+        """Return p₁V₁^γ over (dead volume)^γ [Pa], (…, 1)."""
         ratio = self.volume(_column(self.closes)) / _column(self.dead)
         return _column(self.pressure_closed) * ratio ** _column(self.gamma)
 
@@ -83,7 +83,7 @@ class Closed:
         return np.concatenate([0 * parts[..., :1], np.cumsum(parts, axis=-1)], axis=-1)
 
     def _density(self, u: Array) -> Array:
-        """(V/V_c)^(γ−1) dx/du at roots u = √y of the share of the duration, (…, K)."""
+        """Return (V/V_c)^(γ−1) dx/du at roots u = √y of the share of the duration, (…, K)."""
         b, y = self.burning, u * u
         theta = _column(b.start) + _column(b.duration) * y
         compressed = (self.volume(theta) / _column(self.dead)) ** (_column(self.gamma) - 1)
@@ -198,6 +198,9 @@ def four_stroke_angles(steps: Array) -> Array:
 
 @units("J", "J", "J", "J", returns="1", latex=r"\frac{{{0}-{1}-{2}}}{{{0}+{3}}}")
 def unbalanced_share(heat: Array, work: Array, change: Array, scale: Array) -> Array:
-    """Heat less work less change of inner energy, over heat and a scale of the charge [1]; 0 below 1e-9."""
+    """Return the heat less work less change of inner energy, over heat and a scale of the charge [1].
+
+    0 below 1e-9.
+    """
     share = (heat - work - change) / (heat + scale)
     return np.where(np.abs(share) < 1e-9, 0.0, share)[()]

@@ -36,7 +36,7 @@ class CrankSections:
 
     @property
     def half(self) -> float:
-        """From the middle of a pin to the middle of its web [m]."""
+        """Return the distance from the middle of a pin to that of its web [m]."""
         return (self.pin_length + self.web_thickness) / 2
 
 

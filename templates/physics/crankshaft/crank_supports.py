@@ -31,7 +31,10 @@ class Flexibility:
 
 
 def self_balancing(mains: Array) -> Array:
-    """Reactions without resultant, (n, n − 2) [-]: one at a main between, the lever's at the outermost."""
+    """Return reactions without resultant, (n, n − 2) [-].
+
+    One at a main between, the lever's at the outermost.
+    """
     n = mains.size
     share = (mains[1:-1] - mains[0]) / (mains[-1] - mains[0])
     basis = np.zeros((n, n - 2))
@@ -41,7 +44,7 @@ def self_balancing(mains: Array) -> Array:
 
 
 def support_reactions(mains: Array, places: Array, shaft: Flexibility, stiffness: Array) -> Array:
-    """Reactions to unit forces at the loads, (2 n, 2 L); `stiffness` [N/m], (n,), may be infinite."""
+    """Return reactions to unit forces at the loads, (2 n, 2 L); `stiffness` [N/m], (n,), may be infinite."""
     plane = np.eye(2)
     start: Array = np.asarray(-np.kron(lever_shares(mains, places), plane), dtype=float)
     if mains.size == 2:

@@ -28,7 +28,10 @@ class ShaftLoads:
 
 
 def lever_shares(mains: Array, places: Array) -> Array:
-    """The share of each load that each main takes, (n, L), for mains [m] that ascend; shares sum to 1."""
+    """Return the share of each load that each main takes, (n, L), for mains [m] that ascend.
+
+    Shares sum to 1.
+    """
     span = np.clip(np.searchsorted(mains, places) - 1, 0, mains.size - 2)
     share = (places - mains[span]) / (mains[span + 1] - mains[span])
     shares = np.zeros((mains.size, places.size))
@@ -126,7 +129,7 @@ def governing(forces: Vectors) -> Array:
 
 @units(None, None, returns="1")
 def relative_change(elastic: Vectors, determinate: Vectors) -> Array:
-    """By how much the greatest load of each main differs on elastic supports from the determinate one."""
+    """Return the change of each main's greatest load on elastic supports from the determinate one."""
     plain = np.abs(determinate).max(axis=-1)
     return np.asarray(np.abs(elastic).max(axis=-1) / np.where(plain > 0, plain, np.nan) - 1)
 

@@ -43,7 +43,7 @@ class Supports:
 
     @property
     def have_play(self) -> bool:
-        """Whether any has a clearance or stands off the line."""
+        """Return whether any has a clearance or stands off the line."""
         return bool(np.any(self.clearance > 0) or np.any(self.offset != 0))
 
 
@@ -58,7 +58,10 @@ def flexibilities(
     mains: Array, cylinders: Array, webs: Array, throw: Places, pins: Array, radius: Array,
     sections: CrankSections,
 ) -> list[Flexibility]:  # fmt: skip
-    """The elastic shaft at each point of pins [rad] and radii [m], (…, N); none where it is not given."""
+    """Return the elastic shaft at each point of pins [rad] and radii [m], (…, N).
+
+    None where it is not given.
+    """
     if not np.ndim(mains) or np.isnan([vars(sections)[name] for name in vars(sections)]).any():
         return []
     if not np.isfinite(pins).all() or not fits(mains, cylinders, throw, sections):
@@ -120,7 +123,7 @@ class _Play:
         self.clearance = supports.clearance[:, None]
 
     def reactions(self, forces: Vectors, offsets: Vectors) -> Supported:
-        """Reactions [N], (n, K), to loads, (L, K), with the bores' middles at offsets [m], (n, K)."""
+        """Return reactions [N], (n, K), to loads, (L, K), with the bores' middles at offsets [m], (n, K)."""
         parts = [
             self._some(forces[:, at : at + _COLUMNS], offsets[:, at : at + _COLUMNS])
             for at in range(0, forces.shape[-1], _COLUMNS)
@@ -146,7 +149,7 @@ class _Play:
         return Supported(pairs[:, 0] + 1j * pairs[:, 1], left)
 
     def _settled(self, x: Array, first: Array, free: Array, stiff: Array, small: Array) -> Array:
-        """Newton's method from x, damped by the energy at each crank angle for itself."""
+        """Return Newton's method from x, damped by the energy at each crank angle for itself."""
         if not x.size:
             return x
         for _ in range(_STEPS):
@@ -166,7 +169,10 @@ class _Play:
     def _damped(
         self, x: Array, step: Array, slope: Array, look: Callable[[Array], tuple[Array, Array]]
     ) -> Array:
-        """The length of each step by which the energy falls, or else its slope: energies end in rounding."""
+        """Return the length of each step by which the energy falls, or else its slope.
+
+        Energies end in rounding.
+        """
         energy, _ = look(x)
         falls, steep = (slope * step).sum(axis=0), np.abs(slope).max(axis=0)
         length = np.ones(x.shape[-1])
@@ -200,7 +206,7 @@ class _Play:
 
 
 def _rows(vectors: Vectors) -> Array:
-    """Complex rows, (n, K), as real ones, (2 n, K)."""
+    """Return complex rows, (n, K), as real ones, (2 n, K)."""
     return np.stack([vectors.real, vectors.imag], axis=1).reshape(-1, vectors.shape[-1])
 
 

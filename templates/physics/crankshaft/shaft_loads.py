@@ -65,7 +65,9 @@ def reactions_of(
     mains: Array, cylinders: Array, webs: Array, throw: Places, pins: Array, radius: Array,
     sections: CrankSections, stiffness: Array,
 ) -> Array:  # fmt: skip
-    """Reactions to unit loads on rods and webs, (…, 2 n, 2 L); rigid supports where no stiffness is given.
+    """Return reactions to unit loads on rods and webs, (…, 2 n, 2 L).
+
+    Rigid supports where no stiffness is given.
 
     `pins` [rad] and `radius` [m] are (…, N): each point with a crank of its own is solved on its own.
     """
@@ -126,7 +128,7 @@ def webs_are_whole(places: Array, unbalance: Array, counterweight: Array, throws
 
 @units(None, None, returns="1")
 def change_on_supports(elastic_forces: Vectors, determinate_forces: Vectors) -> Array:
-    """By how much each main's greatest load differs from the determinate one, over that."""
+    """Return by how much each main's greatest load differs from the determinate one, over that."""
     if not np.ndim(elastic_forces):
         return _NONE
     return relative_change(elastic_forces, determinate_forces)

@@ -79,14 +79,14 @@ class BoreFilm(SoftFilm):
 
     @cached_property
     def bent(self) -> Array:
-        """(36, nodes) deformation in each mode that bends the bore, per pressure of a node."""
+        """Return (36, nodes) deformation in each mode that bends the bore, per pressure of a node."""
         weight = np.outer(self.mesh.weight_phi, self.mesh.weight_zeta) * self.softness.share / (4 * np.pi)
         taken = (self.shapes * weight[..., None]).reshape(self.P.size, len(MODES))
         return np.asarray(self.softness.matrix[BENDING] @ taken.T)
 
     @cached_property
     def deformation(self) -> Array:
-        """What the pressure adds to the gap (n + 1, m + 1) [-]."""
+        """Return what the pressure adds to the gap (n + 1, m + 1) [-]."""
         plain = SoftFilm(self.mesh, self.ratio, self.softness, self.modes, self.eps, self.P).deformation
         return np.asarray(plain + self.shapes[..., BENDING] @ (self.bent @ self.P.ravel()))
 
@@ -162,7 +162,7 @@ def _in_bore(film: SoftFilm, softness: BoreSoftness) -> BoreFilm:
 
 
 def attitude(film: SoftFilm) -> float:
-    """From the load to the journal's displacement in the sense of rotation [rad]."""
+    """Return the angle from the load to the journal's displacement in the sense of rotation [rad]."""
     along, ahead = film.force
     return float(np.arctan2(-ahead, along))
 

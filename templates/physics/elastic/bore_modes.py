@@ -54,7 +54,7 @@ def modes_along(zeta: Array) -> Array:
 
 
 def half_plane(radius: Array, modulus: Array, poisson: Array) -> Array:
-    """Displacement of a half plane under 1 Pa cos(n theta) for n = 10 … `HARMONICS`; 0 below [m/Pa].
+    """Return displacement of a half plane under 1 Pa cos(n theta) for n = 10 … `HARMONICS`; 0 below [m/Pa].
 
     Parameters
     ----------
@@ -87,7 +87,10 @@ def is_mutual(rows: Rows) -> Truth:
 
 @units(None, returns="1")
 def gains_no_energy(rows: Rows) -> Truth:
-    """True if no pressure moves the bore against itself; one that is not square is judged elsewhere."""
+    """Return whether no pressure moves the bore against itself.
+
+    One that is not square is judged elsewhere.
+    """
     if len(rows) != len(MODES):
         return True
     C = np.array(rows)

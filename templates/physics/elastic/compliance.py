@@ -84,7 +84,7 @@ def ring_compliance(inner: Array, outer: Array, modulus: Array, poisson: Array) 
 
 
 def _michell(ratio: Array, nu: Array, n: Array) -> Array:
-    """2 mu u_r(a)/(a p) for every ring (R,) of a ratio a/b and every n (N,), (R, N) [-].
+    """Return 2 mu u_r(a)/(a p) for every ring (R,) of a ratio a/b and every n (N,), (R, N) [-].
 
     Powers that grow are scaled to the outer face, those that fall to the inner one.
     """
@@ -93,7 +93,7 @@ def _michell(ratio: Array, nu: Array, n: Array) -> Array:
     grow, fall = q ** (n - 2), q**n  # what reaches the inner face, and the outer one
 
     def stresses(power: Array, at: Array, r: Array) -> tuple[Array, Array]:
-        """Radial and shear stress of r**power, whose size at the face is `at`, in units of a = 1."""
+        """Return radial and shear stress of r**power, whose size at the face is `at`, in units of a = 1."""
         return (power - n**2) * at / r**2, n * (power - 1) * at / r**2
 
     outside = 1 / q * one

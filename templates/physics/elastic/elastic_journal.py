@@ -222,7 +222,9 @@ def _peak(film: SoftFilm) -> tuple[float, float]:
 
 @units("1/Pa", "Pa*s", returns="1")
 def roelands_exponent(alpha: Array, eta: Array) -> Array:
-    """Roelands' Z of a pressure-viscosity coefficient at ambient pressure; NaN for so thin a fluid [-].
+    """Return Roelands' Z of a pressure-viscosity coefficient at ambient pressure.
+
+    NaN for so thin a fluid [-].
 
     Parameters
     ----------
@@ -238,7 +240,7 @@ def roelands_exponent(alpha: Array, eta: Array) -> Array:
 
 @units("m", "m", returns="1", latex=r"\frac{{{0}}}{{{1}}}")
 def wall_ratio(outer: Array, inner: Array) -> Array:
-    """Outer over inner diameter of a housing; 1, which is none, where the outer is not given [-]."""
+    """Return outer over inner diameter of a housing; 1, which is none, where the outer is not given [-]."""
     return np.where(np.isnan(outer), 1.0, outer / inner)[()]
 
 

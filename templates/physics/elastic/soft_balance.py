@@ -115,7 +115,7 @@ def carried(found: Balanced, So: float, around: int, across: int) -> Balanced:
 
 
 def settled(film: SoftFilm, inside: Mask, So: float, graded: float, steps: int = 0) -> Balanced:
-    """Newton's method on one mesh.
+    """Return Newton's method on one mesh.
 
     Raises
     ------
@@ -144,7 +144,7 @@ def settled(film: SoftFilm, inside: Mask, So: float, graded: float, steps: int =
 
 
 def _step(film: SoftFilm, inside: Mask, So: float) -> tuple[Array, float]:
-    """Newton's step of pressure and eccentricity."""
+    """Return Newton's step of pressure and eccentricity."""
     matrix, modal, by_eps = film.jacobian(inside)
     right = np.concatenate([-(film.loss * inside).reshape(-1, 1), by_eps[:, None], modal], axis=1)
     solved = splu(matrix).solve(right)

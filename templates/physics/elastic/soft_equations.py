@@ -95,14 +95,14 @@ class SoftFilm:
 
     @cached_property
     def deformation(self) -> Array:
-        """What the pressure adds to the gap (n + 1, m + 1) [-]."""
+        """Return what the pressure adds to the gap (n + 1, m + 1) [-]."""
         mean = self.P @ self.mesh.weight_zeta / 2
         ring = self.modes.shapes @ (self.modes.compliance * (mean @ self.modes.taken))
         return np.asarray(self.softness.liner * self.P + ring[:, None])
 
     @cached_property
     def H(self) -> Array:
-        """The gap at the nodes (n + 1, m + 1) [-]."""
+        """Return the gap at the nodes (n + 1, m + 1) [-]."""
         return np.asarray((1 - self.eps) + swell(self.mesh.phi, self.eps)[:, None] + self.deformation)
 
     @cached_property
@@ -125,7 +125,7 @@ class SoftFilm:
 
     @cached_property
     def loss(self) -> Array:
-        """What each node loses more than it gains (n + 1, m + 1)."""
+        """Return what each node loses more than it gains (n + 1, m + 1)."""
         H, eta, _, rise = self.around
         width = dual_widths(self.mesh.zeta)
         onward = -(H**3) / eta * rise + 6 * (H - (1 - self.eps))
@@ -175,14 +175,14 @@ class SoftFilm:
 
     @cached_property
     def amplitudes_of(self) -> Array:
-        """(M, nodes) the ring's deformations per pressure of a node."""
+        """Return (M, nodes) the ring's deformations per pressure of a node."""
         taken = self.modes.taken * self.modes.compliance
         across = self.mesh.weight_zeta / 2
         return (taken.T[:, :, None] * across).reshape(taken.shape[1], self.P.size)
 
     @cached_property
     def force_of(self) -> Array:
-        """(2, nodes) force towards the narrowest gap and ahead of it per pressure of a node, in So."""
+        """Return (2, nodes) force towards the narrowest gap and ahead of it per pressure of a node, in So."""
         line = np.stack([np.cos(self.mesh.phi), np.sin(self.mesh.phi)]) * self.mesh.weight_phi / 4
         return (line[:, :, None] * self.mesh.weight_zeta).reshape(2, -1)
 

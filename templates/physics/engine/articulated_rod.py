@@ -47,29 +47,29 @@ class ArticulatedCrank(OffsetCrank):
 
     @cached_property
     def articulated(self) -> NDArray[np.bool_]:
-        """Which rods work on another one, (N,)."""
+        """Return which rods work on another one, (N,)."""
         return np.asarray(self.carrier != np.arange(self.carrier.size))
 
     @cached_property
     def master(self) -> OffsetCrank:
-        """The mechanisms of the carriers."""
+        """Return the mechanisms of the carriers."""
         count = self.carrier.size
         full = (np.broadcast_to(one, (*one.shape[:-1], count)) for one in (self.r, self.l, self.e))
         return OffsetCrank(*(one[..., self.carrier] for one in full))
 
     @cached_property
     def top(self) -> Array:
-        """The crank angle [rad] at which the piston is highest."""
+        """Return the crank angle [rad] at which the piston is highest."""
         return self._dead_centre(highest=True)
 
     @cached_property
     def highest(self) -> Array:
-        """The largest distance of the piston pin from the crankshaft along the axis [m]."""
+        """Return the largest distance of the piston pin from the crankshaft along the axis [m]."""
         return self.at(self.top[..., None]).x[..., 0]
 
     @cached_property
     def lowest(self) -> Array:
-        """The smallest distance [m]."""
+        """Return the smallest distance [m]."""
         return self.at(self._dead_centre(highest=False)[..., None]).x[..., 0]
 
     def at(self, alpha: Array) -> ArticulatedMotion:
@@ -97,7 +97,7 @@ class ArticulatedMotion(RodMotion):
 
     @cached_property
     def lead(self) -> RodMotion:
-        """The motion of the carriers, in the axes of their own cylinders."""
+        """Return the motion of the carriers, in the axes of their own cylinders."""
         return self.crank.master.at(self.alpha + self.crank.turn[..., None])
 
     @cached_property
@@ -106,32 +106,32 @@ class ArticulatedMotion(RodMotion):
 
     @cached_property
     def _crankpin(self) -> Vectors:
-        """In the axes of the carrier."""
+        """Return the crankpin in the axes of the carrier."""
         return np.asarray(self.lead.crank.r[..., None] * (self.lead.cos + 1j * self.lead.sin))
 
     @cached_property
     def _arm(self) -> Vectors:
-        """From the crankpin to the pin, in the axes of the carrier."""
+        """Return the vector from the crankpin to the pin, in the axes of the carrier."""
         return self.crank.arm[..., None] * (self.lead.cos_phi - 1j * self.lead.sin_phi)
 
     @cached_property
     def lever(self) -> Vectors:
-        """From the crankpin to the pin [m], in the axes of the own cylinder."""
+        """Return the vector from the crankpin to the pin [m], in the axes of the own cylinder."""
         return self._arm * self._back
 
     @cached_property
     def pin(self) -> Vectors:
-        """The pin on which the rod works [m], in the axes of its cylinder."""
+        """Return the pin on which the rod works [m], in the axes of its cylinder."""
         return (self._crankpin + self._arm) * self._back
 
     @cached_property
     def pin1(self) -> Vectors:
-        """Its derivative [m]."""
+        """Return its derivative [m]."""
         return 1j * (self._crankpin - self.lead.phi1 * self._arm) * self._back
 
     @cached_property
     def pin2(self) -> Vectors:
-        """Its second derivative [m]."""
+        """Return its second derivative [m]."""
         lead = self.lead
         return -(self._crankpin + (1j * lead.phi2 + lead.phi1**2) * self._arm) * self._back
 
@@ -141,37 +141,40 @@ class ArticulatedMotion(RodMotion):
 
     @cached_property
     def sin_phi(self) -> Array:
-        """Sine of the rod's angle from the axis."""
+        """Return the sine of the rod's angle from the axis."""
         return (self.pin.imag - self.crank.e[..., None]) / self._rod
 
     @cached_property
     def phi1(self) -> Array:
-        """phi′ [1]; the rod turns at −phi′ times the speed of the crank."""
+        """Return phi′ [1]; the rod turns at −phi′ times the speed of the crank."""
         return np.asarray(self.pin1.imag / (self._rod * self.cos_phi))
 
     @cached_property
     def phi2(self) -> Array:
-        """phi″ [1]."""
+        """Return phi″ [1]."""
         return self.pin2.imag / (self._rod * self.cos_phi) + self.tan_phi * self.phi1**2
 
     @cached_property
     def x(self) -> Array:
-        """Distance of the piston pin from the crankshaft along the axis [m]."""
+        """Return the distance of the piston pin from the crankshaft along the axis [m]."""
         return np.asarray(self.pin.real + self._rod * self.cos_phi)
 
     @cached_property
     def x1(self) -> Array:
-        """x′ [m]."""
+        """Return x′ [m]."""
         return np.asarray(self.pin1.real - self.pin1.imag * self.tan_phi)
 
     @cached_property
     def x2(self) -> Array:
-        """x″ [m]."""
+        """Return x″ [m]."""
         return self.pin2.real - self._rod * self.cos_phi * (self.phi1**2 + self.tan_phi * self.phi2)
 
 
 def carriers(masters: Array, count: int) -> Numbers:
-    """The cylinder that carries each rod, from 0; itself where none is named, or names are no cylinders."""
+    """Return the cylinder that carries each rod, from 0.
+
+    Itself where none is named, or names are no cylinders.
+    """
     itself = np.arange(count)
     if np.shape(masters) != (count,):
         return itself
@@ -201,7 +204,10 @@ def with_articulated(
 
 
 def order_amplitudes(crank: OffsetCrank, orders: Array, exact: bool) -> Phasor:
-    """Amplitudes of −x″ [m] at orders, (…, N, H), complex; those of articulated rods are always exact."""
+    """Return amplitudes of −x″ [m] at orders, (…, N, H), complex.
+
+    Those of articulated rods are always exact.
+    """
     if not isinstance(crank, ArticulatedCrank):
         return piston_harmonics(crank, orders, exact)
     plain = piston_harmonics(OffsetCrank(crank.r, crank.l, crank.e), orders, exact)
@@ -239,7 +245,10 @@ def off_the_circle(at_crank: Array, omega: Array, motion: RodMotion, bank: Array
 
 
 def on_big_ends(pins: Vectors, motion: RodMotion) -> Vectors:
-    """Loads on bearings [N]: a master's on the crankpin with all it carries, others' on their own pins."""
+    """Return loads on bearings [N].
+
+    A master's on the crankpin with all it carries, others' on their own pins.
+    """
     if not isinstance(motion, ArticulatedMotion):
         return pins
     total = pins.copy()

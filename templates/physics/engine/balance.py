@@ -35,7 +35,7 @@ class Pair:
 
     @property
     def amplitude(self) -> Array:
-        """The largest size on their way: the half axis of an ellipse."""
+        """Return the largest size on their way: the half axis of an ellipse."""
         return np.asarray(np.abs(self.forward) + np.abs(self.backward), dtype=float)
 
     def at(self, angle: Array) -> Phasor:
@@ -73,7 +73,7 @@ def _sum(weight: Array | float, angle: Array) -> Phasor:
 
 
 def crank_turns(order: Array, interval: Array | float) -> Array:
-    """Angles of the cranks [rad] by cylinder, (…, N), from the firing order and the interval [rad]."""
+    """Return angles of the cranks [rad] by cylinder, (…, N), from the firing order and the interval [rad]."""
     place = np.argsort(np.atleast_1d(order), axis=-1).astype(float)
     return np.asarray(-interval * place)
 
@@ -122,7 +122,7 @@ def rotating_couple(m_rot: Array, omega: Array, r: Array, row: Arrangement) -> A
 
 @units("kg", "rad/s", "m", "1", None, None, returns="N")
 def reciprocating_force(m: Array, omega: Array, r: Array, n: Array, order: int, row: Arrangement) -> Array:
-    """Amplitude of the primary (1) or secondary (2) force, m ω² r [/n] times the pistons' sum [N]."""
+    """Return amplitude of the primary (1) or secondary (2) force, m ω² r [/n] times the pistons' sum [N]."""
     return m * omega**2 * r / n ** (order - 1) * row.reciprocating(order).amplitude
 
 

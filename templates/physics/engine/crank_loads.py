@@ -45,39 +45,42 @@ def excess_at(level: str, excess: Array) -> Array:
 
 @units("kg", "rad/s", "m", "m**2", None, "Pa", "Pa", returns="N")
 def axial_force(m: Array, omega: Array, r: Array, A: Array, motion: Motion, p: Array, p_c: Array) -> Array:
-    """K = m a + (p − p_c) A [N], by which the crank moves the reciprocating mass m against the gas."""
+    """Return K = m a + (p − p_c) A [N], by which the crank moves the reciprocating mass m against the gas."""
     inertia = _column(m * omega**2 * r) * motion.acceleration
     return inertia + _column(A) * (p - _column(p_c))
 
 
 @units("N", "kg*m**2", "rad/s", "m", None, returns="N")
 def wall_force_Rao_Singh_1993(K: Array, excess: Array, omega: Array, r: Array, motion: Motion) -> Array:
-    """F_41y = −K tan φ + d [N], piston on wall; d = −excess · φ̈/(l cos φ) is the rigid rod's share."""
+    """Return F_41y = −K tan φ + d [N], piston on wall.
+
+    D = −excess · φ̈/(l cos φ) is the rigid rod's share.
+    """
     couple = _column(excess * omega**2 / r) * (motion.rod_acceleration / motion.q)
     return -K * motion.tan_phi - couple
 
 
 @units("kg", "rad/s", "m", "N", None, returns="N")
 def crankpin_load_x_Rao_Singh_1993(m_3A: Array, omega: Array, r: Array, K: Array, motion: Motion) -> Array:
-    """F_32x = m_3A ω² r cos θ − K [N], rod on crank."""
+    """Return F_32x = m_3A ω² r cos θ − K [N], rod on crank."""
     return _column(m_3A * omega**2 * r) * motion.cos - K
 
 
 @units("kg", "rad/s", "m", "N", None, returns="N")
 def crankpin_load_y_Rao_Singh_1993(m_3A: Array, omega: Array, r: Array, S: Array, motion: Motion) -> Array:
-    """F_32y = m_3A ω² r sin θ − S [N], rod on crank; S: wall force. Erratum: the paper prints −pA."""
+    """Return F_32y = m_3A ω² r sin θ − S [N], rod on crank; S: wall force. Erratum: the paper prints −pA."""
     return _column(m_3A * omega**2 * r) * motion.sin - S
 
 
 @units("kg", "rad/s", "m", "N", None, returns="N")
 def main_load_x_Rao_Singh_1993(M: Array, omega: Array, r: Array, K: Array, motion: Motion) -> Array:
-    """F_12x = K − ω² r M cos θ [N], frame on crank; M the rotating mass."""
+    """Return F_12x = K − ω² r M cos θ [N], frame on crank; M the rotating mass."""
     return K - _column(M * omega**2 * r) * motion.cos
 
 
 @units("kg", "rad/s", "m", "N", None, returns="N")
 def main_load_y_Rao_Singh_1993(M: Array, omega: Array, r: Array, S: Array, motion: Motion) -> Array:
-    """F_12y = S − ω² r M sin θ [N], frame on crank; S the wall force."""
+    """Return F_12y = S − ω² r M sin θ [N], frame on crank; S the wall force."""
     return S - _column(M * omega**2 * r) * motion.sin
 
 
@@ -85,17 +88,17 @@ def main_load_y_Rao_Singh_1993(M: Array, omega: Array, r: Array, S: Array, motio
 def wristpin_load_x(
     m_4: Array, omega: Array, r: Array, A: Array, motion: Motion, p: Array, p_c: Array
 ) -> Array:
-    """F_34x = m_4 a + (p − p_c) A [N], rod on piston."""
+    """Return F_34x = m_4 a + (p − p_c) A [N], rod on piston."""
     return np.asarray(axial_force(m_4, omega, r, A, motion, p, p_c))
 
 
 @units("kg*m**2", "rad/s", None, returns="N*m")
 def correction_torque(excess: Array, omega: Array, motion: Motion) -> Array:
-    """T_c = (m_3 a_g b_g − I_3) φ̈ cos θ/(n cos φ) [N m]: what a rigid rod adds to the torque."""
+    """Return T_c = (m_3 a_g b_g − I_3) φ̈ cos θ/(n cos φ) [N m]: what a rigid rod adds to the torque."""
     return _column(excess * omega**2) * (motion.rod_acceleration * motion.rod_velocity)
 
 
 @units("N", "m", "kg*m**2", "rad/s", None, returns="N*m")
 def torque_Rao_Singh_1993(K: Array, r: Array, excess: Array, omega: Array, motion: Motion) -> Array:
-    """T = K (cos θ + n cos φ) r tan φ + T_c [N m], rod on crank. Erratum: the paper prints n cos θ."""
+    """Return T = K (cos θ + n cos φ) r tan φ + T_c [N m], rod on crank. Erratum: the paper prints n cos θ."""
     return np.asarray(K * (motion.lever * _column(r)) + correction_torque(excess, omega, motion))

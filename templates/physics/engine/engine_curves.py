@@ -31,7 +31,7 @@ class Rotors:
 
 
 def balancers(unbalance: Array, ratios: Array, phases: Array, places: Array) -> Rotors:
-    """Balance shafts, none where none are given; phases [rad] at crank angle 0."""
+    """Return the balance shafts, none where none are given; phases [rad] at crank angle 0."""
     if np.ndim(unbalance) == 0:
         return Rotors(np.zeros(0, complex), np.zeros(0))
     return Rotors(unbalance * np.exp(1j * phases), places, ratios)
@@ -53,11 +53,11 @@ class Parts:
     rotors: tuple[tuple[Vectors, Array], ...]
 
     def resultant(self) -> Vectors:
-        """Σ F, (…, K)."""
+        """Return Σ F, (…, K)."""
         return self._sum(None)
 
     def couple(self, reference: Array) -> Vectors:
-        """Σ (z − z₀) F, (…, K)."""
+        """Return Σ (z − z₀) F, (…, K)."""
         return self._sum(reference)
 
     def _sum(self, reference: Array | None) -> Vectors:
@@ -80,14 +80,14 @@ def piston_shaking(reciprocating: Array, omega: Array, motion: RodMotion, bank: 
 
 @units(None, None, None, returns="N*m")
 def roll_moment(wall: Array, gas: Array, motion: RodMotion) -> Array:
-    """Moment about the shaft that walls and heads put on the frame [N m]: Σ (x W − e (p − p₀) A)."""
+    """Return moment about the shaft that walls and heads put on the frame [N m]: Σ (x W − e (p − p₀) A)."""
     each = motion.x * wall - motion.crank.e[..., None] * gas
     return np.asarray(each.sum(axis=-2))
 
 
 @units(None, None, None, returns="N*m")
 def torque(pins: Vectors, motion: RodMotion, _theta: Array) -> Array:
-    """Torque of all rods on the crank [N m], from pin forces in the cylinders' own axes, (…, K)."""
+    """Return torque of all rods on the crank [N m], from pin forces in the cylinders' own axes, (…, K)."""
     lever = motion.crank.r[..., None]
     return np.asarray((lever * (motion.cos * pins.imag - motion.sin * pins.real)).sum(axis=-2))
 

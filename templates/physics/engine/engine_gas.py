@@ -33,7 +33,7 @@ class OffsetPolytropic(Polytropic):
 
     @cached_property
     def cut(self) -> Array:
-        """Crank angle at which combustion ends, by halving between dead centres."""
+        """Return the crank angle at which combustion ends, by halving between dead centres."""
         wanted = self.v_cut
         low, high = 0 * wanted, 0 * wanted + np.pi
         for _ in range(_HALVINGS):

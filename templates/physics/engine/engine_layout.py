@@ -37,7 +37,7 @@ class Layout:
 
     @cached_property
     def cycle(self) -> float:
-        """360° or 720° [rad]."""
+        """Return 360° or 720° [rad]."""
         return float(np.pi * self.strokes)
 
     @cached_property
@@ -47,17 +47,17 @@ class Layout:
 
     @cached_property
     def throw_pin(self) -> Array:
-        """The pin of the first cylinder of each throw, (…, T)."""
+        """Return the pin of the first cylinder of each throw, (…, T)."""
         return self.pin[..., [int(np.argmax(self.throw == t)) for t in range(self.throws)]]
 
     @cached_property
     def order(self) -> NDArray[np.intp]:
-        """The cylinders from 0 in the order in which they fire."""
+        """Return the cylinders from 0 in the order in which they fire."""
         return np.argsort(np.round(self.first_firing % self.cycle, 9), kind="stable")
 
     @cached_property
     def first_firing(self) -> Array:
-        """The firing angles of the first point, (N,)."""
+        """Return the firing angles of the first point, (N,)."""
         return self.firing.reshape(-1, self.firing.shape[-1])[0]
 
     def alpha(self, theta: Array) -> Array:
@@ -98,7 +98,10 @@ def arranged(
 
 
 def _timed(order: Array, base: Array, cycle: float) -> Array:
-    """Firing angles [rad] in this order, each `base` or a turn later; the smallest interval is largest."""
+    """Return the firing angles [rad] in this order, each `base` or a turn later.
+
+    The smallest interval is largest.
+    """
     if cycle < 1.5 * TURN:
         return base
     if not listed(order) or np.ndim(order) > 1:
@@ -151,7 +154,10 @@ def is_order(order: Array, pins: Array, firing: Array) -> Truth:
 
 @units("1", "1", "rad", "rad", returns="1")
 def times_are_said(strokes: Array, order: Array, pins: Array, firing: Array) -> Truth:
-    """True if the firing is given: in a four-stroke engine the pins alone leave two turns to choose from."""
+    """Return whether the firing is given.
+
+    In a four-stroke engine the pins alone leave two turns to choose from.
+    """
     return listed(order) or listed(firing) or bool(strokes == 2)
 
 
@@ -225,7 +231,7 @@ def firing_angles(layout: Layout) -> Array:
 
 @units(None, returns="rad")
 def firing_intervals(layout: Layout) -> Array:
-    """From each firing to the next, in the firing order; the last to the first of the next cycle [rad]."""
+    """Return the intervals from each firing to the next, the last to the next cycle's first [rad]."""
     in_order = firing_angles(layout)[..., layout.order]
     return np.diff(in_order, append=in_order[..., :1] + layout.cycle)
 

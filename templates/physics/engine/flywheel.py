@@ -26,7 +26,7 @@ def total_torque(
     m: Array, omega: Array, r: Array, A: Array, excess: Array, motion: Motion, gas: GasCycle, p_c: Array,
     theta: Array,
 ) -> Array:  # fmt: skip
-    """Torque of all cylinders [N m], (…, K): `crank_loads.torque_Rao_Singh_1993` summed part by part.
+    """Return torque of all cylinders [N m], (…, K): `crank_loads.torque_Rao_Singh_1993` summed part by part.
 
     Each part is a curve of the mechanism or the gas alone, times a number for each point.
     """

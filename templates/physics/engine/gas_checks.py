@@ -64,7 +64,10 @@ def angles_rise(name: str, angle: Array, p: Array) -> Truth:
 
 @units(None, "1", "rad", "Pa", returns="1")
 def full_cycle(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
-    """True if a table of rising angles covers the cycle: from its end to its begin is at most a step."""
+    """Return whether a table of rising angles covers the cycle.
+
+    From its end to its begin is at most a step.
+    """
     if name != "table" or np.ndim(p) == 0 or not angles_rise(name, angle, p):
         return True  # another rule reports it
     if np.shape(p)[-1:] < (FEWEST,):

@@ -73,7 +73,7 @@ class Polytropic(GasCycle):
     emptied: float
 
     def pressure(self, theta: Array, travel: Array) -> Array:
-        """By the event in which each angle lies."""
+        """Return the pressure by the event in which each angle lies."""
         c = self.charge
         start = _column(self.exchange_begins)
         place = (theta - start + _SAME) % self.cycle - _SAME
@@ -101,38 +101,38 @@ class Polytropic(GasCycle):
 
     @cached_property
     def v_dead(self) -> Array:
-        """Volume at top dead centre over the swept volume; all volumes are."""
+        """Return the volume at top dead centre over the swept volume; all volumes are."""
         return 1 / (self.charge.compression_ratio - 1)
 
     @cached_property
     def v_closed(self) -> Array:
-        """Volume where the inlet closes."""
+        """Return the volume where the inlet closes."""
         return self.volume(self.inlet_closes)
 
     @cached_property
     def v_cut(self) -> Array:
-        """Volume where combustion ends."""
+        """Return the volume where combustion ends."""
         return self.charge.cutoff * self.v_dead
 
     @cached_property
     def v_opened(self) -> Array:
-        """Volume where the exhaust opens."""
+        """Return the volume where the exhaust opens."""
         return self.volume(self.exhaust_opens)
 
     @cached_property
     def p_opened(self) -> Array:
-        """Pressure where the exhaust opens."""
+        """Return the pressure where the exhaust opens."""
         c = self.charge
         return c.combustion * (self.v_cut / self.v_opened) ** c.expansion_exponent
 
     @cached_property
     def p_compressed(self) -> Array:
-        """Pressure where compression ends."""
+        """Return the pressure where compression ends."""
         return self.charge.suction * (self.v_closed / self.v_dead) ** self.charge.compression_exponent
 
     @cached_property
     def cut(self) -> Array:
-        """Crank angle at which combustion ends."""
+        """Return the crank angle at which combustion ends."""
         return self.firing + angle_of_travel((self.charge.cutoff - 1) * self.v_dead, self.n)
 
     def volume(self, angle: Array | float) -> Array:
@@ -181,7 +181,10 @@ def _linear_work(n: Array, begin: Array, end: Array, p_1: Array, p_2: Array) -> 
 def gas_cycle(
     name: str, strokes: Array, n: Array, charge: Charge, valves: Valves, angle: Array, p: Array, p_c: Array
 ) -> GasCycle:
-    """The gas cycle of a name; `angle` [rad], `p` [Pa] are the table, `p_c` [Pa] is that of the crankcase."""
+    """Return the gas cycle of a name.
+
+    `angle` [rad], `p` [Pa] are the table, `p_c` [Pa] is that of the crankcase.
+    """
     cycle = float(np.pi * strokes)
     if name == "none":
         return NoGas(np.asarray(p_c))

@@ -21,7 +21,7 @@ class GasCycle(ABC):
 
     @abstractmethod
     def pressure(self, theta: Array, travel: Array) -> Array:
-        """Pressure [Pa] at crank angles theta [rad] and the piston's travel there over its stroke."""
+        """Return pressure [Pa] at crank angles theta [rad] and the piston's travel there over its stroke."""
 
     @abstractmethod
     def mean_effective(self) -> Array:
@@ -35,7 +35,7 @@ class NoGas(GasCycle):
     p_c: Array
 
     def pressure(self, theta: Array, travel: Array) -> Array:
-        """As in the crankcase."""
+        """Return the crankcase pressure."""
         return self.p_c[..., None] + 0 * travel
 
     def mean_effective(self) -> Array:
@@ -53,7 +53,7 @@ class Tabulated(GasCycle):
     cycle: float
 
     def pressure(self, theta: Array, travel: Array) -> Array:
-        """Linear between the neighbours."""
+        """Return linear between the neighbours."""
         angle, p = self.angle, self.p
         place = (theta - angle[0]) % self.cycle + angle[0]
         left = np.searchsorted(angle, place, side="right") - 1
@@ -90,7 +90,10 @@ def peak_pressure(name: str, p: Array) -> Array:
 
 
 def one_cycle(angle: Array, p: Array, cycle: float) -> tuple[Array, Array]:
-    """Angles [rad] and pressures [Pa] of a table without the repeated last point; equal steps if unsaid."""
+    """Return angles [rad] and pressures [Pa] of a table without the repeated last point.
+
+    Equal steps if unsaid.
+    """
     if np.ndim(angle) == 0:
         angle = np.arange(p.shape[-1]) * (cycle / p.shape[-1])
     repeats = np.isclose(angle[-1] - angle[0], cycle, rtol=1e-9)

@@ -39,7 +39,7 @@ class Harmonics:
 
     @cached_property
     def largest_at(self) -> Array:
-        """hθ [rad] from 0 to π at which the size is largest; one that only turns points to x there."""
+        """Return hθ [rad] from 0 to π at which the size is largest; one that only turns points to x there."""
         f, b = np.angle(self.forward), np.angle(self.backward)
         both = (self.forward != 0) & (self.backward != 0)
         at = np.where(both, (b - f) / 2, b - f)
@@ -47,7 +47,7 @@ class Harmonics:
 
     @cached_property
     def there(self) -> Phasor:
-        """The vector where it is largest."""
+        """Return the vector where it is largest."""
         turn = np.exp(1j * self.largest_at)
         return self.forward * turn + self.backward / turn
 

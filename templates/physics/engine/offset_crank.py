@@ -35,22 +35,22 @@ class OffsetCrank:
 
     @cached_property
     def top(self) -> Array:
-        """The crank angle [rad] at which the piston is highest."""
+        """Return the crank angle [rad] at which the piston is highest."""
         return np.arcsin(self.e / (self.l + self.r))
 
     @cached_property
     def highest(self) -> Array:
-        """The largest distance of the piston pin from the crankshaft along the axis [m]."""
+        """Return the largest distance of the piston pin from the crankshaft along the axis [m]."""
         return np.sqrt((self.l + self.r - self.e) * (self.l + self.r + self.e))
 
     @cached_property
     def lowest(self) -> Array:
-        """The smallest distance [m]."""
+        """Return the smallest distance [m]."""
         return np.sqrt((self.l - self.r - self.e) * (self.l - self.r + self.e))
 
     @cached_property
     def stroke(self) -> Array:
-        """From the lowest to the highest place of the piston [m]."""
+        """Return the distance from the lowest to the highest place of the piston [m]."""
         return self.highest - self.lowest
 
     def at(self, alpha: Array) -> RodMotion:
@@ -71,12 +71,12 @@ class RodMotion:
 
     @cached_property
     def sin(self) -> Array:
-        """Sine of the crank angle."""
+        """Return the sine of the crank angle."""
         return _exact(np.sin(self.alpha))
 
     @cached_property
     def cos(self) -> Array:
-        """Cosine of the crank angle."""
+        """Return the cosine of the crank angle."""
         return _exact(np.cos(self.alpha))
 
     @cached_property
@@ -85,48 +85,48 @@ class RodMotion:
 
     @cached_property
     def sin_phi(self) -> Array:
-        """Sine of the rod's angle from the axis."""
+        """Return the sine of the rod's angle from the axis."""
         return self._share * self.sin - (self.crank.e / self.crank.l)[..., None]
 
     @cached_property
     def cos_phi(self) -> Array:
-        """Cosine of the rod's angle."""
+        """Return the cosine of the rod's angle."""
         return np.sqrt((1 - self.sin_phi) * (1 + self.sin_phi))
 
     @cached_property
     def tan_phi(self) -> Array:
-        """Tangent of the rod's angle."""
+        """Return the tangent of the rod's angle."""
         return self.sin_phi / self.cos_phi
 
     @cached_property
     def phi1(self) -> Array:
-        """phi′ [1]; the rod turns at −phi′ times the speed of the crank."""
+        """Return phi′ [1]; the rod turns at −phi′ times the speed of the crank."""
         return self._share * self.cos / self.cos_phi
 
     @cached_property
     def phi2(self) -> Array:
-        """phi″ [1]."""
+        """Return phi″ [1]."""
         return -self._share * self.sin / self.cos_phi + self.tan_phi * self.phi1**2
 
     @cached_property
     def x(self) -> Array:
-        """Distance of the piston pin from the crankshaft along the axis [m]."""
+        """Return the distance of the piston pin from the crankshaft along the axis [m]."""
         return self.crank.r[..., None] * self.cos + self.crank.l[..., None] * self.cos_phi
 
     @cached_property
     def x1(self) -> Array:
-        """x′ [m]."""
+        """Return x′ [m]."""
         return -self.crank.r[..., None] * (self.sin + self.cos * self.tan_phi)
 
     @cached_property
     def x2(self) -> Array:
-        """x″ [m]."""
+        """Return x″ [m]."""
         swing = self.cos * self.phi1 / self.cos_phi**2
         return -self.crank.r[..., None] * (self.cos - self.sin * self.tan_phi + swing)
 
 
 def _exact(value: Array) -> Array:
-    """Zero where no more than rounding is left, so that it makes no load at a dead centre."""
+    """Return zero where no more than rounding is left, so that it makes no load at a dead centre."""
     return np.where(np.abs(value) < _ROUNDING, 0.0, value)
 
 
@@ -147,7 +147,10 @@ def radius_of_stroke(stroke: Array, rod: Array, offset: Array) -> Array:
 
 @units("m", "m", "m", "m", returns="1")
 def turns_through(stroke: Array, radius: Array, rod: Array, offset: Array) -> Truth:
-    """True if the mechanism turns all the way round: the rod exceeds crank radius and offset together."""
+    """Return whether the mechanism turns all the way round.
+
+    The rod exceeds crank radius and offset together.
+    """
     by_stroke = np.where(np.isnan(stroke), 2 * radius, stroke) / 2
     reach = np.where(np.isnan(radius), by_stroke, radius)
     return _at_all_cylinders(rod > 1.000001 * (reach + np.abs(offset)))

@@ -35,52 +35,55 @@ class Motion:
 
     @cached_property
     def sin(self) -> Array:
-        """Sine of the crank angle."""
+        """Return the sine of the crank angle."""
         return _exact(np.sin(self.theta))
 
     @cached_property
     def cos(self) -> Array:
-        """Cosine of the crank angle."""
+        """Return the cosine of the crank angle."""
         return _exact(np.cos(self.theta))
 
     @cached_property
     def q(self) -> Array:
-        """Height of the rod over the crank radius, n cos(phi)."""
+        """Return the height of the rod over the crank radius, n cos(phi)."""
         return np.sqrt((self.n - 1) * (self.n + 1) + self.cos**2)
 
     @cached_property
     def tan_phi(self) -> Array:
-        """Tangent of the rod's angle."""
+        """Return the tangent of the rod's angle."""
         return self.sin / self.q
 
     @cached_property
     def travel(self) -> Array:
-        """Way of the piston from top dead centre, over the stroke."""
+        """Return the travel of the piston from top dead centre, over the stroke."""
         return np.sin(self.theta / 2) ** 2 + self.sin**2 / (2 * (self.n + self.q))
 
     @cached_property
     def lever(self) -> Array:
-        """Torque over force along the cylinder and crank radius; also −dx/dtheta of the piston over r."""
+        """Return the torque over force along the cylinder and crank radius.
+
+        Also −dx/dtheta of the piston over r.
+        """
         return self.sin + self.cos * self.tan_phi
 
     @cached_property
     def acceleration(self) -> Array:
-        """Acceleration of the piston over omega² r."""
+        """Return the acceleration of the piston over omega² r."""
         return piston_acceleration_Rao_Singh_1993(self.sin, self.cos, self.q, self.n)
 
     @cached_property
     def rod_velocity(self) -> Array:
-        """d(phi)/d(theta)."""
+        """Return d(phi)/d(theta)."""
         return self.cos / self.q
 
     @cached_property
     def rod_acceleration(self) -> Array:
-        """d²(phi)/d(theta)²."""
+        """Return d²(phi)/d(theta)²."""
         return -(self.n - 1) * (self.n + 1) * self.sin / self.q**3
 
 
 def _exact(value: Array) -> Array:
-    """Zero where no more than rounding is left, so that it makes no load at a dead centre."""
+    """Return zero where no more than rounding is left, so that it makes no load at a dead centre."""
     return np.where(np.abs(value) < _ROUNDING, 0.0, value)
 
 

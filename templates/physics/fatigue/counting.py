@@ -36,7 +36,7 @@ def from_the_highest(history: Array) -> Array:
 
 
 def counted(history: Array) -> list[tuple[float, float, float]]:
-    """Amplitude, mean [Pa] and count of the cycles of one periodic history, equal ones together."""
+    """Return amplitude, mean [Pa] and count of the cycles of one periodic history, equal ones together."""
     cycles = rainflow.extract_cycles(from_the_highest(history).tolist())
     sums: dict[tuple[float, float], float] = {}
     for width, mean, count, _, _ in cycles:

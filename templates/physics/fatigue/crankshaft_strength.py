@@ -25,13 +25,13 @@ MANUFACTURES = {"continuous_grain_flow": 1.05, "free_form_forged": 1.0, "cast_ro
     latex=r"1.05\ \text{{(grain flow)}},\ 1\ \text{{(free form)}},\ 0.93\ \text{{(cast, rolled)}}",
 )  # fmt: skip
 def manufacture_factor(manufacture: str) -> Array:
-    """K of a fillet [1]."""
+    """Return K of a fillet [1]."""
     return np.float64(MANUFACTURES[manufacture])  # type: ignore[return-value]
 
 
 @units("1", returns="1", latex=r"\min\left({0},1\right)")
 def factor_at_bore(K: Array) -> Array:
-    """K at the outlet of an oil bore [1]: what is above 1 applies to fillets alone."""
+    """Return K at the outlet of an oil bore [1]: what is above 1 applies to fillets alone."""
     return np.minimum(K, 1.0)
 
 

@@ -85,7 +85,10 @@ def greatest_von_mises(history: Array) -> Array:
 
 @units(None, None, "1", "Pa", returns="1")
 def compression_used(counted: Counted, credit: str, support: Array, yield_strength: Array) -> Array:
-    """The lowest stress of each point, in compression, over the yield strength [1]; 0 without credit."""
+    """Return the lowest stress of each point, in compression, over the yield strength [1].
+
+    0 without credit.
+    """
     if credit == NO:
         return np.zeros(np.broadcast_shapes(counted.low.shape, _to_points(support).shape))
     return np.maximum(-counted.low * _to_points(support), 0.0) / _to_points(yield_strength)
@@ -134,7 +137,7 @@ def largest_amplitudes(equivalent: Array) -> Array:
 def damages(
     equivalent: Array, counted: Counted, endurance: Array, slope: Array, knee: Array, rule: str
 ) -> Array:
-    """Miner's damage of each point in one engine cycle [..., point] [1]."""
+    """Return Miner's damage of each point in one engine cycle [..., point] [1]."""
     limit, b = _to_cycles(endurance), _to_cycles(slope)
     ratio = equivalent / limit
     with np.errstate(divide="ignore"):
@@ -153,7 +156,9 @@ def load_uses(
     counted: Counted, equivalent: Array, correction: str, credit: str, endurance: Array, ultimate: Array,
     coefficient: Array, support: Array,
 ) -> Array:  # fmt: skip
-    """1/n of each point [1]: all loads may grow n-fold, means included, until the endurance limit is reached.
+    """Return 1/n of each point [1].
+
+    All loads may grow n-fold, means included, until the endurance limit is reached.
 
     Goodman and Morrow: sigma_a/S_e + sigma_m/strength. Gerber: the root of n sigma_a/S_e + (n sigma_m/S_u)² =
     1. Findley's parameter grows as the loads do.
@@ -171,13 +176,16 @@ def load_uses(
 
 @units(None, returns="1")
 def numbers_of_points(history: Array) -> Array:
-    """1, 2, … for the points of a history."""
+    """Return 1, 2, … for the points of a history."""
     return np.arange(1, history.shape[-3] + 1, dtype=float)
 
 
 @units(None, None, returns="1")
 def governing_point(damage: Array, uses: Array) -> Array:
-    """The number of the point of the largest damage; where there is none, of the smallest safety factor."""
+    """Return the number of the point of the largest damage.
+
+    Where there is none, of the smallest safety factor.
+    """
     first = np.where(damage.max(axis=-1, keepdims=True) > 0, damage, uses)
     known = ~np.isnan(first).any(axis=-1)
     place = np.argmax(np.where(np.isnan(first), -np.inf, first), axis=-1) + 1.0
@@ -192,7 +200,7 @@ def largest(values: Array) -> Array:
 
 @units("1", returns="1", latex=r"\frac{{1}}{{{0}}}")
 def inverse_or_none(value: Array) -> Array:
-    """1 over a value [1]; NaN where that is 0."""
+    """Return 1 over a value [1]; NaN where that is 0."""
     return np.where(value > 0, 1 / np.where(value > 0, value, 1.0), np.nan)[()]
 
 

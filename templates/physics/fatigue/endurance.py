@@ -45,14 +45,17 @@ def specimen_limit(ultimate: Array) -> Array:
 
 @units(None, "Pa", returns="1", latex=r"k_{{\mathrm{{surface}}}}\left({1}\right)")
 def surface_factor(surface: str, ultimate: Array) -> Array:
-    """k_a [1] = a S^b of a surface, S the ultimate strength [Pa] in MPa; at most 1."""
+    """Return k_a [1] = a S^b of a surface, S the ultimate strength [Pa] in MPa; at most 1."""
     factor, exponent = SURFACES[surface]
     return np.minimum(factor * (ultimate / MPA) ** exponent, 1.0)
 
 
 @units("m", returns="1", latex=r"k_{{\mathrm{{size}}}}\left({0}\right)")
 def size_factor(d: Array) -> Array:
-    """k_b [1] of a diameter [m]: 1.24 d^-0.107 up to 51 mm, then 1.51 d^-0.157; at most 1, 1 if not given."""
+    """Return k_b [1] of a diameter [m]: 1.24 d^-0.107 up to 51 mm, then 1.51 d^-0.157.
+
+    At most 1, 1 if not given.
+    """
     mm = np.maximum(np.where(np.isnan(d), _SMALL, d), _SMALL) * 1e3
     factor = np.where(mm <= _MIDDLE * 1e3, 1.24 * mm**-0.107, 1.51 * mm**-0.157)
     return np.where(np.isnan(d), 1.0, np.minimum(factor, 1.0))[()]
@@ -60,13 +63,13 @@ def size_factor(d: Array) -> Array:
 
 @units(None, returns="1", latex=r"1\ \text{{or}}\ 0.85\ \text{{(axial)}}")
 def loading_factor(loading: str) -> Array:
-    """k_c [1]: 1 in bending, 0.85 axially; shear is in the criterion, so torsion has none."""
+    """Return k_c [1]: 1 in bending, 0.85 axially; shear is in the criterion, so torsion has none."""
     return np.float64(_LOADINGS[loading])  # type: ignore[return-value]
 
 
 @units("1", returns="1", latex=r"1-0.08\,z\left({0}\right)")
 def reliability_factor(reliability: Array) -> Array:
-    """k_e [1] = 1 - 0.08 z, z the normal quantile of the reliability: limits scatter by 8 %."""
+    """Return k_e [1] = 1 - 0.08 z, z the normal quantile of the reliability: limits scatter by 8 %."""
     return 1 - 0.08 * ndtri(reliability)
 
 
@@ -78,7 +81,9 @@ def strength_coefficient(ultimate: Array) -> Array:
 
 @units("Pa", returns="1", latex=r"\frac{{\sigma_F'}}{{{0}}}\left(2\cdot10^{{3}}\right)^{{b}}")
 def share_at_1000_cycles(ultimate: Array) -> Array:
-    """Share f [1]: what of the ultimate strength [Pa] a reversed amplitude is that is borne for 1000 cycles.
+    """Return the share f [1].
+
+    What of the ultimate strength [Pa] a reversed amplitude is that is borne for 1000 cycles.
 
     σ_F' = S_u + 345 MPa, and a line through σ_F' and the specimen's limit at 10⁶ cycles (equation 6-10).
     """
@@ -89,7 +94,9 @@ def share_at_1000_cycles(ultimate: Array) -> Array:
 
 @units("Pa", returns="m", latex=r"a_{{\mathrm{{Neuber}}}}\left({0}\right)")
 def neuber_length(ultimate: Array) -> Array:
-    """Neuber's a [m] in bending, of the ultimate strength [Pa]; NaN beyond 1750 MPa, where the fit ends.
+    """Return Neuber's a [m] in bending, of the ultimate strength [Pa].
+
+    NaN beyond 1750 MPa, where the fit ends.
 
     The fit is √a in √in, of the strength in ksi.
     """
@@ -100,13 +107,16 @@ def neuber_length(ultimate: Array) -> Array:
 
 @units("m", "m", returns="1", latex=r"\left(1+\sqrt{{\frac{{{0}}}{{{1}}}}}\right)^{{-1}}")
 def notch_sensitivity_Neuber(length: Array, radius: Array) -> Array:
-    """Sensitivity q [1] of a notch radius [m], by Neuber's length [m]; NaN where one is missing."""
+    """Return sensitivity q [1] of a notch radius [m], by Neuber's length [m]; NaN where one is missing."""
     return 1 / (1 + np.sqrt(length / radius))
 
 
 @units("1", "1", returns="1", latex=r"\frac{{1+{1}\left({0}-1\right)}}{{{0}}}")
 def notch_support(K_t: Array, q: Array) -> Array:
-    """K_f/K_t [1]: how much of a local stress counts in fatigue; 1 where notch or sensitivity is missing."""
+    """Return K_f/K_t [1]: how much of a local stress counts in fatigue.
+
+    1 where notch or sensitivity is missing.
+    """
     share = (1 + q * (K_t - 1)) / K_t
     return np.where(np.isnan(share), 1.0, share)[()]
 

@@ -44,7 +44,7 @@ class CriticalPlane:
     normal_low: Array  # [...] [Pa]
 
     def normal_amplitude(self) -> Array:
-        """Half the range of the normal stress [Pa]."""
+        """Return half the range of the normal stress [Pa]."""
         return (self.normal_high - self.normal_low) / 2
 
 
@@ -61,7 +61,7 @@ def uniaxial_equivalent(parameter: Array, k: Array) -> Array:
 
 
 def critical_planes(tensors: Array, k: float, *, credit: bool) -> CriticalPlane:
-    """Findley's plane of histories [..., angle, 6] [Pa].
+    """Return Findley's plane of histories [..., angle, 6] [Pa].
 
     A compressive mean of the normal stress counts as zero unless there is `credit` for it.
     """
@@ -138,7 +138,10 @@ def _in_plane(normals: Array) -> tuple[Array, Array]:
 
 
 def _acting(tensors: Array, normals: Array) -> tuple[Array, Array]:
-    """Shear, as a complex number within the plane, and normal stress on planes: [history, plane, angle]."""
+    """Return the shear, as a complex number within the plane, and normal stress on planes.
+
+    [history, plane, angle].
+    """
     u, v = _in_plane(normals)
     shear = _weights(normals, u) + 1j * _weights(normals, v)
     turned = np.swapaxes(tensors, 1, 2)
@@ -154,7 +157,7 @@ def _weights(n: Array, m: Array) -> Array:
 
 
 def _parameters(tensors: Array, normals: Array, k: float, credit: bool) -> Array:
-    """tau_a + k sigma_n,max on planes [history, plane]."""
+    """Return tau_a + k sigma_n,max on planes [history, plane]."""
     shear, normal = _acting(tensors, normals)
     high, low = normal.max(axis=-1), normal.min(axis=-1)
     counted = high if credit else np.maximum(high, (high - low) / 2)

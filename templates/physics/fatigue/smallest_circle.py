@@ -61,7 +61,10 @@ def _far(paths: Complex, centres: Complex) -> Array:
 
 
 def _about_four(points: Complex) -> tuple[Complex, Array, Complex]:
-    """The smallest circle about each four points [n, 4]: centre, radius and the points that hold it."""
+    """Return the smallest circle about each four points [n, 4].
+
+    Centre, radius and the points that hold it.
+    """
     centres, radii, held = [], [], []
     for i, j in _PAIRS:
         centre = (points[:, i] + points[:, j]) / 2

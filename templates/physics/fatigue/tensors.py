@@ -132,6 +132,6 @@ def signed_von_mises(tensors: Array) -> Array:
 
 
 def _leading_principal(tensor: Array) -> Array:
-    """p1 + p3 [1] of tensors of length 1: positive where tension leads, 0 in pure shear."""
+    """Return p1 + p3 [1] of tensors of length 1: positive where tension leads, 0 in pure shear."""
     principal = np.linalg.eigvalsh(as_matrices(tensor))
     return np.asarray(principal[..., 0] + principal[..., 2])

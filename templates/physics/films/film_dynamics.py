@@ -62,7 +62,7 @@ def plain_coefficients(eps: float, ratio: float, around: int = 128, across: int 
 
 
 def linear_forces(eps: float, ratio: float, mesh: Mesh, film: Rupture) -> Array:
-    """So along and ahead of the line of centres, and their derivatives, (2, 5) [-].
+    """Return So along and ahead of the line of centres, and their derivatives, (2, 5) [-].
 
     Columns: the force itself, by displacement along and ahead, by velocity along and ahead.
     """

@@ -19,7 +19,7 @@ from templates.physics.films.film_mesh import Mesh
 
 
 def dual_widths(nodes: Array) -> Array:
-    """Lengths of the cells around the nodes (n + 1,), half cells at the ends, in the unit of the places."""
+    """Return the lengths of the cells around the nodes (n + 1,), half cells at the ends."""
     half = np.diff(nodes) / 2
     return np.concatenate([half, [0.0]]) + np.concatenate([[0.0], half])
 
@@ -41,17 +41,17 @@ class Equations:
 
     @cached_property
     def conductance_around(self) -> Array:
-        """Flow from a node to the next around for a unit of pressure, (n, m + 1)."""
+        """Return the flow from a node to the next around for a unit of pressure, (n, m + 1)."""
         return np.asarray(self.around[:, None] * dual_widths(self.zeta))
 
     @cached_property
     def conductance_across(self) -> Array:
-        """Flow from a node to the next across for a unit of pressure, (n + 1, m)."""
+        """Return the flow from a node to the next across for a unit of pressure, (n + 1, m)."""
         return np.asarray(self.across[:, None] / np.diff(self.zeta))
 
     @cached_property
     def brought(self) -> Array:
-        """What rotation and squeeze bring to a node, (n + 1, m + 1)."""
+        """Return what rotation and squeeze bring to a node, (n + 1, m + 1)."""
         return np.asarray(self.source[:, None] * dual_widths(self.zeta))
 
     def residual(self, P: Array) -> Array:

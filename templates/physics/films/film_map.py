@@ -77,7 +77,7 @@ def mapped_load(eps: Array, ratio: Array) -> Array:
 
 
 def mapped_film(eps: Array, ratio: Array) -> dict[str, Array]:
-    """Everything that `film_measures.Film` names but the imbalance, by name.
+    """Return everything that `film_measures.Film` names but the imbalance, by name.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def mapped_film(eps: Array, ratio: Array) -> dict[str, Array]:
 
 
 def mapped_coefficients(eps: Array, ratio: Array) -> tuple[Array, Array]:
-    """Stiffness k c/W and damping b c omega_h/W, (..., 2, 2) each: `film_dynamics.plain_coefficients`.
+    """Return stiffness k c/W and damping b c omega_h/W, (..., 2, 2) each: `film_dynamics.plain_coefficients`.
 
     Parameters
     ----------

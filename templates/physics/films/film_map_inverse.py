@@ -68,5 +68,5 @@ def _block(data: FilmMap, So: Array, ratio: Array) -> Array:
 
 
 def _eccentricity(x: Array) -> Array:
-    """Eps of the map's coordinate, not beyond the limit by rounding."""
+    """Return eps of the map's coordinate, not beyond the limit by rounding."""
     return np.minimum(np.tanh(x), ECCENTRICITY_LIMIT)

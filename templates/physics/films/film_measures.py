@@ -54,7 +54,7 @@ class Field:
 
 
 def force(mesh: Mesh, P: Array) -> tuple[float, float]:
-    """So of a pressure along the line of centres (towards the narrowest gap) and ahead of it [-]."""
+    """Return So of a pressure along the line of centres (towards the narrowest gap) and ahead of it [-]."""
     line = P @ mesh.weight_zeta * mesh.weight_phi / 4
     return float(np.cos(mesh.phi) @ line), float(np.sin(mesh.phi) @ line)
 

@@ -63,7 +63,7 @@ def gregory(n: int) -> Array:
 
 
 def sommerfeld_angle(phi: Array, eps: float) -> Array:
-    """Sommerfeld's angle from the narrowest gap, for phi in [−pi, pi] [rad]."""
+    """Return Sommerfeld's angle from the narrowest gap, for phi in [−pi, pi] [rad]."""
     return 2 * np.arctan2(np.sin(phi / 2) * np.sqrt(1 + eps), np.cos(phi / 2) * np.sqrt(1 - eps))
 
 

@@ -45,17 +45,17 @@ class Bore:
 
     @property
     def is_lobed(self) -> bool:
-        """Whether the gap of a centred journal differs around."""
+        """Return whether the gap of a centred journal differs around."""
         return self.preload > 0
 
     @property
     def is_plain(self) -> bool:
-        """Whether the bore is a cylinder."""
+        """Return whether the bore is a cylinder."""
         return not self.is_lobed and not (self.mouth > 0 and self.mouth_length > 0)
 
     @property
     def excess(self) -> float:
-        """Distance of a lobe's centre from the bearing's: c_p/c_b − 1 [-]."""
+        """Return the distance of a lobe's centre from the bearing's: c_p/c_b − 1 [-]."""
         return self.preload / (1 - self.preload)
 
     def joints(self) -> Array:
@@ -97,17 +97,17 @@ class Lie:
 
     @property
     def is_tilted(self) -> bool:
-        """Whether the journal's axis is not the bearing's direction."""
+        """Return whether the journal's axis is not the bearing's direction."""
         return bool(np.any(self.tilt != 0))
 
     @property
     def eps(self) -> float:
-        """Relative eccentricity of its middle; above 1 where a lobed bore lets it [-]."""
+        """Return the relative eccentricity of its middle; above 1 where a lobed bore lets it [-]."""
         return float(np.hypot(*self.e))
 
     @property
     def attitude(self) -> float:
-        """Angle of its middle's displacement from the load [rad]."""
+        """Return the angle of its middle's displacement from the load [rad]."""
         return float(np.arctan2(self.e[1], self.e[0]))
 
 

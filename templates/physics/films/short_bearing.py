@@ -88,7 +88,7 @@ def side_flow_Ocvirk_1952(eps: Array, ratio: Array) -> Array:
 
 
 def friction_Ocvirk_1952(eps: Array) -> Array:
-    r"""Friction force on the journal F_f psi/(B D eta omega), shear alone over the full circle [-].
+    r"""Return friction force on the journal F_f psi/(B D eta omega), shear alone over the full circle [-].
 
     .. math:: \frac{F_f\psi}{BD\eta\omega} = \frac{\pi}{\sqrt{1-\epsilon^2}}
 

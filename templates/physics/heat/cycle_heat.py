@@ -151,7 +151,7 @@ class Warmed:
 
 
 def heated_film(bearing: CycleBearing, eta: Array) -> tuple[FedOrbit, Warmed]:
-    """Orbit, loss, flows and shear rate at viscosities (...) [Pa s]; NaN where no orbit is found."""
+    """Return orbit, loss, flows and shear rate at viscosities (...) [Pa s]; NaN where no orbit is found."""
     duty = bearing.duty
     fed = bearing.fed(eta)
     orbit = fed_orbit(bearing.level, fed)

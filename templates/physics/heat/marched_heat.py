@@ -33,7 +33,10 @@ FARTHEST = float(np.log(4))
 
 @on_paper("solved numerically by secants of the viscosity in the heat balance over the cycle")
 def heat_of_cycle(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
-    """The viscosity at which heat and viscosity agree, at any level; at level supplied of one point."""
+    """Return the viscosity at which heat and viscosity agree, at any level.
+
+    At level supplied of one point.
+    """
     if bearing.level != "supplied":
         return cycle_heat(bearing, oil)
     cheap = "mobility_grooved" if np.all(bearing.feeding.grooved) else "mobility"

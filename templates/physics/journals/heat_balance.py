@@ -154,7 +154,10 @@ def asked_for(T_supply: Array, T_ambient: Array, kA: Array) -> Mask:
 
 
 def _balance(point: Running) -> tuple[Array, Array]:
-    """Temperature and residual of points in a row; infinite and NaN where there is none, NaN unknown."""
+    """Return the temperature and residual of points in a row.
+
+    Infinite and NaN where there is none, NaN unknown.
+    """
     coldest = point.coldest()
     most = HOTTEST - coldest
     rise = bracketed_root(point.excess, np.zeros_like(coldest), most, _ACCURACY)

@@ -11,14 +11,20 @@ from templates.physics.journals.heat_balance import HeatBalance, asked_for
 
 @units("K", None, returns="K", latex=r"{0}\ \text{{or that of the heat balance}}")
 def film_temperature(T_mean: Array, balance: HeatBalance) -> Array:
-    """The heat balance's temperature where there is one, else the mean; NaN if there is neither [K]."""
+    """Return the heat balance's temperature where there is one, else the mean.
+
+    NaN if there is neither [K].
+    """
     return np.where(np.isnan(balance.T), T_mean, balance.T)[()]
 
 
 @on_paper("solved numerically by bracketing the film temperature in the heat balance of ISO 7902-1")
 @units(None, returns="K")
 def outlet_temperature(balance: HeatBalance) -> Array:
-    """Temperature of the oil that leaves, by the heat balance; NaN without one or without a supply [K]."""
+    """Return the temperature of the oil that leaves, by the heat balance.
+
+    NaN without one or without a supply [K].
+    """
     return balance.T_out
 
 

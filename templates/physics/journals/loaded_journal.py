@@ -40,7 +40,7 @@ def load_number(load: Array, psi: Array, eta: Array, omega: Array, width: Array,
 @on_paper("solved numerically by splines in a map of solutions of the Reynolds equation")
 @units("1", "1", returns="1")
 def eccentricity_of_load(So: Array, ratio: Array) -> Array:
-    """Relative eccentricity at a load; NaN where So is, and beyond the film map (B/D 0.01 … 100) [-].
+    """Return relative eccentricity at a load; NaN where So is, and beyond the film map (B/D 0.01 … 100) [-].
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ def lubrication_regime(parameter: Array) -> Any:
 
 @units("Pa*s", "rad/s", "m", "m", "N", returns="1", latex=r"\frac{{{0}\,\left|{1}\right|\,{2}\,{3}}}{{{4}}}")
 def duty_parameter(eta: Array, omega: Array, D: Array, W: Array, F: Array) -> Array:
-    """Stribeck's duty parameter eta |omega|/p with p = F/(D W) [1]; NaN without load.
+    """Return Stribeck's duty parameter eta |omega|/p with p = F/(D W) [1]; NaN without load.
 
     References
     ----------
@@ -45,6 +45,9 @@ def duty_parameter(eta: Array, omega: Array, D: Array, W: Array, F: Array) -> Ar
 
 @units("N*m", "N", "m", returns="1", latex=r"\frac{{{0}}}{{{1}\,{2}/2}}")
 def friction_coefficient(torque: Array, F: Array, D: Array) -> Array:
-    """Friction coefficient of a torque [N m] under a load F [N] at the diameter D [m]; NaN without load."""
+    """Return the friction coefficient of a torque [N m] under a load F [N] at the diameter D [m].
+
+    NaN without load.
+    """
     loaded = np.asarray(F) > 0
     return np.where(loaded, torque / (np.where(loaded, F, 1.0) * D / 2), np.nan)[()]

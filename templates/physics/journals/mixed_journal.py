@@ -102,7 +102,7 @@ class SmoothFilms:
     """B/D of each (N,) [-]."""
 
     def at(self, eps: Array, point: Indices) -> tuple[Array, Array]:
-        """So and attitude [rad] at eccentricities of the bearings of these numbers."""
+        """Return So and attitude [rad] at eccentricities of the bearings of these numbers."""
         film = mapped_film(eps, self.ratio[point])
         return film["So"], film["attitude"]
 
@@ -123,7 +123,7 @@ class AveragedFilms:
         self.load, self.turn = np.log(film[..., 0] / So), film[..., 1] - attitude
 
     def at(self, eps: Array, point: Indices) -> tuple[Array, Array]:
-        """So and attitude [rad] at eccentricities of the bearings of these numbers."""
+        """Return So and attitude [rad] at eccentricities of the bearings of these numbers."""
         So, attitude = self.smooth.at(eps, point)
         low, high = self.low[point], self.high[point]
         t = np.clip((-np.log1p(-eps) - low) / (high - low), 0, 1)[..., None]
@@ -143,7 +143,7 @@ class MixedJournal:
     """Which of them each point is (...); −1 where it is none."""
 
     def shares(self, eps: Array, speed: Array, i: Indices) -> tuple[Array, ...]:
-        """Forces along and across the line of centres, and what they are made of, of bearings i."""
+        """Return forces along and across the line of centres, and what they are made of, of bearings i."""
         bearings = self.bearing
         So, attitude = self.films.at(np.minimum(eps, ECCENTRICITY_LIMIT), i)
         along, around = contact_integrals(eps, bearings.roughness[i])
@@ -225,7 +225,7 @@ def mixed_film(journal: MixedJournal, omega: Array) -> MixedFilm:
 @on_paper("the speed at which film and contact bear the load with this gap: the root of a square")
 @units(None, "1", returns="rad/s")
 def speed_at_gap(journal: MixedJournal, gap: Array) -> Array:
-    """Speed at which the smallest gap over the radial clearance is this; NaN where none is [rad/s].
+    """Return speed at which the smallest gap over the radial clearance is this; NaN where none is [rad/s].
 
     Parameters
     ----------

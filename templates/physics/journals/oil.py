@@ -36,13 +36,16 @@ def density(rho_ref: Array, T: Array, T_ref: Array) -> Array:
 
 @units("m**2/s", returns="1", latex=r"\lg\lg\left(\frac{{{0}}}{{\mathrm{{mm^2/s}}}}+0.7\right)")
 def double_logarithm(nu: Array) -> Array:
-    """Walther's ordinate lg lg(nu + 0.7) of the kinematic viscosity nu [m²/s]; NaN from 0.3 mm²/s down."""
+    """Return Walther's ordinate lg lg(nu + 0.7) of the kinematic viscosity nu [m²/s].
+
+    NaN from 0.3 mm²/s down.
+    """
     return np.log10(np.log10(nu / MM2_PER_S + 0.7))
 
 
 @units("K", returns="1", latex=r"\lg\frac{{{0}}}{{\mathrm{{K}}}}")
 def temperature_logarithm(T: Array) -> Array:
-    """Walther's abscissa lg T of the absolute temperature T [K]."""
+    """Return Walther's abscissa lg T of the absolute temperature T [K]."""
     return np.log10(T)
 
 
@@ -65,7 +68,9 @@ def walther(A: Array, B: Array, T: Array) -> Array:
 
 @units("Pa*s", "K", "K", "K", returns="Pa*s", latex=r"{0}\,e^{{{1}/\left({3}/\mathrm{{°C}}+{2}\right)}}")
 def vogel(a: Array, b: Array, c: Array, T: Array) -> Array:
-    """Dynamic viscosity [Pa s] at T [K] by Vogel's a [Pa s], b, c [K]; infinite from the pole −c °C down.
+    """Return the dynamic viscosity [Pa s] at T [K] by Vogel's a [Pa s], b, c [K].
+
+    Infinite from the pole −c °C down.
 
     References
     ----------
@@ -78,13 +83,16 @@ def vogel(a: Array, b: Array, c: Array, T: Array) -> Array:
 
 @units("Pa*s", "K", "Pa*s", "K", "K", returns="K")
 def vogel_slope(eta_1: Array, T_1: Array, eta_2: Array, T_2: Array, c: Array) -> Array:
-    """Vogel's b [K] through two viscosities [Pa s] at T_1, T_2 [K]; NaN if one is below its pole."""
+    """Return Vogel's b [K] through two viscosities [Pa s] at T_1, T_2 [K]; NaN if one is below its pole."""
     return np.log(eta_1 / eta_2) / (1 / _above_pole(T_1, c) - 1 / _above_pole(T_2, c))
 
 
 @units("Pa*s", "K", "K", "K", returns="Pa*s")
 def vogel_factor(eta_1: Array, T_1: Array, b: Array, c: Array) -> Array:
-    """Vogel's a [Pa s] from one viscosity [Pa s] at T_1 [K]; NaN from the pole down, or if too small."""
+    """Return Vogel's a [Pa s] from one viscosity [Pa s] at T_1 [K].
+
+    NaN from the pole down, or if too small.
+    """
     a = eta_1 * np.exp(-b / _above_pole(T_1, c))
     return np.where(a > 0, a, np.nan)[()]
 
@@ -104,7 +112,9 @@ def by_law(law: str, of_walther: Array | float, of_vogel: Array) -> Array:
 def viscosity_at(
     T: Array, A: Array, B: Array, a: Array, b: Array, c: Array, eta: Array, rho_ref: Array, T_ref: Array
 ) -> Array:
-    """Dynamic viscosity [Pa s] at T [K]: the one given, or by Vogel's law where its factor is, or Walther's.
+    """Return the dynamic viscosity [Pa s] at T [K].
+
+    The one given, or by Vogel's law where its factor is, or Walther's.
 
     Parameters
     ----------

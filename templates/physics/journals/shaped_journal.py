@@ -106,7 +106,10 @@ class StaticFilm:
 
 @units(None, returns="1")
 def middle_of_least_gap(bore: str) -> Array:
-    """Which share of a lobe's arc lies before its least gap: all if halves are offset, else half [-]."""
+    """Return which share of a lobe's arc lies before its least gap.
+
+    All if halves are offset, else half [-].
+    """
     return np.asarray(1.0 if bore == "offset" else 0.5)
 
 
@@ -187,7 +190,10 @@ def plain_film(film: JournalFilm) -> StaticFilm:
 def _solved(
     level: str, So: float, ratio: float, feed: Feed, shape: Shape, numbers: list[float]
 ) -> dict[str, Array | float]:
-    """The fields of `StaticFilm` of one point by `shaped_balance`; eps infinite where nothing bears it."""
+    """Return the fields of `StaticFilm` of one point by `shaped_balance`.
+
+    Eps infinite where nothing bears it.
+    """
     bore, tilt, conserving = shape.at(*numbers[:5]), np.array(numbers[5:]), level == FED
     if level not in ("reynolds", FED):
         return _unborne()

@@ -51,7 +51,9 @@ def viscosity_Cross_1965(rate: Array, eta_0: Array, eta_inf: Array, critical: Ar
 
 @units("Pa*s", "Pa*s", "Pa*s", "1", returns="1/s")
 def critical_rate_of_HTHS(hths: Array, eta_0: Array, eta_inf: Array, n: Array) -> Array:
-    """The critical shear rate with which Cross's law gives the HTHS viscosity; NaN where none does [1/s].
+    """Return the critical shear rate with which Cross's law gives the HTHS viscosity.
+
+    NaN where none does [1/s].
 
     Parameters
     ----------

@@ -157,7 +157,7 @@ def _scattered(values: Array, valid: Mask) -> Array:
 
 
 def short_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
-    """Ocvirk's film; where no film bears the load NaN."""
+    """Return Ocvirk's film; where no film bears the load NaN."""
     eps = eccentricity(load_Ocvirk_1952, So, ratio)
     e = np.where(np.isnan(eps), 0.0, eps)
     return JournalFilm(
@@ -203,7 +203,10 @@ def _solved(eps: float, ratio: float) -> list[float]:
 
 
 def conserving_film(So: Array, ratio: Array, feeds: list[Feed]) -> JournalFilm:
-    """Film by film with cavities; shear as there is oil; measures moved to the load as the map's would."""
+    """Return the film by film with cavities; shear as there is oil.
+
+    Measures moved to the load as the map's would.
+    """
     films = [fed_film(*point) for point in zip(So, ratio, feeds, strict=True)]
     film = {
         name: np.array([np.nan if film is None else getattr(film, name) for film in films])

@@ -16,7 +16,10 @@ _SAME = 1e-9  # of a cycle
 
 
 def periodic(theta: Array, places: Array, values: Array, cycle: Array, shift: Array) -> Array:
-    """Values (…, M) at places [rad], (M,), moved by a shift [rad], read at theta [rad], (K,): (…, K)."""
+    """Return values (…, M) at places [rad], (M,), moved by a shift [rad], read at theta [rad], (K,).
+
+    (…, K).
+    """
     if not np.ndim(values):
         return _NONE
     way, last = places - places[0], values

@@ -61,7 +61,10 @@ def _inverse(a_0: Array, slopes: Array) -> Array:
 
 
 def _solved(a: Array, inverse: Array, left: Array) -> Array:
-    """e_k = G_1 e_(k−1) + G_2 e_(k−2) + q_k: run through from unit values before the cycle, then closed."""
+    """Return e_k = G_1 e_(k−1) + G_2 e_(k−2) + q_k.
+
+    Run through from unit values before the cycle, then closed.
+    """
     G_1, G_2 = -a[1] * inverse, -a[2] * inverse
     cases, nodes = left.shape[1:]
     columns = np.zeros((cases, nodes, 2, 5))

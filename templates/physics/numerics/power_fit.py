@@ -17,13 +17,16 @@ _CASES = r"\begin{{cases}}%s & {0}<10\\ %s & 10\le {0}\le 100\\ %s & {0}>100\end
 
 @units("1", returns="1", latex=_CASES % (0.798, 0.897, 0.980))
 def factor_k1(So: Array) -> Array:
-    """Factor k1 of the fit at the Sommerfeld number So [1]; beyond 1 … 200 that of the nearest row."""
+    """Return factor k1 of the fit at the Sommerfeld number So [1]; beyond 1 … 200 that of the nearest row."""
     return _row(So, 0.798, 0.897, 0.980)
 
 
 @units("1", returns="1", latex=_CASES % (0.073, 0.022, 0.0028))
 def exponent_k2(So: Array) -> Array:
-    """Exponent k2 of the fit at the Sommerfeld number So [1]; beyond 1 … 200 that of the nearest row."""
+    """Return the exponent k2 of the fit at the Sommerfeld number So [1].
+
+    Beyond 1 … 200 that of the nearest row.
+    """
     return _row(So, 0.073, 0.022, 0.0028)
 
 

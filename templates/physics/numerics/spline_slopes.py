@@ -59,7 +59,7 @@ def _block(
     x: Array,
     y: Array,
 ) -> Array:
-    """Sixteen products of B-splines a point and function, as the rows of sparse matrices."""
+    """Return sixteen products of B-splines a point and function, as the rows of sparse matrices."""
     row, weight_x = first.weights(x)
     column, weight_y = second.weights(y)
     slope_x, slope_y = _slopes(first, x, row), _slopes(second, y, column)

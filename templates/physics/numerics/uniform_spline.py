@@ -30,7 +30,10 @@ class Axis:
         return np.linspace(self.first, self.first + self.step * (self.nodes - 1), self.nodes)
 
     def weights(self, x: Array, cell: NDArray[np.int32] | None = None) -> tuple[NDArray[np.int32], Array]:
-        """First of the four B-splines at x, and their values, (N, 4); beyond a cell its cubic goes on."""
+        """Return the first of the four B-splines at x, and their values, (N, 4).
+
+        Beyond a cell its cubic goes on.
+        """
         place = (x - self.first) / self.step
         if cell is None:
             cell = np.clip(place.astype(np.int32), 0, self.nodes - 2)
@@ -44,7 +47,7 @@ class Axis:
 
 
 def spline_coefficients(values: Array) -> Array:
-    """B-spline coefficients, two more than values along the first axis, that interpolate them."""
+    """Return B-spline coefficients, two more than values along the first axis, that interpolate them."""
     n = len(values)
     system = np.zeros((n + 2, n + 2))
     for k in range(n):
@@ -95,7 +98,7 @@ def line(coefficients: Array, second: Axis, y: Array) -> Array:
 
 
 def _block(flat: Array, first: Axis, second: Axis, x: Array, y: Array) -> Array:
-    """Sixteen products of B-splines a point, as the rows of a sparse matrix."""
+    """Return sixteen products of B-splines a point, as the rows of a sparse matrix."""
     row, weight_x = first.weights(x)
     column, weight_y = second.weights(y)
     width = second.nodes + 2

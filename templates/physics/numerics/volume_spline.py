@@ -45,7 +45,7 @@ def at_third(coefficients: Array, third: Axis, place: float) -> Array:
 
 
 def _block(flat: Array, shape: tuple[int, ...], axes: Axes, places: Array) -> Array:
-    """Sixty-four products of B-splines a point, as the rows of a sparse matrix."""
+    """Return sixty-four products of B-splines a point, as the rows of a sparse matrix."""
     (i, u), (j, v), (k, w) = (axis.weights(x) for axis, x in zip(axes, places, strict=True))
     size = i.size
     offsets = (_FOUR[:, None, None] * shape[1] + _FOUR[:, None]) * shape[2] + _FOUR

@@ -81,7 +81,9 @@ class Passing:
         return Passing(self.load.of(cases), self.sleeve.of(cases), self.groove.of(cases))
 
     def with_distinct_rings(self) -> tuple["Passing", NDArray[np.intp]]:
-        """The same at angles whose rings differ in their number of nodes; and where the old angles are.
+        """Return the same at angles whose rings differ in their number of nodes.
+
+        And where the old angles are.
 
         With equal steps they do. With others the angles are divided until the finest ring is the only one.
         """
@@ -93,7 +95,10 @@ class Passing:
         return Passing(divided, replace(self.sleeve, swing=ring.S[2]), self.groove), own
 
     def ring(self, finer: int) -> tuple[Ring, NDArray[np.intp]]:
-        """The finest nodes, the sleeve's swing as the third row of their load; which are the load's own."""
+        """Return the finest nodes, the sleeve's swing as the third row of their load.
+
+        Which are the load's own.
+        """
         rows = np.concatenate([self.load.S, self.sleeve.swing[None]])
         return ring_of(replace(self.load, S=rows), finer)
 
@@ -140,14 +145,16 @@ class GroovedLaw:
         return self._covered[nodes]
 
     def __call__(self, xi: Array, eta: Array) -> tuple[Array, Array]:
-        """M and its slopes on a ring of the orbit."""
+        """Return M and its slopes on a ring of the orbit."""
         s, left = self.covered(xi.shape[-1]), 1 - self.passing.groove.share[:, None]
         (M, slopes), (M_land, slopes_land) = self.whole(xi, eta), self.lands(xi, eta)
         return (1 - s) * M + s / left * M_land, (1 - s) * slopes + s / left * slopes_land
 
 
 def lift_of(share: Array, extent: Array, pressure: Array) -> Array:
-    """What a supply pressure bears at rest in a groove and over its lands, as a load number; 0 without one.
+    """Return what a supply pressure bears at rest in a groove and over its lands, as a load number.
+
+    0 without one.
 
     Over the lands the pressure falls evenly to that of the ends: the groove counts with its width and half of
     theirs. Of an arc only the part along its middle is left, P (1 + g)/2 sin(extent/2).

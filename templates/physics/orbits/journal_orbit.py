@@ -185,7 +185,9 @@ def _fill(whole: Orbit, load: CyclicLoad, law: MobilityLaw, part: Mask, finer: i
 
 
 def _nested(ring: Ring, law: MobilityLaw) -> tuple[Array, Mask, Array, list[Array]]:
-    """Orbits on the finest ring, from coarser ones; which settled, and the error of the gap at the nodes.
+    """Return orbits on the finest ring, from coarser ones.
+
+    Which settled, and the error of the gap at the nodes.
 
     And the smallest gaps between the nodes of every ring, NaN where it did not settle, the finest last.
     """
@@ -223,7 +225,7 @@ def _halved(e: Array, nodes: int) -> Array:
 
 
 def _settled(ring: Ring, law: MobilityLaw, e: Array, tolerance: float, tried: Mask) -> tuple[Array, Mask]:
-    """Newton's method from a start, for the cases tried; which have settled away from the wall."""
+    """Return Newton's method from a start, for the cases tried; which have settled away from the wall."""
     left, settled = tried.copy(), np.zeros(tried.shape, bool)
     a = differences(ring.steps())
     for _ in range(_MOST_STEPS if left.any() else 0):
@@ -242,7 +244,10 @@ def _settled(ring: Ring, law: MobilityLaw, e: Array, tolerance: float, tried: Ma
 
 
 def _limited(e: Array, change: Array) -> tuple[Array, Array]:
-    """The change applied, each node held within its bearing; and its largest size over the gap, (C,)."""
+    """Return the change applied, each node held within its bearing.
+
+    And its largest size over the gap, (C,).
+    """
     gap, length = 1 - np.hypot(*e), np.hypot(*change)
     share = np.minimum(1.0, _LONGEST / np.maximum(length, _LONGEST))
     radius = 1 - np.maximum(_THINNER * gap, THINNEST / 2)
@@ -254,7 +259,7 @@ def _limited(e: Array, change: Array) -> tuple[Array, Array]:
 
 
 def _rate(ring: Ring, e: Array, law: MobilityLaw) -> tuple[Array, Array]:
-    """d(eps)/d(theta), (2, C, K), and its slopes by eps, (2, 2, C, K)."""
+    """Return d(eps)/d(theta), (2, C, K), and its slopes by eps, (2, 2, C, K)."""
     size = np.hypot(*ring.S)
     loaded = size > 0
     c, s = np.where(loaded, ring.S / np.where(loaded, size, 1.0), [[[1.0]], [[0.0]]])

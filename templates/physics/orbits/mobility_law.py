@@ -21,7 +21,7 @@ class MobilityLaw(Protocol):
     """A mobility M(xi, eta) of some cases."""
 
     def __call__(self, xi: Array, eta: Array) -> tuple[Array, Array]:
-        """M, (2, C, K), and its slopes by xi and eta, (2, 2, C, K) [-]."""
+        """Return M, (2, C, K), and its slopes by xi and eta, (2, 2, C, K) [-]."""
 
     def of(self, cases: Mask) -> "MobilityLaw":
         """Return the same law of fewer cases."""
@@ -39,7 +39,7 @@ class ShortLaw:
         return ShortLaw(self.ratio[cases])
 
     def __call__(self, xi: Array, eta: Array) -> tuple[Array, Array]:
-        """M and its slopes; see `short_mobility`."""
+        """Return M and its slopes; see `short_mobility`."""
         area, h = self.ratio[:, None] ** 2, 1 - xi
         root = np.sqrt(h)
         along, across = h * h * root / (np.pi * area), 4 * h * root / (np.pi**2 * area)
@@ -62,7 +62,7 @@ class MapLaw:
         return MapLaw(self.ratio[cases])
 
     def __call__(self, xi: Array, eta: Array) -> tuple[Array, Array]:
-        """M and its slopes, through the coordinates and the encoded values of the map."""
+        """Return M and its slopes, through the coordinates and the encoded values of the map."""
         x, v = coordinates(xi, eta)
         width = np.repeat(self.width, xi.shape[1])
         axes = mobility_map().axes

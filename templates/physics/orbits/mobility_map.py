@@ -183,14 +183,14 @@ def encode(xi: float, eta: float, ratio: float, motion: Motion) -> Array:
 
 
 def decode_motion(xi: Array, eta: Array, ratio: Array, values: Array) -> Array:
-    """M along the load and ahead of it, (2, ...) [-], from the first two values of `encode`."""
+    """Return M along the load and ahead of it, (2, ...) [-], from the first two values of `encode`."""
     h = 1 - xi
     along = h**2 * np.sqrt(h) / (np.pi * ratio**2) * np.exp(values[0])
     return np.stack([along, -along * values[1] * eta / h])
 
 
 def _accepted(xi: Array, eta: Array, ratio: Array) -> tuple[Array, Array, Array]:
-    """Arrays within the map's range.
+    """Return arrays within the map's range.
 
     Raises
     ------
@@ -218,5 +218,5 @@ def _look_up(part: str, xi: Array, eta: Array, ratio: Array) -> Array:
 
 @lru_cache(maxsize=64)
 def _at_width(part: str, ratio: float) -> Array:
-    """Spline coefficients over gap and chord at one width, kept for the steps of an orbit."""
+    """Return the spline coefficients over gap and chord at one width, kept for the steps of an orbit."""
     return at_third(getattr(mobility_map(), part), mobility_map().axes[2], float(np.log(ratio)))

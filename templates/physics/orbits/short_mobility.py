@@ -52,7 +52,10 @@ def short_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
 
 
 def _steepest(eps: Array, direction: Array) -> Array:
-    """Largest cos(phi − alpha)/H³ over the half film: the best of some places, then by Newton's method."""
+    """Return the largest cos(phi − alpha)/H³ over the half film.
+
+    The best of some places, then by Newton's method.
+    """
     start, end = _sommerfeld_angle(direction - np.pi / 2, eps), _sommerfeld_angle(direction + np.pi / 2, eps)
     gamma = start + np.linspace(0, 1, 49)[:, None] * (end - start)
     phi = 2 * np.arctan2(np.sin(gamma / 2) * np.sqrt(1 - eps), np.cos(gamma / 2) * np.sqrt(1 + eps))
@@ -70,5 +73,5 @@ def _steepest(eps: Array, direction: Array) -> Array:
 
 
 def _sommerfeld_angle(phi: Array, eps: Array) -> Array:
-    """Sommerfeld's angle from the narrowest gap, continuous for phi from −2 pi to 2 pi [rad]."""
+    """Return Sommerfeld's angle from the narrowest gap, continuous for phi from −2 pi to 2 pi [rad]."""
     return np.asarray(2 * np.arctan2(np.sin(phi / 2) * np.sqrt(1 + eps), np.cos(phi / 2) * np.sqrt(1 - eps)))

@@ -214,7 +214,9 @@ def power_ratio(friction: Array, pumping: Array) -> Array:
 
 @units(None, "kg/m**3", "m**3/s", "m", "Pa*s", returns="1", latex=r"\frac{{4\,{1}\,{2}}}{{\pi\,{3}\,{4}}}")
 def capillary_Reynolds_number(kind: str, rho: Array, Q: Array, diameter: Array, eta: Array) -> Array:
-    """Reynolds number in a capillary, from its mean velocity and diameter; NaN in other restrictors [-].
+    """Return Reynolds number in a capillary, from its mean velocity and diameter.
+
+    NaN in other restrictors [-].
 
     Parameters
     ----------

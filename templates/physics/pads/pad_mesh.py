@@ -33,13 +33,13 @@ class Grading:
     """Vinokur's Delta, 0 for no stretching [-]."""
 
     def place(self, t: Array) -> Array:
-        """X at t [-]."""
+        """Return X at t [-]."""
         u = 0.5 * (1 + np.tanh(self.stretch * (t - 0.5)) / np.tanh(self.stretch / 2))
         s = u / (self.skew + (1 - self.skew) * u)
         return np.expm1(-s * self.logarithm) / np.expm1(-self.logarithm)
 
     def slope(self, t: Array) -> Array:
-        """dx/dt at t [-]."""
+        """Return dx/dt at t [-]."""
         half = np.tanh(self.stretch / 2)
         u = 0.5 * (1 + np.tanh(self.stretch * (t - 0.5)) / half)
         du = 0.5 * self.stretch / (np.cosh(self.stretch * (t - 0.5)) ** 2 * half)
@@ -47,7 +47,7 @@ class Grading:
         return -self.logarithm * np.exp(-s * self.logarithm) / np.expm1(-self.logarithm) * ds * du
 
     def coordinate(self, x: Array) -> Array:
-        """T at x, the inverse of `place` [-]."""
+        """Return T at x, the inverse of `place` [-]."""
         s = -np.log1p(x * np.expm1(-self.logarithm)) / self.logarithm
         u = s * self.skew / (1 - s * (1 - self.skew))
         return np.clip(0.5 + np.arctanh((2 * u - 1) * np.tanh(self.stretch / 2)) / self.stretch, 0, 1)
@@ -71,12 +71,12 @@ def grading(a: Array, width: Array) -> Grading:
 
 
 def _layer_slope(layer: Array) -> Array:
-    """Slope at its end of a map that gives every decade from the layer to the whole its share [-]."""
+    """Return slope at its end of a map that gives every decade from the layer to the whole its share [-]."""
     return layer * np.arcsinh(1 / layer)
 
 
 def _stretch(logarithm: Array) -> Array:
-    """Delta of ln(sinh(Delta)/Delta) = the logarithm, which is convex, by Newton's method [-]."""
+    """Return delta of ln(sinh(Delta)/Delta) = the logarithm, which is convex, by Newton's method [-]."""
     delta = 1e-3 + np.sqrt(6 * np.maximum(logarithm, 0))
     for _ in range(_NEWTON_STEPS):
         excess = delta + np.log(-np.expm1(-2 * delta) / (2 * delta)) - logarithm

@@ -125,7 +125,7 @@ def friction_incline_Rayleigh_1918(a: Array) -> tuple[Array, Array]:
 
 
 def film_velocity(z: Array, h: Array, pressure_gradient: Array, eta: Array, u_a: Array) -> Array:
-    r"""Velocity across the film between a still face at z = 0 and a face that moves with u_a [m/s].
+    r"""Return velocity across the film between a still face at z = 0 and a face that moves with u_a [m/s].
 
     .. math:: u(z) = \frac{1}{2\eta}\frac{dp}{dx}(z^2 - z h) + u_a\frac{z}{h}
 
@@ -167,7 +167,9 @@ def reduced_Reynolds_number(density: Array, speed: Array, h: Array, eta: Array, 
 
 
 def squeeze_number(density: Array, h: Array, eta: Array, time: Array) -> Array:
-    """Local inertia over viscous force, rho h²/(eta t); erratum: the course prints l² or b² for h² [-].
+    """Return local inertia over viscous force, rho h²/(eta t).
+
+    Erratum: the course prints l² or b² for h² [-].
 
     Parameters
     ----------

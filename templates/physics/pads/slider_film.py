@@ -72,17 +72,17 @@ class PadFilm(ABC):
 
     @property
     def friction_moving(self) -> Array:
-        """Friction on the moving face F h_o/(eta U l b); times U it is the power loss."""
+        """Return the friction on the moving face F h_o/(eta U l b); times U it is the power loss."""
         return shear_of_wedge(self.a) + 3 * (self.a - 1) * self.load
 
     @property
     def friction_fixed(self) -> Array:
-        """Friction on the pad, likewise: less by the pressure on the incline."""
+        """Return the friction on the pad, likewise: less by the pressure on the incline."""
         return shear_of_wedge(self.a) - 3 * (self.a - 1) * self.load
 
     @property
     def friction_coefficient(self) -> Array:
-        """Friction on the moving face over load, times l/h_o; NaN where the pad bears nothing."""
+        """Return the friction on the moving face over load, times l/h_o; NaN where the pad bears nothing."""
         load = np.where(self.load > 0, self.load, np.nan)
         return self.friction_moving / (6 * load)
 
@@ -130,7 +130,9 @@ def pad_film(level: str, a: Array, width: Array) -> PadFilm:
 
 
 def shear_of_wedge(a: Array) -> Array:
-    """Friction by the mean velocity gradient alone, F h_o/(eta U l b): ln a/(a − 1), 1 for streamers [-].
+    """Return the friction by the mean velocity gradient alone, F h_o/(eta U l b).
+
+    Ln a/(a − 1), 1 for streamers [-].
 
     Streamers that carry the inlet's flow fill h_i/h of a diverging film: the mean of h_i h_o/h² is 1.
 
@@ -175,7 +177,7 @@ class InfinitePad(PadFilm):
         return pressure_incline_Rayleigh_1918(x, _bearing(self.a)[..., None]) + 0 * self.a[..., None]
 
     def gradient(self, x: Array) -> Array:
-        """Pressure gradient 6 (H − H_m)/H³, where H_m = 2a/(a + 1) carries the flow by shear alone."""
+        """Return pressure gradient 6 (H − H_m)/H³, where H_m = 2a/(a + 1) carries the flow by shear alone."""
         a = _bearing(self.a)
         H = a - (a - 1) * x
         return 6 * (H - 2 * a / (a + 1)) / H**3 + 0 * self.a
@@ -210,13 +212,13 @@ class FinitePad(PadFilm):
         return np.maximum(interpolated(self.P, self.mesh.coordinate(x))[0], 0)
 
     def gradient(self, x: Array) -> Array:
-        """Pressure gradient h_o²/(eta U) dp/dx at mid-width and x/l, one a pad, by the same cubics."""
+        """Return pressure gradient h_o²/(eta U) dp/dx at mid-width and x/l, one a pad, by the same cubics."""
         t = self.mesh.coordinate(x[..., None])
         return (6 * interpolated(self.P, t)[1] / self.mesh.slope(t))[..., 0]
 
 
 def interpolated(values: Array, t: Array) -> tuple[Array, Array]:
-    """Values and slopes d/dt at t by the cubic through four of n + 1 nodes equally spaced in 0 … 1.
+    """Return values and slopes d/dt at t by the cubic through four of n + 1 nodes equally spaced in 0 … 1.
 
     Parameters
     ----------
@@ -276,7 +278,7 @@ def finite_pad(a: Array, width: Array, along: int = 64, across_half: int = 16) -
 
 
 def _peak(P: Array) -> tuple[Array, Array]:
-    """Height of the largest pressure and its t, by the parabola through the three nodes about it."""
+    """Return height of the largest pressure and its t, by the parabola through the three nodes about it."""
     n = P.shape[-1] - 1
     k = np.clip(P.argmax(axis=-1), 1, n - 1)
     before, top, after = (np.take_along_axis(P, (k + i)[..., None], axis=-1)[..., 0] for i in (-1, 0, 1))

@@ -49,7 +49,9 @@ def is_bearable(F_a: Array, elements: str) -> Truth:
 
 @units("N", "N", "1", "N", returns="N")
 def equivalent_load_ISO_281_2007(F_r: Array, F_a: Array, f_0: Array, C_0: Array) -> Array:
-    """P = Fr, or X Fr + Y Fa where Fa/Fr > e, at each angle [N]; X, Y, e linear between the table's rows.
+    """Return P = Fr, or X Fr + Y Fa where Fa/Fr > e, at each angle [N].
+
+    X, Y, e linear between the table's rows.
 
     At Fa/Fr = e the table's digits leave X Fr + Y Fa up to 1 % below Fr; P is never below Fr.
     """
@@ -79,19 +81,19 @@ def static_load_ISO_76_2006(F_r: Array, F_a: Array) -> Array:
 
 @units(None, returns="1", latex=r"3\ \text{{(balls) or}}\ \tfrac{{10}}{{3}}\ \text{{(rollers)}}")
 def life_exponent(elements: str) -> Array:
-    """3 for balls, 10/3 for rollers."""
+    """Return 3 for balls, 10/3 for rollers."""
     return np.float64(3.0 if elements == "ball" else 10 / 3)  # type: ignore[return-value]
 
 
 @units("1", returns="1", latex=r"0.95\left(\frac{{\ln {0}}}{{\ln 0.9}}\right)^{{2/3}}+0.05")
 def reliability_factor(S: Array) -> Array:
-    """a1 [1] of a reliability: 1 at 0.9, by a Weibull distribution with a least life."""
+    """Return a1 [1] of a reliability: 1 at 0.9, by a Weibull distribution with a least life."""
     return (1 - LEAST) * (np.log(S) / np.log(0.9)) ** (1 / WEIBULL) + LEAST
 
 
 @units("1", "1", returns="1", latex=r"10^6\,{0}^{{-{1}}}")
 def rating_life(ratio: Array, p: Array) -> Array:
-    """L10 = 10⁶ (C/P)^p [revolutions]; none (NaN) without load."""
+    """Return L10 = 10⁶ (C/P)^p [revolutions]; none (NaN) without load."""
     return (1e6 * np.where(ratio > 0, ratio, np.nan) ** -p)[()]
 
 

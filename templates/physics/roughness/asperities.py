@@ -30,7 +30,7 @@ _POINTS = 48
 
 
 def summit_integral(u: Array) -> Array:
-    """F_{5/2} of a gap over the roughness, 0 or more; exactly, by the parabolic cylinder function [-].
+    """Return F_{5/2} of a gap over the roughness, 0 or more; exactly, by the parabolic cylinder function [-].
 
     Examples
     --------
@@ -42,20 +42,20 @@ def summit_integral(u: Array) -> Array:
 
 @cache
 def _logarithm() -> CubicSpline:
-    """Ln F_{5/2} over 0 … FARTHEST, to 1e-9."""
+    """Return the ln F_{5/2} over 0 … FARTHEST, to 1e-9."""
     u = np.linspace(0, FARTHEST, _KNOTS)
     return CubicSpline(u, np.log(summit_integral(u)))
 
 
 @cache
 def _quadrature() -> tuple[Array, Array]:
-    """Gauss's points and weights on −1 … 1."""
+    """Return Gauss's points and weights on −1 … 1."""
     x, weight = np.polynomial.legendre.leggauss(_POINTS)
     return x, weight
 
 
 def splined_summit_integral(u: Array) -> Array:
-    """F_{5/2} of a gap over the roughness, 0 or more; 0 from `FARTHEST` on [-]."""
+    """Return F_{5/2} of a gap over the roughness, 0 or more; 0 from `FARTHEST` on [-]."""
     return np.where(u < FARTHEST, np.exp(_logarithm()(np.minimum(u, FARTHEST))), 0.0)
 
 

@@ -43,14 +43,17 @@ THINNEST = 0.5
 
 
 def pressure_flow_factor(u: Array, gamma: float = 1) -> Array:
-    """phi_x at u = h/sigma, for a gamma of the table: correlation length along over across the flow [-]."""
+    """Return phi_x at u = h/sigma, for a gamma of the table.
+
+    Correlation length along over across the flow [-].
+    """
     C, r = PRESSURE[gamma]
     u = np.maximum(u, THINNEST)
     return 1 - C * np.exp(-r * u) if gamma <= 1 else 1 + C * u**-r
 
 
 def shear_flow_factor(u: Array, gamma: float = 1) -> Array:
-    """phi_s at u = h/sigma, for a gamma of the table [-]."""
+    """Return phi_s at u = h/sigma, for a gamma of the table [-]."""
     A_1, alpha_1, alpha_2, alpha_3, A_2 = SHEAR[gamma]
     u = np.maximum(u, THINNEST)
     near = np.minimum(u, 5.0)

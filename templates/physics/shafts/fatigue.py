@@ -54,7 +54,9 @@ def mean_share(correction: str, mean: Array, ultimate: Array, coefficient: Array
 
 @units("Pa", "Pa", "1", "Pa", returns="1", latex=r"\frac{{1}}{{2}}\left(\frac{{{0}}}{{{1}}}\right)^{{1/{2}}}")
 def cycles_Basquin_1910(amplitude: Array, coefficient: Array, exponent: Array, endurance: Array) -> Array:
-    """Cycles to failure N [1] at a reversed amplitude [Pa], of sigma_ar = sigma_f' (2 N)^b; NaN if endless.
+    """Return cycles to failure N [1] at a reversed amplitude [Pa], of sigma_ar = sigma_f' (2 N)^b.
+
+    NaN if endless.
 
     Endless up to the endurance limit [Pa] (NaN: there is none), without stress, and beyond 1e300 cycles.
     """
@@ -75,7 +77,7 @@ def allowable_amplitude(endurance: Array, coefficient: Array, exponent: Array, l
 
 @units(None, "Pa", "Pa", "1", returns="1", latex=_SAFETY)
 def load_safety_factor(correction: str, amplitude: Array, allowable: Array, share: Array) -> Array:
-    """By how much amplitude [Pa] and mean stress, with its share [1], may grow together; NaN if without end.
+    """Return the factor by which amplitude [Pa] and mean stress may grow together; NaN if unbounded.
 
     Goodman and Morrow: 1/n = sigma_a/S + sigma_m/strength. Gerber: n sigma_a/S + (n sigma_m/sigma_u)² = 1
     (Budynas and Nisbett, chapter 6), solved so that no digit is lost.
@@ -105,7 +107,10 @@ def either_is_given(one: Array, other: Array) -> Any:
 
 @units("Pa", "Pa", "Pa", returns="1")
 def is_borne_once(amplitude: Array, mean: Array, ultimate: Array) -> Any:
-    """True if amplitude plus mean is below the ultimate strength [Pa]; what is missing harms nothing."""
+    """Return whether amplitude plus mean is below the ultimate strength [Pa].
+
+    What is missing harms nothing.
+    """
     return ~(amplitude + mean >= ultimate)
 
 

@@ -72,11 +72,14 @@ def fatigue_notch_factor_Peterson(K_t: Array, q: Array) -> Array:
 
 @units(None, "Pa", "1", returns="Pa", latex=r"c_{{\mathrm{{load}}}}\,{2}\,{1}")
 def local_stress(loading: str, nominal: Array, K_f: Array) -> Array:
-    """Local stress [Pa] of a nominal one: as it is in bending, the von Mises stress of a shear in torsion."""
+    """Return local stress [Pa] of a nominal one.
+
+    As it is in bending, the von Mises stress of a shear in torsion.
+    """
     return (np.sqrt(3) if loading == TORSION else 1.0) * K_f * nominal
 
 
 def _polynomial(coefficients: tuple[tuple[float, float, float], ...], slope: Array, step: Array) -> Array:
-    """Pilkey's polynomial: cubic in the step, its coefficients in the root of the slope."""
+    """Return Pilkey's polynomial: cubic in the step, its coefficients in the root of the slope."""
     root = np.sqrt(slope)
     return sum((a + b * root + c * slope) * step**i for i, (a, b, c) in enumerate(coefficients))  # type: ignore[return-value]

@@ -41,7 +41,7 @@ class _Bidiagonal:
 
     @property
     def dense(self) -> Array:
-        """The matrix itself."""
+        """Return the matrix itself."""
         n = self.diagonal.shape[-1]
         full, i = np.zeros((*self.diagonal.shape, n)), np.arange(n)
         full[..., i, i], full[..., i[:-1], i[1:]] = self.diagonal, self.above
@@ -89,7 +89,7 @@ def mode_shapes(J: Array, k: Array, ends: str) -> Array:
 
 
 def _reduced(J: Array, k: Array, ends: str) -> _Bidiagonal:
-    """J^(-1/2) B k^(1/2) as a square matrix; with free ends, its last row turned into the others."""
+    """Return J^(-1/2) B k^(1/2) as a square matrix; with free ends, its last row turned into the others."""
     root_J = np.sqrt(J)
     if ends == FIXED:
         root_k = np.sqrt(k)
@@ -128,7 +128,9 @@ def _turned_back(turned: _Bidiagonal, vectors: Array) -> Array:
 
 
 def _singular_values(matrix: Array) -> Array:
-    """The singular values [..., mode] of bidiagonal matrices, ascending; NaN where an entry is not finite.
+    """Return the singular values [..., mode] of bidiagonal matrices, ascending.
+
+    NaN where an entry is not finite.
 
     LAPACK leaves a bidiagonal matrix as it is and, without vectors, takes the accurate dqds algorithm.
     """
@@ -150,7 +152,10 @@ def _finite(matrix: Array) -> NDArray[np.bool_]:
 
 
 def _scaled(shapes: Array) -> Array:
-    """Each shape [..., mode, inertia] with 1 as its largest entry; of equally large ones the first counts."""
+    """Return each shape [..., mode, inertia] with 1 as its largest entry.
+
+    Of equally large ones the first counts.
+    """
     size = np.abs(shapes)
     largest = size.max(axis=-1, keepdims=True, initial=0.0)
     first = np.argmax(size >= TIE * largest, axis=-1)[..., None]

@@ -21,13 +21,16 @@ RPM = 2 * np.pi / 60
 
 @units("rad/s", "1", returns="rad/s", latex=r"\frac{{{0}}}{{{1}}}")
 def critical_speeds(omega: Array, orders: Array) -> Array:
-    """Speeds [rad/s; ..., order, mode] at which orders excite the natural frequencies omega [..., mode]."""
+    """Return speeds [rad/s.
+
+    ..., order, mode] at which orders excite the natural frequencies omega [..., mode].
+    """
     return omega[..., None, :] / np.atleast_1d(orders)[..., :, None]
 
 
 @units("rad/s", returns="rad/s", latex=r"{0}_1+\frac{{i}}{{20}}\left({0}_2-{0}_1\right)")
 def campbell_speeds(speeds: Array) -> Array:
-    """Equally spaced speeds [rad/s] along the diagram, from the lower to the upper one of [..., 2]."""
+    """Return equally spaced speeds [rad/s] along the diagram, from the lower to the upper one of [..., 2]."""
     if not np.ndim(speeds):
         return np.full(PLACES, np.nan)
     return np.linspace(speeds[..., 0], speeds[..., -1], PLACES, axis=-1)
@@ -35,7 +38,10 @@ def campbell_speeds(speeds: Array) -> Array:
 
 @units("1", "rad/s", returns="rad/s", latex=r"{0}\,{1}")
 def excitation(orders: Array, speeds: Array) -> Array:
-    """Angular frequencies [rad/s; ..., order, speed] that orders excite at speeds [rad/s; ..., speed]."""
+    """Return the angular frequencies [rad/s; ..., order, speed] that orders excite at speeds [rad/s.
+
+    ..., speed].
+    """
     return np.atleast_1d(orders)[..., :, None] * speeds[..., None, :]
 
 
@@ -47,7 +53,7 @@ def ascending(speeds: Array) -> bool:
 
 @units("rad/s", "1", "rad/s", returns="1")
 def resonances(critical: Array, orders: Array, speeds: Array) -> Any:
-    """In words, which critical speeds [rad/s; ..., order, mode] lie in the range; empty without a range."""
+    """Return in words the critical speeds [rad/s; ..., order, mode] in the range; empty without a range."""
     if not np.ndim(speeds) or np.isnan(critical).any():
         return ""
     points = np.broadcast_shapes(critical.shape[:-2], speeds.shape[:-1], np.shape(orders)[:-1])
@@ -61,7 +67,10 @@ def resonances(critical: Array, orders: Array, speeds: Array) -> Any:
 
 
 def _sentence(critical: Array, orders: Array, speeds: Array) -> str:
-    """The critical speeds of one chain within the range, ascending; mode 0 of a free chain has none."""
+    """Return the critical speeds of one chain within the range, ascending.
+
+    Mode 0 of a free chain has none.
+    """
     inside = (critical >= speeds[0]) & (critical <= speeds[1]) & (critical > 0)
     crossings = sorted((critical[order, mode], orders[order], mode) for order, mode in np.argwhere(inside))
     met = (f"order {order:g} meets mode {mode} at {speed / RPM:.5g} rpm" for speed, order, mode in crossings)

@@ -30,7 +30,9 @@ TOO_SHORT = (
 
 @units("m", "m", returns="m**4", latex=r"\left({0}^{{4}}-{1}^{{4}}\right)")
 def ring(outer: Array, inner: Array) -> Array:
-    """Difference of the fourth powers of outer and inner diameter [m]; 32/π times the polar moment [m⁴].
+    """Return the difference of the fourth powers of outer and inner diameter [m].
+
+    32/π times the polar moment [m⁴].
 
     Multiplied out so that thin walls lose no digits.
     """

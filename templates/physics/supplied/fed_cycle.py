@@ -118,22 +118,25 @@ class FedOrbit:
 
     @property
     def reason(self) -> str:
-        """Why no film repeats, in words; empty where one does, or without a march."""
+        """Return why no film repeats, in words; empty where one does, or without a march."""
         return self.marched.reason if self.marched else ""
 
     @property
     def cycles(self) -> Array:
-        """Cycles marched on all meshes; NaN without a march, as the next two, (...)."""
+        """Return cycles marched on all meshes; NaN without a march, as the next two, (...)."""
         return self._everywhere(float(sum(self.marched.cycles)) if self.marched else np.nan)
 
     @property
     def mass_balance(self) -> Array:
-        """Oil fed less oil lost and stored, over the oil lost, (...)."""
+        """Return oil fed less oil lost and stored, over the oil lost, (...)."""
         return self._everywhere(self.marched.mass_balance if self.marched else np.nan)
 
     @property
     def feed(self) -> Array:
-        """Oil fed, Q/(B D c Omega), c the radial clearance, in the mean; NaN if no film repeats, (...)."""
+        """Return oil fed, Q/(B D c Omega), c the radial clearance, in the mean.
+
+        NaN if no film repeats, (...).
+        """
         if not self.marched or self.marched.verdict in UNREPEATED:
             return self._everywhere(np.nan)
         return self._everywhere(self.marched.mean_feed)
@@ -155,7 +158,7 @@ class _Cases:
 
     @property
     def load(self) -> CyclicLoad:
-        """The load on its own."""
+        """Return the load on its own."""
         return self.passing.load
 
 
@@ -192,7 +195,10 @@ def fed_orbit(level: str, fed: FedDuty) -> FedOrbit:
     }
 )
 def fed_film(level: str, fed: FedDuty, orbit: FedOrbit) -> CycleFilm:
-    """Pressure, loss and flow along an orbit; side flow of level supplied with what its supply drives."""
+    """Return the pressure, loss and flow along an orbit.
+
+    Side flow of level supplied with what its supply drives.
+    """
     cases = _cases(level, fed)
     load, points = cases.load, cases.points
     eps = np.stack([orbit.eps_x, orbit.eps_y]).reshape(2, *load.w.shape)
@@ -338,7 +344,7 @@ def _of_march(marched: SuppliedOrbit, load: CyclicLoad, eps: Array) -> tuple[Arr
 
 
 def _slope(theta: Array, values: Array, period: float) -> Array:
-    """d/d(theta) of what repeats, from the neighbours on either side, (K,)."""
+    """Return d/d(theta) of what repeats, from the neighbours on either side, (K,)."""
     before = theta - np.roll(theta, 1)
     before[0] += period
     after = np.roll(before, -1)

@@ -52,17 +52,17 @@ class Feeding:
 
     @property
     def grooved(self) -> Mask:
-        """Where there is a groove."""
+        """Return where there is a groove."""
         return np.isfinite(self.groove_width)
 
     @property
     def sleeve_holed(self) -> Mask:
-        """Where the sleeve has a hole."""
+        """Return where the sleeve has a hole."""
         return np.isfinite(self.sleeve_length)
 
     @property
     def pin_holed(self) -> Mask:
-        """Where the pin has a hole."""
+        """Return where the pin has a hole."""
         return np.isfinite(self.pin_length)
 
     @property
@@ -92,7 +92,10 @@ class Feeding:
 
 
 def supply_of(feeding: Feeding, pressure: Array) -> Supply | None:
-    """What feeds a single point; None where there is nothing, or no pressure P = p psi²/(eta Omega) [-]."""
+    """Return what feeds a single point.
+
+    None where there is nothing, or no pressure P = p psi²/(eta Omega) [-].
+    """
     pockets = tuple(feeding.pockets())
     if not pockets or not np.all(pressure > 0):
         return None
@@ -136,7 +139,7 @@ def is_back(duty: Duty, speed: Array, needed: Mask) -> Truth:
 
 
 def feed_under_load(duty: Duty, feeding: Feeding) -> Array:
-    """Share of the cycle in which every groove and hole lies within 60° of the load's direction [-].
+    """Return share of the cycle in which every groove and hole lies within 60° of the load's direction [-].
 
     NaN where there is none. A groove or slot longer than that is never under the load as a whole.
     """

@@ -60,7 +60,10 @@ def covered(mesh: Mesh, places: Array) -> Array:
 
 @compiled
 def coefficients(mesh: Mesh, e: Array) -> tuple[Array, Array, Array]:
-    """Conductances around and across and the gap [-]; value, and slopes by e_x and e_y: (3, n) each."""
+    """Return conductances around and across and the gap [-].
+
+    Value, and slopes by e_x and e_y: (3, n) each.
+    """
     n = mesh.order.size
     step = 2 * np.pi / n
     around, across, gap = np.empty((3, n)), np.empty((3, n)), np.empty((3, n))
@@ -116,7 +119,7 @@ def diagonal(mesh: Mesh, around: Array, across: Array) -> Array:
 
 @compiled
 def matrix(mesh: Mesh, around: Array, across: Array, alpha: Array, own: Array) -> Array:
-    """Rows of the banded matrix, (n m, 4 m + 1), diagonal in column 2 m: by k, where P = alpha k."""
+    """Return rows of the banded matrix, (n m, 4 m + 1), diagonal in column 2 m: by k, where P = alpha k."""
     n, m = alpha.shape
     band = 2 * m
     rows = np.zeros((n * m, 2 * band + 1))
@@ -160,7 +163,9 @@ def eliminate(rows: Array, right: Array) -> None:
 
 @compiled
 def complement(P: Array, void: Array, A: Array, T: Array, smooth: bool) -> tuple[Array, Array, Array, Array]:
-    """The complementarity of every cell: dP = alpha k + P0, dvoid = beta k + v0, with one unknown k each.
+    """Return the complementarity of every cell.
+
+    DP = alpha k + P0, dvoid = beta k + v0, with one unknown k each.
 
     A and T turn pressure and void into flow. The larger slope is by the void where a cell is full, by the
     pressure elsewhere.
@@ -206,7 +211,7 @@ def displacement(a: float, b: float, c: float, d: float, x: float, y: float) -> 
 
 @compiled
 def edges(around: Array, seen: Array, i: int, j: int) -> float:
-    """Conductance from a node to the edges of pockets beside it, beyond that to the nodes there."""
+    """Return conductance from a node to the edges of pockets beside it, beyond that to the nodes there."""
     return float(around[i] * seen[1, i, j] + around[i - 1] * seen[2, i, j])
 
 
@@ -287,7 +292,9 @@ def solved(
     mesh: Mesh, state: tuple[Array, Array, Array], S: Array, seen: Array, supply: float,
     rate: float, rest: Array, mass: float, inertia: Array, smooth: bool,
 ) -> tuple[bool, Array, Array, Array, float, float]:  # fmt: skip
-    """True if Newton's method settled; then eccentricity, pressure and void, feed and side flow times 24.
+    """Return whether Newton's method settled.
+
+    Then eccentricity, pressure and void, feed and side flow times 24.
 
     Pressure and void may be below 0 by what Newton's method leaves.
 

@@ -42,17 +42,17 @@ class TurnedAngle:
     """(N,) over Omega [-]."""
 
     def __call__(self, theta: Array) -> Array:
-        """Angle turned by since crank angle 0 [rad]."""
+        """Return the angle turned by since crank angle 0 [rad]."""
         return self._since_first(theta - self.angle[0]) - self._at_zero
 
     @cached_property
     def of_cycle(self) -> float:
-        """Angle turned by in a cycle [rad]."""
+        """Return the angle turned by in a cycle [rad]."""
         return float(self._nodes[2][-1])
 
     @cached_property
     def _nodes(self) -> tuple[Array, Array, Array]:
-        """(N + 1,) angles since the first, speeds there and angles turned by since."""
+        """Return (N + 1,) angles since the first, speeds there and angles turned by since."""
         place = np.append(self.angle - self.angle[0], self.period)
         speed = np.append(self.speed, self.speed[0])
         turned = np.cumsum((speed[1:] + speed[:-1]) / 2 * np.diff(place))
@@ -60,7 +60,7 @@ class TurnedAngle:
 
     @cached_property
     def _inner(self) -> tuple[Array, Array]:
-        """(N − 1,) angles between pieces, and (N,) slopes of the speed on each piece."""
+        """Return (N − 1,) angles between pieces, and (N,) slopes of the speed on each piece."""
         place, speed, _ = self._nodes
         return place[1:-1], np.diff(speed) / np.diff(place)
 
@@ -92,7 +92,7 @@ class Duty:
 
     @property
     def begin(self) -> float:
-        """The first crank angle [rad]."""
+        """Return the first crank angle [rad]."""
         return float(self.load.angle[0])
 
     @cached_property
@@ -107,7 +107,7 @@ class Duty:
 
     @cached_property
     def _force(self) -> tuple[Array, NDArray[np.complex128]]:
-        """Rising angles from before 0 to beyond the period, and the load there, x + i y.
+        """Return rising angles from before 0 to beyond the period, and the load there, x + i y.
 
         `np.interp` makes both at every call if it is given a period.
         """
@@ -209,7 +209,9 @@ def _size(last: State, after: State, step: float) -> float:
 def marched(
     mesh: Mesh, duty: Duty, begin: State, step: float, say: Callable[[float], None]
 ) -> tuple[list[State], int, bool]:
-    """One cycle: its states, the first where it began; halvings of steps that failed; whether it ended.
+    """Return one cycle: its states, the first where it began; halvings of steps that failed.
+
+    Whether it ended.
 
     say: is given the share of the cycle that is done, before each step.
     """

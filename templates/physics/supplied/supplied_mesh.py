@@ -122,7 +122,10 @@ def _quadrature(zeta: Array, inner: int, edges: int) -> Array:
 
 
 def carried(mesh: Mesh, finer: Mesh, values: Array, end: Array) -> Array:
-    """Values (n, m) of one mesh at the nodes of another; `end` are those at the bearing's end, (n,)."""
+    """Return values (n, m) of one mesh at the nodes of another.
+
+    `end` are those at the bearing's end, (n,).
+    """
     phi, finer_phi = (np.arange(one.order.size) * 2 * np.pi / one.order.size for one in (mesh, finer))
     around = [np.interp(finer_phi, phi, v, period=2 * np.pi) for v in (*values.T, end)]
     return np.stack([np.interp(finer.zeta[:-1], mesh.zeta, row) for row in np.stack(around, axis=1)])

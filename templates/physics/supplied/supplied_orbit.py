@@ -134,7 +134,7 @@ class SuppliedOrbit:
 
     @property
     def reason(self) -> str:
-        """Why the orbit does not repeat, in words; empty if it does."""
+        """Return why the orbit does not repeat, in words; empty if it does."""
         if self.verdict is Verdict.REPEATING:
             return ""
         if self.verdict is Verdict.WANDERING:
@@ -207,7 +207,10 @@ def supplied_orbit(
 
 
 def _mesh_error(runs: list[Run]) -> float:
-    """Error of the least gap by its change from the last but one mesh; infinite without a cycle there [-]."""
+    """Return the error of the least gap by its change from the last but one mesh.
+
+    Infinite without a cycle there [-].
+    """
     if not (len(runs) > 1 and runs[-1].gaps and runs[-2].gaps):
         return np.inf
     return REMAINS * abs(runs[-1].gaps[-1] / runs[-2].gaps[-1] - 1)
@@ -242,7 +245,7 @@ def transferred(mesh: Mesh, finer: Mesh, state: State) -> State:
 
 
 def return_error(duty: Duty) -> float:
-    """By how much a pocket misses its place in the frame after a cycle, at most [rad]."""
+    """Return by how much a pocket misses its place in the frame after a cycle, at most [rad]."""
     mean, half = duty.mesh_turning.of_cycle, duty.journal_turning.of_cycle
     turns = [
         mean + half if p.on_journal else mean - half for p in duty.supply.pockets if p.half_angle < np.pi

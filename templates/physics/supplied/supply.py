@@ -53,10 +53,10 @@ class Supply:
 
     @property
     def grooved(self) -> bool:
-        """Whether a pocket goes half around or more, and so passes through the loaded zone."""
+        """Return whether a pocket goes half around or more, and so passes through the loaded zone."""
         return any(pocket.half_angle >= np.pi / 2 for pocket in self.pockets)
 
     @property
     def edges(self) -> tuple[float, ...]:
-        """The different half lengths, rising [-]."""
+        """Return the different half lengths, rising [-]."""
         return tuple(sorted({pocket.half_length for pocket in self.pockets}))

@@ -126,7 +126,7 @@ class Placing:
         return np.array([np.log(size / self.load), np.arctan2(ahead, along)])
 
     def _differences(self, fluidity: Array, lack: Array) -> Array:
-        """(2, 2) slopes of what is lacking."""
+        """Return (2, 2) slopes of what is lacking."""
         kept = self.near
         columns = []
         for step in _DIFFERENCE * np.eye(2):

@@ -72,7 +72,7 @@ class Heated:
 
     @property
     def residual(self) -> float:
-        """What is not accounted for, over the dissipation [-]."""
+        """Return what is not accounted for, over the dissipation [-]."""
         away = self.by_side + self.by_drain + self.by_bush + self.by_journal
         return (self.dissipated - away) / self.dissipated
 

@@ -43,12 +43,12 @@ class Gap:
 
     @property
     def eps(self) -> float:
-        """Relative eccentricity [-]."""
+        """Return the relative eccentricity [-]."""
         return float(np.tanh(np.hypot(*self.y)))
 
     @property
     def attitude(self) -> float:
-        """Angle from the load to the narrowest gap [rad]."""
+        """Return the angle from the load to the narrowest gap [rad]."""
         return float(np.arctan2(self.y[1], self.y[0]))
 
     def H(self, phi: Array) -> Array:
@@ -68,7 +68,7 @@ class Gap:
 
     @property
     def H_faces(self) -> Array:
-        """(n,) midway between them."""
+        """Return (n,) midway between them."""
         return self.H(midpoints(self.arc.phi))
 
 
@@ -108,7 +108,7 @@ class Pressed:
 
     @property
     def slopes(self) -> Array:
-        """(n,) difference of pressure between the nodes over their distance, mean across the width."""
+        """Return (n,) difference of pressure between the nodes over their distance, mean across the width."""
         return np.asarray(np.diff(self.P, axis=0) @ self.gap.arc.across / np.diff(self.gap.arc.phi))
 
     @property

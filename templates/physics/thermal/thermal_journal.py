@@ -82,7 +82,10 @@ _FIELD = "solved numerically by finite volumes of Dowson's generalised Reynolds 
     }
 )
 def warm_film(level: str, case: ThermalCase) -> WarmFilm:
-    """The film of every point at a level: all at once with one temperature, else one after the other."""
+    """Return the film of every point at a level.
+
+    All at once with one temperature, else one after the other.
+    """
     if level == ONE:
         return _of_one(case)
     names = [field.name for field in fields(case)]

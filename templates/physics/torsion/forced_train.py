@@ -60,12 +60,12 @@ class Train:
 
     @cached_property
     def mass(self) -> Array:
-        """M, which is diagonal: the inertias that turn with each free angle, (…, q)."""
+        """Return M, which is diagonal: the inertias that turn with each free angle, (…, q)."""
         return self.J @ self.layout.reduction**2
 
     @cached_property
     def twists(self) -> Array:
-        """Twist of the shafts by the free angles, (S, q)."""
+        """Return the twist of the shafts by the free angles, (S, q)."""
         return self.layout.difference @ self.layout.reduction
 
     def damping_of_inertias(self, speeds: Array) -> Array:
@@ -140,12 +140,12 @@ class Response:
 
     @cached_property
     def twist(self) -> Phasors:
-        """Twist of the shafts [rad], (…, V, H, S)."""
+        """Return the twist of the shafts [rad], (…, V, H, S)."""
         return np.asarray(self.angles @ self.train.layout.difference.T)
 
     @cached_property
     def shaft_torque(self) -> Phasors:
-        """Torque of the shafts [N m], (…, V, H, S)."""
+        """Return the torque of the shafts [N m], (…, V, H, S)."""
         train = self.train
         stiff = (train.k * (1 + 1j * train.eta))[..., None, None, :]
         damped = (train.c + 0 * train.k)[..., None, None, :]
@@ -153,17 +153,17 @@ class Response:
 
     @cached_property
     def power_in(self) -> Array:
-        """Mean power that the harmonics of the torque put in [W], (…, V)."""
+        """Return the mean power that the harmonics of the torque put in [W], (…, V)."""
         return (self.frequency * (self.angles.conj() * self.torque).imag.sum(axis=-1)).sum(axis=-1) / 2
 
     @cached_property
     def apparent_power(self) -> Array:
-        """The same with all angles a quarter of a period behind [W], (…, V): a measure of its size."""
+        """Return the same with all angles a quarter of a period behind [W], (…, V): a measure of its size."""
         return (self.frequency * (np.abs(self.angles) * np.abs(self.torque)).sum(axis=-1)).sum(axis=-1) / 2
 
     @cached_property
     def shaft_power(self) -> Array:
-        """Mean power that damping of each shaft turns to heat [W], (…, V, S)."""
+        """Return the mean power that damping of each shaft turns to heat [W], (…, V, S)."""
         train, w = self.train, self.frequency[..., None]
         viscous = w**2 * (train.c + 0 * train.k)[..., None, None, :]
         inner = w * (train.k * train.eta)[..., None, None, :]
@@ -171,6 +171,6 @@ class Response:
 
     @cached_property
     def ground_power(self) -> Array:
-        """Mean power that damping of each inertia to the ground takes [W], (…, V, n)."""
+        """Return the mean power that damping of each inertia to the ground takes [W], (…, V, n)."""
         speed = (self.frequency[..., None] * np.abs(self.angles)) ** 2
         return np.asarray(speed.sum(axis=-2) * self.ground / 2)

@@ -17,34 +17,37 @@ SUMMED = "solved numerically by one linear system for each speed and order, and 
 
 
 def _across(values: Array) -> Array:
-    """(…, speed, member) as (…, member, speed)."""
+    """Return (…, speed, member) as (…, member, speed)."""
     return np.asarray(np.swapaxes(values, -1, -2))
 
 
 @on_paper(SUMMED)
 @units(None, returns="N*m")
 def vibratory_torque(response: Response) -> Array:
-    """Of the shafts [N m], (…, S, V)."""
+    """Return the vibratory torque of the shafts [N m], (…, S, V)."""
     return _across(half_swing(np.swapaxes(response.shaft_torque, -1, -2)))
 
 
 @on_paper(SUMMED)
 @units(None, returns="rad")
 def vibratory_twist(response: Response) -> Array:
-    """Of the shafts [rad], (…, S, V)."""
+    """Return the vibratory twist of the shafts [rad], (…, S, V)."""
     return _across(half_swing(np.swapaxes(response.twist, -1, -2)))
 
 
 @on_paper(SUMMED)
 @units(None, returns="rad")
 def vibratory_angle(response: Response) -> Array:
-    """Of the inertias [rad], (…, n, V)."""
+    """Return the vibratory angle of the inertias [rad], (…, n, V)."""
     return _across(half_swing(np.swapaxes(response.angles, -1, -2)))
 
 
 @units("N*m", "m**3", returns="Pa", latex=r"\frac{{{0}}}{{{1}}}")
 def stress_of(torque: Array, section: Array) -> Array:
-    """Shear stress [Pa] of torques [N m; ..., shaft, speed]; 0 where a shaft has a section modulus of 0."""
+    """Return the shear stress [Pa] of torques [N m; ..., shaft, speed].
+
+    0 where a shaft has a section modulus of 0.
+    """
     modulus = np.asarray(section)[..., None] if np.ndim(section) else np.asarray(section)
     return np.asarray(torque / np.where(modulus == 0, np.inf, modulus))
 
@@ -146,7 +149,10 @@ def power_lost(shafts: Array, inertias: Array) -> Array:
     latex=r"\max_{{n}}\frac{{\left|{0}-{1}\right|}}{{\tfrac12\sum h\omega\left|\Phi T\right|}}",
 )
 def power_error(put_in: Array, lost: Array, response: Response) -> Array:
-    """Difference of the powers over the apparent power, the largest of all speeds, (…); 0 below 1e-12."""
+    """Return the difference of the powers over the apparent power, the largest of all speeds, (…).
+
+    0 below 1e-12.
+    """
     size = response.apparent_power
     error = (np.abs(put_in - lost) / np.where(size == 0, 1, size)).max(axis=-1)
     return np.where(error < 1e-12, 0.0, error)[()]

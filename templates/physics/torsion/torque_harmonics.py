@@ -51,7 +51,10 @@ class Cycle:
 
 
 def cycle_of(theta: Array) -> Cycle | None:
-    """The cycle of crank angles [rad], (K,), without a last point that repeats the first; None if none."""
+    """Return the cycle of crank angles [rad], (K,), without a last point that repeats the first.
+
+    None if none.
+    """
     if np.ndim(theta) != 1 or not 8 <= theta.size <= MOST_ANGLES:
         return None
     step = float(theta[-1] - theta[0]) / (theta.size - 1)
@@ -73,7 +76,10 @@ def is_one_cycle(theta: Array) -> bool:
 
 @units("rad", "N*m", returns="1")
 def closes(theta: Array, T: Array) -> bool:
-    """True if a last point of a torque [N m; ..., angle] that repeats the first angle has its torque."""
+    """Return whether a last point of a torque [N m.
+
+    ..., angle] that repeats the first angle has its torque.
+    """
     cycle = cycle_of(theta)
     if cycle is None or np.ndim(T) == 0 or np.shape(T)[-1] != cycle.count + 1:
         return True
@@ -156,7 +162,10 @@ def _extreme(amplitudes: Phasors, curve: Array) -> Array:
 
 
 def _tops(curve: Array, low: Array) -> Integers:
-    """Where the peak of each curve, (R, N), is, by parabolas; none is more than `low` above its sample."""
+    """Return where the peak of each curve, (R, N), is, by parabolas.
+
+    None is more than `low` above its sample.
+    """
     largest = curve.max(axis=-1)
     is_high = curve >= (largest - low)[:, None]
     is_high[np.isnan(largest), 0] = True

@@ -41,7 +41,7 @@ class TrainLayout:
 
     @cached_property
     def difference(self) -> Array:
-        """Twist of each shaft by the angles of the inertias, (S, n)."""
+        """Return the twist of each shaft by the angles of the inertias, (S, n)."""
         matrix = np.zeros((len(self.shafts), self.count))
         for row, (first, second) in zip(matrix, self.shafts, strict=True):
             row[first] += 1
@@ -51,7 +51,7 @@ class TrainLayout:
 
     @cached_property
     def reduction(self) -> Array:
-        """B, (n, q): the angles of all inertias by those that no gear drives."""
+        """Return B, (n, q): the angles of all inertias by those that no gear drives."""
         drivers = {second: (first, ratio) for (first, second), ratio in self._driven()}
         free = [i for i in range(self.count) if i not in drivers]
         columns = {inertia: column for column, inertia in enumerate(free)}
@@ -66,7 +66,7 @@ class TrainLayout:
 
     @cached_property
     def speeds(self) -> Array:
-        """Mean speed of each inertia over that of the first, (n,); NaN where nothing joins it."""
+        """Return the mean speed of each inertia over that of the first, (n,); NaN where nothing joins it."""
         joined: defaultdict[int, list[tuple[int, float]]] = defaultdict(list)
         for (first, second), ratio in self._turning():
             joined[first].append((second, ratio))
@@ -83,7 +83,7 @@ class TrainLayout:
 
     @property
     def turns_freely(self) -> bool:
-        """Whether all shafts and gears keep the mean speeds of the inertias that they join."""
+        """Return whether all shafts and gears keep the mean speeds of the inertias that they join."""
         return all(
             abs(self.speeds[second] - ratio * self.speeds[first]) <= _SAME * abs(self.speeds[second])
             for (first, second), ratio in self._turning()
@@ -92,7 +92,7 @@ class TrainLayout:
 
     @property
     def has_gear_loop(self) -> bool:
-        """Whether gears drive an inertia twice, or in a circle."""
+        """Return whether gears drive an inertia twice, or in a circle."""
         drivers = {int(second): int(first) for first, second in self.gears}
         if len(drivers) < len(self.gears):
             return True
@@ -120,7 +120,10 @@ class TrainLayout:
 def train_layout(
     J: Array, first: Array, second: Array, drivers: Array, driven: Array, ratios: Array
 ) -> TrainLayout | None:
-    """The layout; None where lists do not fit or name what does not exist, which other rules refuse."""
+    """Return the layout.
+
+    None where lists do not fit or name what does not exist, which other rules refuse.
+    """
     count = np.shape(J)[-1]
     if not (
         are_few(J, first, drivers)

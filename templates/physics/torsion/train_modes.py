@@ -56,7 +56,10 @@ def mode_shapes(train: Train) -> Array:
 
 
 def _own_basis(vectors: Array) -> Array:
-    """The same space (m, q) by vectors that do not depend on how it was calculated: the first angle leads."""
+    """Return the same space (m, q) by vectors that do not depend on how it was calculated.
+
+    The first angle leads.
+    """
     projector, basis = vectors.T @ vectors, np.zeros((0, vectors.shape[-1]))
     for column in projector:
         rest = column - basis.T @ (basis @ column)
