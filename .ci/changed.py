@@ -87,10 +87,8 @@ ABOUT = {
         *("templates/physics/engine/*.py", "cad/cranks/*.py", "cad/models/crankshaft_v2.py"),
     ),
     "tests/app/test_events_resumed.py": ("app/*event*.py", "app/api/resuming.py"),
-    "tests/app/test_express_hostile.py": (
-        "app/api/express.py",
-        "app/http/strict_requests.py",
-        "app/http/problems.py",
+    "tests/app/test_evaluate_hostile.py": (
+        *("app/calculations/routes/evaluate.py", "app/http/strict_requests.py", "app/http/problems.py"),
     ),
     "tests/app/test_linear_input.py": ("app/reports/*.py", "app/http/problems.py", "app/designs/*.py"),
     "tests/app/test_list_parameters.py": ("app/designs/*.py", "app/web/*.py", "cad/lists.py"),

@@ -22,7 +22,6 @@ from app.designs.decisions import Decisions
 from app.designs.labels import Labelling
 from app.designs.long_answers import LongAnswers
 from app.designs.previewing import Previews
-from app.designs.quick import QuickSaves
 from app.designs.regeneration import Regeneration
 from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
 from app.designs.solved import solved
@@ -159,7 +158,6 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
         threads=Threads(),
         answering=Answering(calculations.pool, calculations.jobs, settings.calculation_deadline),
         designs=designs,
-        quick=QuickSaves(designs),
         labelling=Labelling(designs),
         previews=previews,
         decisions=decisions,

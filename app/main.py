@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 from fastapi import FastAPI, Response
 from fastapi_offline import FastAPIOffline
 
-from app.api.express import Express
 from app.approvals.routes import router as approvals
 from app.assembly import assemble
 from app.calculations.routes.curves import router as curves
@@ -158,7 +157,6 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.include_router(problems.router)
     problems.install(app)
     openapi.install(app)
-    app.add_middleware(Express)  # the innermost: all others see its answers
     pages.install(app)
     roles.install(app)
     app.add_middleware(Access, refuse=_refused)

@@ -15,7 +15,6 @@ from app.designs.asking import Asking
 from app.designs.decisions import Decisions
 from app.designs.labels import Labelling
 from app.designs.previewing import Previews
-from app.designs.quick import QuickSaves
 from app.designs.schemas.solution import DesignSolution
 from app.designs.service import Designs
 from app.designs.variants.detail import VariantDetails
@@ -54,7 +53,6 @@ class Services:
     threads: Threads
     answering: Answering
     designs: Designs
-    quick: QuickSaves
     labelling: Labelling
     previews: Previews
     decisions: Decisions

@@ -1,17 +1,19 @@
 """Requirements for every request: a small body, valid JSON, a precondition on changes.
 
 `StrictRoute` replaces FastAPI's lenient reading of bodies: pydantic's parser refuses lone surrogates and deep
-nesting, and nothing is guessed from a missing or wrong content type.
+nesting, and nothing is guessed from a missing or wrong content type. `PlainRoute` reads just as strictly, and
+calls its endpoint without FastAPI's machinery.
 """
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import AsyncIterator, Awaitable, Callable, Container, Coroutine
+from collections.abc import AsyncIterator, Awaitable, Callable, Container, Coroutine, Mapping
 from json import JSONDecodeError
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fastapi import Request, Response
+from fastapi.exceptions import RequestValidationError
 from fastapi.routing import APIRoute
 from pydantic_core import from_json
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -20,6 +22,9 @@ from app.http import nul
 from app.http.pace import Pace
 from app.plain import Json
 from app.workers.pieces import PIECE, Pieces
+
+if TYPE_CHECKING:
+    from fastapi._compat import ModelField
 
 JSON_TYPES = {"application/json"}
 PATCH_TYPES = {"application/json", "application/merge-patch+json"}
@@ -136,29 +141,40 @@ class StrictRoute(APIRoute):
 
     def __init__(self, path: str, endpoint: Callable[..., object], **options: Any) -> None:  # as FastAPI
         super().__init__(path, endpoint, **{**options, "response_model_exclude_unset": True})
+        self.takes = frozenset(self.methods or ())
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[object, None, Response]]:
         """FastAPI's handler behind the checks."""
         handler = super().get_route_handler()
-        takes_json = self.body_field is not None
-        is_patch = "PATCH" in (self.methods or ())
-        is_change = is_patch or "PUT" in (self.methods or ())
 
         async def strict(request: Request) -> Response:
-            await _refreshed(request)
-            nul.refuse_in_address(request)
-            if is_change and "if-match" not in request.headers:
-                raise PreconditionRequired('send If-Match with the ETag of what you read, such as "3"')
             strictly = StrictRequest(request.scope, request.receive)
-            if takes_json:
-                check_type(request, PATCH_TYPES if is_patch else JSON_TYPES)
-                # here, because FastAPI answers whatever is raised in its reading with 400
-                await self._admit(strictly)
-                if await _check_intricacy(strictly) and nul.has(await strictly.body()):
-                    nul.refuse_in(await _read(strictly))
-            return await self.shortcut(strictly) or await handler(strictly)
+            await self.check(strictly)
+            return await handler(strictly)
 
         return strict
+
+    async def check(self, request: StrictRequest) -> None:
+        """Refuse what is wrong before the meaning of a request is looked at.
+
+        Raises
+        ------
+        HttpError
+            The precondition is missing, or the body is of another type, too large or too intricate.
+        HTTPException, InvalidInputs
+            A text has U+0000.
+        """
+        await _refreshed(request)
+        nul.refuse_in_address(request)
+        is_patch = "PATCH" in self.takes
+        if (is_patch or "PUT" in self.takes) and "if-match" not in request.headers:
+            raise PreconditionRequired('send If-Match with the ETag of what you read, such as "3"')
+        if self.body_field is not None:
+            check_type(request, PATCH_TYPES if is_patch else JSON_TYPES)
+            # here, because FastAPI answers whatever is raised in its reading with 400
+            await self._admit(request)
+            if await _check_intricacy(request) and nul.has(await request.body()):
+                nul.refuse_in(await _read(request))
 
     async def _admit(self, request: StrictRequest) -> None:
         try:
@@ -170,9 +186,97 @@ class StrictRoute(APIRoute):
     async def admit(self, request: StrictRequest) -> None:
         """Raise what refuses a request by its head alone; its body has not come yet."""
 
+
+class _Parameter:
+    """A part of the path, of the query or a header, as an endpoint takes it."""
+
+    def __init__(self, kind: str, field: ModelField) -> None:
+        self.name, self.alias, self._place = field.name, field.alias, (kind, field.alias)
+        self._validate, self._default = field.validate, field.field_info.default
+        self._is_required = field.field_info.is_required()
+
+    def value(self, received: Mapping[str, str], faults: list[object]) -> object:
+        """Return the value that was received, or its default; add what is wrong with it to the faults."""
+        if (text := received.get(self.alias)) is None:
+            faults += [_missing(*self._place)] if self._is_required else ()
+            return self._default
+        value, wrong = self._validate(text, loc=self._place)
+        faults += wrong
+        return value
+
+
+class PlainRoute(StrictRoute):
+    """A route that reads a request and calls its endpoint by itself, for operations that are called most.
+
+    It is declared and described as any other, and refuses with the same errors. Its endpoint is a coroutine
+    that takes the request first, then path, query, headers and body, and returns a Response; it has no
+    dependencies but the role that it needs.
+    """
+
+    def __init__(self, path: str, endpoint: Callable[..., Awaitable[Response]], **options: Any) -> None:
+        super().__init__(path, endpoint, **options)
+        declared = self.dependant
+        self._in_path = [_Parameter("path", field) for field in declared.path_params]
+        self._in_query = [_Parameter("query", field) for field in declared.query_params]
+        self._in_headers = [_Parameter("header", field) for field in declared.header_params]
+        self._body = declared.body_params[0].name if self.body_field else None
+
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Read the request, and send what the endpoint answers."""
+        if scope["method"] not in self.takes:
+            await super().handle(scope, receive, send)  # 405
+            return
+        request = StrictRequest(scope, receive)
+        await self.check(request)
+        response = await self.shortcut(request) or await self.endpoint(request, **await self._values(request))
+        await response(scope, receive, send)
+
     async def shortcut(self, request: StrictRequest) -> Response | None:
-        """An answer past FastAPI's general machinery, where a route can read a plain request by itself."""
+        """Return an answer for which the body need not be parsed here; None in general."""
         return None
+
+    async def _values(self, request: StrictRequest) -> dict[str, object]:
+        """Return what the endpoint takes.
+
+        Raises
+        ------
+        RequestValidationError
+            With everything that is wrong.
+        """
+        faults: list[object] = []
+        values = {one.name: one.value(request.path_params, faults) for one in self._in_path}
+        values |= {one.name: one.value(request.query_params, faults) for one in self._in_query}
+        values |= {one.name: one.value(request.headers, faults) for one in self._in_headers}
+        if self._body is not None:
+            values[self._body] = await self._read_body(request, faults)
+        if faults:
+            raise RequestValidationError(faults)
+        return values
+
+    async def _read_body(self, request: StrictRequest, faults: list[object]) -> object:
+        assert self.body_field is not None
+        if not await request.body():
+            if self.body_field.field_info.is_required():
+                faults.append(_missing("body"))
+            return None
+        try:
+            raw = await request.json()
+        except JSONDecodeError as error:
+            raise RequestValidationError([_not_json(error)]) from None
+        body, wrong = self.body_field.validate(raw, loc=("body",))
+        faults += wrong
+        return body
+
+
+def _missing(*place: str) -> dict[str, object]:
+    """Return the fault of something that is required and was not sent."""
+    return {"type": "missing", "loc": place, "msg": "Field required", "input": None}
+
+
+def _not_json(error: JSONDecodeError) -> dict[str, object]:
+    """Return the fault of a body that is no JSON."""
+    place, reason = ("body", error.pos), {"error": error.msg}
+    return {"type": "json_invalid", "loc": place, "msg": "JSON decode error", "input": {}, "ctx": reason}
 
 
 async def _refreshed(request: Request) -> None:

@@ -1,4 +1,4 @@
-"""Oil film of a journal bearing under a load that repeats, fed by grooves and holes, at four levels.
+"""Oil film of a journal bearing under a load that repeats, fed by grooves and holes, at five levels.
 
 The orbit of the journal, the smallest film and where in the cycle it is, pressure, loss and flow.
 """
@@ -44,21 +44,25 @@ STARVED = (
 UNBORNE = (
     "no orbit that repeats bears this load with a film thicker than 2e-6 of the clearance: give less load in "
     "kN, or more dynamic_viscosity in mPa*s, speed in rpm or bearing_width in mm; no film bears a load that "
-    "turns at the mean speed of journal and sleeve"
+    "turns at the mean speed of journal and sleeve; at level flooded it may not repeat in 8 cycles"
 )
 OUTSIDE = (
     "below, the load does not hold the journal in an orbit: give more load in kN or a larger "
     "diametral_clearance in mm; above, no film is left: give less load, or more dynamic_viscosity in mPa*s"
 )
-MARCHED_ONLY = "level supplied alone follows the oil; a starved film has no flow that repeats"
-UNKNOWN_STEP = "no film repeats, or the gap changes too much from ring to ring to read an error from it"
+SUPPLIED_ONLY = "level supplied alone follows the oil that is fed; a starved film has no flow that repeats"
+MARCHED_ONLY = "levels flooded and supplied alone are marched in time"
+UNKNOWN_STEP = (
+    "no film repeats, or the gap changes too much from ring to ring to read an error from it; that of level "
+    "flooded is not known"
+)
 MARCH_IT = "take level supplied"
 NO_FEED = "no groove and no hole is given"
 CYCLE = "crank_angle"
 
 
 class OilFilmCycle(FedBearing):
-    """Oil film of a journal bearing under a load that repeats, fed by grooves and holes, at four levels.
+    """Oil film of a journal bearing under a load that repeats, fed by grooves and holes, at five levels.
 
     The orbit of the journal by the mobility method, with or without a groove, or by a film that conserves its
     oil and is fed as an engine feeds it; the smallest film and where in the cycle it is, pressure, loss and
@@ -89,6 +93,10 @@ class OilFilmCycle(FedBearing):
     the groove's middle. In the groove the pressure is p_s, and over its lands it falls evenly.
     Both formulas are this template's own. The first is exact for a groove all around; for other grooves they
     were compared with level supplied. Always full of oil; holes do not count.
+    Level flooded: mass-conserving cavities, oil fed at ambient pressure along the widest gap and nowhere
+    else; groove, holes and supply pressure do not count. Where the load changes side the film starves, and
+    the journal crosses what is empty at once. One point at a time, ten seconds or more; 8 cycles at most, and
+    refused where the last two differ by more than 2 % of the gap, as with light loads.
     Level supplied: conserves the oil, which enters by groove and holes alone. One point at a time, seconds.
     Where every hole is under the load for more than 60 % of the cycle it goes on, on finer meshes: there the
     film depends on what enters at the edges of the holes.
@@ -97,7 +105,7 @@ class OilFilmCycle(FedBearing):
     Boundary conditions differ between the levels and from those of oil_film 2: see boundary_condition.
     Largest pressure, loss and flow follow from the film under the load along the orbit. Power loss is the
     shear of the oil by the difference of journal and sleeve speed, and the work of the load on the film. Its
-    formula is that of a full film; level supplied takes the shear of the oil that is there.
+    formula is that of a full film; levels flooded and supplied take the shear of the oil that is there.
     Side flow is what the motion of the journal displaces from the ends; at level supplied also what the
     supply pressure drives.
     Rigid and isoviscous: criteria with warnings say where the pressure deforms steel by the clearance, or
@@ -107,10 +115,10 @@ class OilFilmCycle(FedBearing):
     Two errors are stated. numerical_error, an output, bounds the error of the smallest film by the step, from
     orbits on three rings of crank angles. At level supplied it is the change from cycle to cycle; where holes
     are under the load for more than 60 % of the cycle, three times the change from the last but one mesh is
-    added.
+    added. At level flooded it is null.
     The error in the answer is that of the model: how far the level may be from level supplied, a one-sided
     bound from random duties of the same kind of supply. It is null where fewer than 59 duties support it,
-    where it failed on fresh duties, where no or several inlets are given, and for pressures.
+    where it failed on fresh duties, where no or several inlets are given, for pressures and at level flooded.
 
     References
     ----------
@@ -120,9 +128,11 @@ class OilFilmCycle(FedBearing):
     Woloszynski, Podsiadlo, Stachowiak: Tribology Letters 58:18, 2015, for mass-conserving cavitation.
     """
 
-    levels = ("mobility_short", "mobility", "mobility_grooved", "supplied")
+    levels = ("mobility_short", "mobility", "mobility_grooved", "flooded", "supplied")
     default_level = "mobility"
-    most_points = {"mobility_short": 20_000, "mobility": 20_000, "mobility_grooved": 20_000, "supplied": 1}
+    most_points = {
+        "mobility_short": 20_000, "mobility": 20_000, "mobility_grooved": 20_000, "flooded": 1, "supplied": 1,
+    }  # fmt: skip
     precision = 1e-7
     level_precision = {"supplied": 1e-6}  # its numerical_error is a small difference of films
     example = {
@@ -267,8 +277,8 @@ class OilFilmCycle(FedBearing):
 
     @shared
     def duty(self) -> Duty:
-        """What the bearing has to do."""
-        return replace(self.motion, scale=self.s)
+        """What the bearing has to do, where the load number is within its limits."""
+        return replace(self.motion, scale=self.S_max / self.F_max)
 
     @formula("1", "feed under load", symbol=r"\tau_{F}", absent=NO_FEED,
              latex=r"\text{share of the cycle in which all inlets lie within 60° of the load}")  # fmt: skip
@@ -288,7 +298,7 @@ class OilFilmCycle(FedBearing):
 
     @formula(
         "1", "maximum eccentricity", symbol=r"\epsilon_{max}", lt=1, absent=STARVED, remedy=UNBORNE,
-        source=ORBIT, assumes=("b", "b_g", "inlets", "S_max"),
+        source=ORBIT, assumes=("b", "b_g", "inlets"),
     )  # fmt: skip
     def eps_max(self) -> Array:
         """Relative; between the angles too."""
@@ -376,12 +386,12 @@ class OilFilmCycle(FedBearing):
         """Of the smallest film, relative; without the error of the model."""
         return self.orbit.numerical_error
 
-    @text("verdict", absent=MARCHED_ONLY)
+    @text("verdict", absent=SUPPLIED_ONLY)
     def verdict(self) -> str:
-        """End of the march."""
+        """End of the march at level supplied."""
         return self.any_orbit.verdict
 
-    @text("verdict reason", absent="a film repeats, or the level does not follow the oil")
+    @text("verdict reason", absent="a film repeats, or the level does not follow the oil that is fed")
     def why(self) -> str:
         """Why the orbit does not repeat."""
         return self.any_orbit.reason
@@ -391,12 +401,12 @@ class OilFilmCycle(FedBearing):
         """On all meshes."""
         return self.any_orbit.cycles
 
-    @formula("1", "mass balance", symbol=r"\delta_{m}", absent=MARCHED_ONLY)
+    @formula("1", "mass balance", symbol=r"\delta_{m}", absent=SUPPLIED_ONLY)
     def mass_balance(self) -> Array:
         """Oil fed less oil lost and stored in the last cycle, over the oil lost."""
         return self.any_orbit.mass_balance
 
-    @formula("l/min", "supply flow", symbol="Q_{s}", absent=MARCHED_ONLY,
+    @formula("l/min", "supply flow", symbol="Q_{s}", absent=SUPPLIED_ONLY,
              latex=r"\frac{W\,D\,c\,\Omega}{2}\,\bar{q}_{s}")  # fmt: skip
     def Q_s(self) -> Array:
         """What groove and holes feed, mean over the cycle."""

@@ -41,9 +41,9 @@ def test_points_multiply_the_cost():
     assert many_points > 50 * one
 
 
-def test_transient_takes_longest():
-    cls = CATALOGUE.get("oil_film_cycle", 1)
-    assert estimated_seconds(cls, cls.example, "transient") > 10
+def test_level_flooded_takes_longest():
+    cls = CATALOGUE.get("oil_film_cycle", 3)
+    assert estimated_seconds(cls, cls.example, "flooded") > 10
 
 
 def test_outputs_that_do_not_depend_on_the_level_cost_nothing_of_it():

@@ -8,9 +8,14 @@ import pytest
 from templates.physics.cavities.transient_balance import transient_mesh
 from templates.physics.cavities.transient_film import State
 from templates.physics.orbits import transient_orbit
-from templates.physics.orbits.cyclic_film import _marched, _sampled
 from templates.physics.orbits.journal_orbit import CyclicLoad
-from templates.physics.orbits.transient_orbit import MOST_CYCLES, REPEATS, Marching
+from templates.physics.orbits.transient_orbit import (
+    MOST_CYCLES,
+    REPEATS,
+    Marching,
+    along_march,
+    sampled_orbit,
+)
 
 ANGLE = np.radians(np.arange(-170.0, 190.0, 30.0))
 LOAD = CyclicLoad(ANGLE, 2 * np.pi, np.ones((2, 1, 12)), np.full((1, 12), 0.5))
@@ -57,7 +62,7 @@ def test_an_orbit_that_does_not_repeat_is_given_up(monkeypatch):
 
 def test_the_smallest_gap_of_a_marched_orbit_is_where_its_node_is_in_the_cycle_of_the_load(monkeypatch):
     orbit, _ = run_in(monkeypatch, 0.02)
-    sampled = _sampled(orbit, LOAD)
+    sampled = sampled_orbit(orbit, LOAD)
     assert sampled.least_gap[0] == pytest.approx(1 - np.hypot(*orbit.eps).max())
     assert sampled.least_angle[0] == pytest.approx(np.radians(-170 + 4 * 30))
     assert ANGLE[0] <= sampled.least_angle[0] < ANGLE[0] + 2 * np.pi
@@ -86,5 +91,5 @@ def test_analytic_work_of_a_force_along_a_circle(turns):
     nothing = np.zeros(360)
     orbit = SimpleNamespace(eps=0.4 * circle, place=angle, P_max=nothing, side_flow=nothing, shear=nothing)
     load = CyclicLoad(angle, 2 * np.pi, ahead[:, None], np.zeros((1, 360)))
-    work = _marched(orbit, load, orbit.eps[:, None])[3]
+    work = along_march(orbit, load, orbit.eps[:, None])[3]
     assert work == pytest.approx(np.full((1, 360), 0.4 * turns), rel=1e-3)

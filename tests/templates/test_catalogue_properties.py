@@ -51,6 +51,7 @@ test_golden_at_length.py calculates the others."""
 SLOW_LEVELS = {
     ("oil_film_cycle", 1, "transient"),
     ("oil_film_cycle", 2, "supplied"),
+    ("oil_film_cycle", 3, "flooded"),
     ("oil_film_cycle", 3, "supplied"),
     ("cycle_heat_balance", 2, "supplied"),
     ("thermal_film", 1, "fine_field"),

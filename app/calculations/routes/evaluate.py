@@ -1,7 +1,7 @@
 """`/templates/{id}/versions/{n}/evaluate` and `…/solve` and `…/worksheet`.
 
 What is cheap is calculated here, in the event loop or a thread; what is expensive, or comes in a large body,
-goes to a calculation process as it is. `app.api.express` answers the plainest requests before they come here.
+goes to a calculation process as it is.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pydantic_core import to_json
 from starlette.concurrency import run_in_threadpool
 
 from app.api.answering import to_try
-from app.api.dependencies import TheAnswering, TheCatalogues, Units, services_of
+from app.api.dependencies import Units, services_of
 from app.api.waiting import LATER
 from app.calculations.array_files import NPY, Form, npy
 from app.calculations.bodies import EvaluateIn, SolveIn
@@ -26,7 +26,7 @@ from app.calculations.size import points
 from app.calculations.worksheet import run_worksheet
 from app.catalogue.routes.templates import Id, Number
 from app.http.roles import needs
-from app.http.strict_requests import StrictRequest, StrictRoute
+from app.http.strict_requests import PlainRoute, StrictRequest
 from app.presentation.units import System
 from app.schemas.problems import Responses, refusals
 from app.workers.pieces import Pieces
@@ -45,7 +45,7 @@ Prefer = Annotated[
 ]
 
 
-class LargeRoute(StrictRoute):
+class LargeRoute(PlainRoute):
     """A route with a template, its version and a body, which hands a large body on without parsing it.
 
     To parse 16 MB holds the interpreter, and with it the server, for a second.
@@ -92,21 +92,20 @@ router = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=L
     dependencies=[needs("viewer")],
 )
 async def evaluate_template(
+    request: StrictRequest,
     id: Id,
     number: Number,
     body: EvaluateIn,
-    catalogues: TheCatalogues,
-    answering: TheAnswering,
-    request: Request,
     prefer: Prefer = None,
 ) -> Response:
     """Evaluate a template: inputs in any unit, scalars or arrays; only what is asked for is computed."""
-    cls = await to_try(catalogues, id, number)
+    services = services_of(request)
+    cls = await to_try(services.catalogues, id, number)
     form = _form(request, "evaluate")
     if form == "json" and points(body.inputs) <= FEW and len(body.inputs) <= FEW and is_quick(cls):
         return _json(to_json(run_evaluate(cls, body)))
     if estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs) > EXPENSIVE:
-        return await answering.answer(request, await _question(request, id, number, "evaluate"))
+        return await services.answering.answer(request, await _question(request, id, number, "evaluate"))
     if form == "npy":
         return Response(await run_in_threadpool(lambda: npy(evaluated(cls, body))), media_type=NPY)
     return _json(await run_in_threadpool(lambda: to_json(run_evaluate(cls, body))))
@@ -119,19 +118,18 @@ async def evaluate_template(
     dependencies=[needs("viewer")],
 )
 async def solve_template(
+    request: StrictRequest,
     id: Id,
     number: Number,
     body: SolveIn,
-    catalogues: TheCatalogues,
-    answering: TheAnswering,
-    request: Request,
     prefer: Prefer = None,
 ) -> Response:
     """Find the input that gives a wanted output, between bounds."""
-    cls = await to_try(catalogues, id, number)
+    services = services_of(request)
+    cls = await to_try(services.catalogues, id, number)
     seconds = solving_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs, body.target)
     if seconds > EXPENSIVE:
-        return await answering.answer(request, await _question(request, id, number, "solve"))
+        return await services.answering.answer(request, await _question(request, id, number, "solve"))
     return _json(await run_in_threadpool(lambda: to_json(run_solve(cls, body))))
 
 
@@ -145,20 +143,21 @@ worksheets = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_cla
     dependencies=[needs("viewer")],
 )
 async def write_worksheet(
+    request: StrictRequest,
     id: Id,
     number: Number,
     body: EvaluateIn,
-    catalogues: TheCatalogues,
-    answering: TheAnswering,
-    request: Request,
     units: Units = "si",
     prefer: Prefer = None,
 ) -> Response:
     """Evaluate a template, with every formula written out: symbol = expression = numbers = result."""
-    cls = await to_try(catalogues, id, number)
+    services = services_of(request)
+    cls = await to_try(services.catalogues, id, number)
     seconds = estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs)
     if seconds + writing_seconds(cls, body.outputs) > EXPENSIVE:
-        return await answering.answer(request, await _question(request, id, number, "worksheet", units))
+        return await services.answering.answer(
+            request, await _question(request, id, number, "worksheet", units)
+        )
     return _json(await run_in_threadpool(lambda: to_json(run_worksheet(cls, body, units))))
 
 

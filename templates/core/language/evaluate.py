@@ -213,11 +213,13 @@ def _with_reasons(
 ) -> tuple[Array, NDArray[np.object_] | None]:
     """Return the values with NaN where a mask of anything beneath covers them, and the reason for each NaN.
 
-    A profile has one reason as a whole.
+    A profile has one reason as a whole. A result beneath that means nothing is the reason before one that is
+    only absent.
     """
     beneath = template.depends_on(formula.attribute)
     profile = formula if isinstance(formula, Profile) else None
     masks = [mask for mask in template.ledger.masks if not beneath.isdisjoint(mask.names)]
+    masks.sort(key=lambda mask: mask.explains)
     if not masks and not np.isnan(si).any():
         return si, None
     points = si.shape[: -profile.axes] if profile else si.shape

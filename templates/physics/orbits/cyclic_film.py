@@ -20,7 +20,13 @@ from templates.physics.orbits.journal_orbit import CyclicLoad, Orbit, periodic_o
 from templates.physics.orbits.mobility_law import MapLaw, MobilityLaw, ShortLaw
 from templates.physics.orbits.mobility_map import NARROWEST, WIDEST, mapped_film_under_load
 from templates.physics.orbits.short_mobility import short_film_under_load
-from templates.physics.orbits.transient_orbit import Marching, TransientOrbit, transient_orbit
+from templates.physics.orbits.transient_orbit import (
+    Marching,
+    TransientOrbit,
+    along_march,
+    sampled_orbit,
+    transient_orbit,
+)
 
 BOUNDARY = {
     "mobility_short": "half film: p = 0 at the ends and wherever the gap widens; always full of oil",
@@ -140,7 +146,7 @@ def cycle_orbit(level: str, duty: Duty, marching: Marching = MARCHING) -> CycleO
     marched = None
     if np.isfinite(start.least_gap).all():
         marched = transient_orbit(cases.load, float(cases.ratio[0]), start.eps[:, 0, 0], marching)
-    return _shaped(_sampled(marched, cases.load), cases.points, marched)
+    return _shaped(sampled_orbit(marched, cases.load), cases.points, marched)
 
 
 @on_paper(
@@ -157,7 +163,7 @@ def cycle_film(level: str, duty: Duty, orbit: CycleOrbit) -> CycleFilm:
     eps = np.stack([orbit.eps_x, orbit.eps_y]).reshape(2, *load.w.shape)
     weight = weights(load.angle, load.period) / load.period
     if orbit.marched is not None:
-        P, flow, shear, work = _marched(orbit.marched, load, eps)
+        P, flow, shear, work = along_march(orbit.marched, load, eps)
     else:
         P, flow, shear, work = _under_load(level, cases.ratio, load.S, eps)
     top = np.where(np.isnan(P), -1.0, P).argmax(axis=-1)
@@ -264,28 +270,3 @@ def _shaped(orbit: Orbit, points: tuple[int, ...], marched: TransientOrbit | Non
         step_error=orbit.step_error.reshape(points)[()],
         marched=marched,
     )
-
-
-def _sampled(marched: TransientOrbit | None, load: CyclicLoad) -> Orbit:
-    """Return a marched orbit at the load's angles; NaN if there is none."""
-    if marched is None:
-        return Orbit(np.full(load.S.shape, np.nan), *np.full((5, load.w.shape[0]), np.nan))
-    gap = 1 - np.hypot(*marched.eps)
-    k = int(gap.argmin())
-    eps = np.stack([_at(marched, e, load) for e in marched.eps])
-    angle = load.angle[0] + (marched.place[k] - load.angle[0]) % load.period
-    unknown = np.array([np.nan])
-    return Orbit(eps[:, None], gap[[k]], np.array([angle]), unknown, unknown, unknown)
-
-
-def _at(marched: TransientOrbit, values: Array, load: CyclicLoad) -> Array:
-    return np.interp(load.angle, marched.place, values, period=load.period)
-
-
-def _marched(marched: TransientOrbit, load: CyclicLoad, eps: Array) -> tuple[Array, Array, Array, Array]:
-    """Return the pressure, side flow, shear and the load's work on the film, (1, N) each."""
-    P, flow, shear = (_at(marched, v, load)[None] for v in (marched.P_max, marched.side_flow, marched.shear))
-    step = load.period / marched.place.size
-    rate = [_at(marched, (np.roll(e, -1) - np.roll(e, 1)) / (2 * step), load) for e in marched.eps]
-    squeezing = np.stack(rate)[:, None] - load.w * np.stack([-eps[1], eps[0]])
-    return P, flow, shear, (load.S * squeezing).sum(axis=0)

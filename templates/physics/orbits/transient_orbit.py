@@ -14,7 +14,7 @@ from templates.core.progress import report
 from templates.physics.cavities.transient_balance import Journal, transient_mesh
 from templates.physics.cavities.transient_film import State, stepped
 from templates.physics.films.film_equations import dual_widths
-from templates.physics.orbits.journal_orbit import CyclicLoad
+from templates.physics.orbits.journal_orbit import CyclicLoad, Orbit
 
 MOST_CYCLES = 8
 """Cycles after which an orbit that does not repeat is given up."""
@@ -93,6 +93,31 @@ def transient_orbit(
             difference = float((change / gap).max())
         before, states = eps, states[-2:]
     return None
+
+
+def sampled_orbit(marched: TransientOrbit | None, load: CyclicLoad) -> Orbit:
+    """Return a marched orbit at the load's angles; NaN if there is none."""
+    if marched is None:
+        return Orbit(np.full(load.S.shape, np.nan), *np.full((5, load.w.shape[0]), np.nan))
+    gap = 1 - np.hypot(*marched.eps)
+    k = int(gap.argmin())
+    eps = np.stack([_at(marched, e, load) for e in marched.eps])
+    angle = load.angle[0] + (marched.place[k] - load.angle[0]) % load.period
+    unknown = np.array([np.nan])
+    return Orbit(eps[:, None], gap[[k]], np.array([angle]), unknown, gap[[k]], unknown)
+
+
+def along_march(marched: TransientOrbit, load: CyclicLoad, eps: Array) -> tuple[Array, Array, Array, Array]:
+    """Return the pressure, side flow, shear and the load's work on the film, (1, N) each."""
+    P, flow, shear = (_at(marched, v, load)[None] for v in (marched.P_max, marched.side_flow, marched.shear))
+    step = load.period / marched.place.size
+    rate = [_at(marched, (np.roll(e, -1) - np.roll(e, 1)) / (2 * step), load) for e in marched.eps]
+    squeezing = np.stack(rate)[:, None] - load.w * np.stack([-eps[1], eps[0]])
+    return P, flow, shear, (load.S * squeezing).sum(axis=0)
+
+
+def _at(marched: TransientOrbit, values: Array, load: CyclicLoad) -> Array:
+    return np.interp(load.angle, marched.place, values, period=load.period)
 
 
 def _report(cycle: int, part: float, difference: float) -> None:

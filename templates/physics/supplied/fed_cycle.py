@@ -5,6 +5,8 @@ Orbit, pressure, loss and flow:
     mobility_short    Booker's closed form (1971) of the short bearing's half film; knows no supply
     mobility          the finite bearing's mobility from its map; knows no supply
     mobility_grooved  the same, with a groove in the sleeve: where the load passes it, two lands bear
+    flooded           mass-conserving cavities in time, oil at ambient pressure along the widest gap and
+                      nowhere else; knows no groove, hole or supply pressure; one case at a time
     supplied          mass-conserving cavities in time, fed by grooves and holes; one case at a time
 
 Two things go beyond `oil_film_cycle` 2 and are asked for by a duty (`FedDuty`): `lift`, what the supply
@@ -36,16 +38,25 @@ from templates.physics.orbits.journal_orbit import CyclicLoad, Orbit, periodic_o
 from templates.physics.orbits.mobility_law import MapLaw, ShortLaw
 from templates.physics.orbits.mobility_map import NARROWEST, WIDEST, mapped_film_under_load
 from templates.physics.orbits.short_mobility import short_film_under_load
+from templates.physics.orbits.transient_orbit import (
+    Marching,
+    TransientOrbit,
+    along_march,
+    sampled_orbit,
+    transient_orbit,
+)
 from templates.physics.orbits.turning import turning
 from templates.physics.supplied.feeding import Feeding, supply_of
 from templates.physics.supplied.supplied_orbit import NEAR_HOLES, SuppliedOrbit, Verdict, supplied_orbit
 from templates.physics.supplied.supply import Supply
 
-LEVELS = ("mobility_short", "mobility", "mobility_grooved", "supplied")
+LEVELS = ("mobility_short", "mobility", "mobility_grooved", "flooded", "supplied")
 BOUNDARY = {
     "mobility_short": "half film: p = 0 at the ends and wherever the gap widens; always full, no supply",
     "mobility": "p = 0 at the ends alone; rupture where p = dp/dn = 0; always full, no supply",
     "mobility_grooved": "as mobility; where the load passes the groove, p = 0 at the groove's edges too",
+    "flooded": "Jakobsson-Floberg-Olsson: ambient pressure at the ends, in the cavities and along the "
+    "widest gap, where oil is fed",
     "supplied": "Jakobsson-Floberg-Olsson: ambient pressure at the ends and in the cavities, supply pressure "
     "in grooves and holes; oil in a cavity stays where it is",
 }
@@ -97,7 +108,9 @@ class FedOrbit:
     numerical_error: Array
     """Relative error of the smallest gap by the step, or from cycle to cycle, (...); NaN where unknown."""
     marched: SuppliedOrbit | None = None
-    """Results of marching in time."""
+    """Results of marching in time at level supplied."""
+    flooded: TransientOrbit | None = None
+    """Results of marching in time at level flooded."""
 
     def admitted(self, eps_max: Array) -> "FedOrbit":
         """Return the same with NaN where the largest eccentricity was not admitted."""
@@ -107,13 +120,13 @@ class FedOrbit:
             hidden = lost[..., None] if np.ndim(values) > np.ndim(lost) else lost
             return np.asarray(np.where(hidden, np.nan, values))[()]
 
-        names = (field.name for field in fields(self) if field.name != "marched")
+        names = (field.name for field in fields(self) if field.name not in ("marched", "flooded"))
         values = {name: kept(getattr(self, name)) for name in names}
-        return FedOrbit(**values, marched=self.marched)
+        return FedOrbit(**values, marched=self.marched, flooded=self.flooded)
 
     @property
     def verdict(self) -> str:
-        """End of a march; empty without one."""
+        """End of a march at level supplied; empty without one."""
         return self.marched.verdict.value if self.marched else ""
 
     @property
@@ -123,12 +136,14 @@ class FedOrbit:
 
     @property
     def cycles(self) -> Array:
-        """Return cycles marched on all meshes; NaN without a march, as the next two, (...)."""
+        """Return the cycles marched on all meshes; NaN without a march, (...)."""
+        if self.flooded:
+            return self._everywhere(float(self.flooded.cycles))
         return self._everywhere(float(sum(self.marched.cycles)) if self.marched else np.nan)
 
     @property
     def mass_balance(self) -> Array:
-        """Return oil fed less oil lost and stored, over the oil lost, (...)."""
+        """Return oil fed less oil lost and stored, over the oil lost; NaN but at level supplied."""
         return self._everywhere(self.marched.mass_balance if self.marched else np.nan)
 
     @property
@@ -167,12 +182,15 @@ class _Cases:
         "mobility_short": "solved numerically by Newton's method, by Booker's mobility of the short bearing",
         "mobility": "solved numerically by Newton's method, by a map of the mobility of finite bearings",
         "mobility_grooved": "solved numerically by Newton's method, by a map for bearing and lands",
+        "flooded": "solved numerically by marching a film with mass-conserving cavities until it repeats",
         "supplied": "solved numerically by marching a fed film that conserves its oil until it repeats",
     }
 )
 def fed_orbit(level: str, fed: FedDuty) -> FedOrbit:
     """Return the periodic orbit of each point, at a level of fidelity."""
     cases = _cases(level, fed)
+    if level == "flooded":
+        return _flooded_orbit(cases)
     if level != "supplied":
         return _shaped(_periodic(level, cases), cases)
     if fed.supply is None or not np.isfinite(cases.load.w).all():
@@ -191,6 +209,7 @@ def fed_orbit(level: str, fed: FedDuty) -> FedOrbit:
         "mobility_short": "solved numerically by Booker's film of the short bearing along the orbit",
         "mobility": "solved numerically by a map of films of finite bearings along the orbit",
         "mobility_grooved": "solved numerically by a map of films, for bearing and lands, along the orbit",
+        "flooded": "solved numerically by marching a film with mass-conserving cavities until it repeats",
         "supplied": "solved numerically by marching a fed film that conserves its oil until it repeats",
     }
 )
@@ -202,7 +221,9 @@ def fed_film(level: str, fed: FedDuty, orbit: FedOrbit) -> CycleFilm:
     cases = _cases(level, fed)
     load, points = cases.load, cases.points
     eps = np.stack([orbit.eps_x, orbit.eps_y]).reshape(2, *load.w.shape)
-    if orbit.marched is not None:
+    if orbit.flooded is not None:
+        P, flow, shear, work = along_march(orbit.flooded, load, eps)
+    elif orbit.marched is not None:
         P, flow, shear, work = _of_march(orbit.marched, load, eps)
     else:
         P, flow, shear, work = _of_map(level, cases, eps)
@@ -264,6 +285,15 @@ def _taken(level: str, ratio: Array, groove: Groove, turns: Array) -> Mask:
     around = groove.extent >= 2 * np.pi - 1e-9
     back = np.isfinite(turns) | around | (groove.share == 0)
     return np.asarray(taken & (groove.land(ratio) >= NARROWEST) & back)
+
+
+def _flooded_orbit(cases: _Cases) -> FedOrbit:
+    """Return the orbit of the one case at level flooded, marched from that at level mobility."""
+    ratio = cases.ratio
+    start, flooded = periodic_orbit(cases.load, MapLaw(ratio)), None
+    if np.isfinite(start.least_gap).all():
+        flooded = transient_orbit(cases.load, float(ratio[0]), start.eps[:, 0, 0], Marching())
+    return replace(_shaped(sampled_orbit(flooded, cases.load), cases), flooded=flooded)
 
 
 def _periodic(level: str, cases: _Cases) -> Orbit:

@@ -164,6 +164,12 @@ class TestWarnings:
         assert unused(inputs(X, Y, **PIN | HALF)) == {"pin_hole_length"}
         assert unused(inputs(X, Y)) == set()
 
+    @pytest.mark.slow
+    def test_property_level_flooded_reads_no_supply(self):
+        feed = HALF | PIN | {name: value for name, value in HOLE.items() if name.startswith("sleeve")}
+        warned = unused(inputs(3.0, 0.0, **feed), "flooded")
+        assert warned == {"groove_width", "pin_hole_length", "sleeve_hole_length", "supply_pressure"}
+
 
 def stated(raw, level=None, names=OUTPUTS):
     """The errors stated for outputs."""
