@@ -21,18 +21,18 @@ sys.path.insert(0, {tests!r})
 import victims
 
 def forked(preload):
-    ahead.fork(preload, lambda: os.environ.update(PREPARED="yes"))
-    assert ahead.is_forked(preload)
+    prefork.fork(preload, lambda: os.environ.update(PREPARED="yes"))
+    assert prefork.is_forked(preload)
     worker = pool.WarmProcesses(preload)
-    assert not ahead.is_forked(preload)
+    assert not prefork.is_forked(preload)
     return worker
 
 workers = [forked(("victims", name)) for name in ("json", "csv")]
-ahead.fork(("victims", "abc"))
-unused = ahead._started["victims", "abc"]._process
+prefork.fork(("victims", "abc"))
+unused = prefork._started["victims", "abc"]._process
 assert unused.poll() is None
-ahead.close()
-assert unused.poll() is not None and not ahead.is_forked(("victims", "abc"))
+prefork.close()
+assert unused.poll() is not None and not prefork.is_forked(("victims", "abc"))
 pids = [worker._forkserver._process.pid for worker in workers]
 """
 RUNS = """
@@ -53,7 +53,7 @@ from app.cli.start import begin_serving
 begin_serving()
 import app.cli.serve
 app.cli.serve.find_templates(()), app.cli.serve.models()
-assert app.cli.serve.ahead._may_fork(), "something has started a thread"
+assert app.cli.serve.prefork._may_fork(), "something has started a thread"
 print(*sys.modules)
 """
 
