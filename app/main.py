@@ -27,6 +27,7 @@ from app.catalogue.routes.templates import router as catalogue
 from app.designs.routes.comparison import router as comparisons
 from app.designs.routes.decision import router as decisions
 from app.designs.routes.designs import router as designs
+from app.designs.routes.designs import saves
 from app.designs.routes.events import router as design_events
 from app.designs.routes.files import router as design_files
 from app.designs.routes.labels import router as labels
@@ -52,7 +53,7 @@ from app.identity.routes.principals import router as principals
 from app.impact.routes import router as impact
 from app.imported_models.routes import router as brought_models
 from app.jobs.routes import router as jobs
-from app.observation.routes import router as health
+from app.observation import routes
 from app.reports.routes import router as reports
 from app.schemas.problems import PROBLEM_CONTENT
 from app.settings import Settings
@@ -80,6 +81,7 @@ problems that name every wrong input at once."""
 
 ROUTERS = (
     calculations,
+    saves,
     worksheets,
     answers,
     spreadsheet_lines,
@@ -116,7 +118,7 @@ ROUTERS = (
     approvals,
     audit,
 )
-"""They are tried one after another; that of `evaluate`, which is called most, is the first.
+"""They are tried one after another; those that are called most are the first: `evaluate`, then saves.
 
 Reports come before variants: `…/variants/report.pdf` is not a variant. Imports of models come before models:
 `/models/import` is not one.
@@ -153,7 +155,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     )
     for router in ROUTERS:
         app.include_router(router)
-    app.include_router(health)
+    app.include_router(routes)
     app.include_router(problems.router)
     problems.install(app)
     openapi.install(app)

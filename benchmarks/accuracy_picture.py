@@ -22,7 +22,7 @@ def draw() -> None:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    second = json.loads((FOLDER / "oil_film_v3.accuracy.json").read_text(encoding="utf-8"))
+    second = json.loads((FOLDER / "oil_film_v2.accuracy.json").read_text(encoding="utf-8"))
     first = json.loads((FOLDER / "oil_film_v1.accuracy.json").read_text(encoding="utf-8"))
     figure, axes = plt.subplots(2, 3, figsize=(13, 7.5), layout="constrained")
     _against_cost(axes[0, 0], second)

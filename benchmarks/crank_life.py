@@ -42,7 +42,7 @@ def stresses_of(sizes: dict[str, float]) -> UnitStresses:
 
 
 def as_inputs(found: UnitStresses) -> dict[str, Any]:
-    """Return the tensors as `fatigue_life` 2 takes them."""
+    """Return the tensors as `fatigue_life` 1 takes them."""
     tables = {}
     for load, tensors in found.tensors.items():
         unit, factor = UNITS[load.split("_")[0]]
@@ -72,7 +72,7 @@ def main() -> None:
            **{f"stress_of_{name}": tables[f"stress_of_{name}"] for name in forces}}  # fmt: skip
     for level in ("extremes", "rainflow"):
         begin = time.perf_counter()
-        answers = evaluate(built_in().get("fatigue_life", 2), raw, level=level).outputs
+        answers = evaluate(built_in().get("fatigue_life", 1), raw, level=level).outputs
         point = int(answers["governing_point"].value)
         print(
             f"{level}, {time.perf_counter() - begin:.2f} s: {answers['life'].value},",

@@ -1,4 +1,4 @@
-"""How much a heat balance adds to the errors of `oil_film` 3: measured on an ensemble of random bearings.
+"""How much a heat balance adds to the errors of `oil_film` 2: measured on an ensemble of random bearings.
 
     python -m benchmarks.heat_balance_accuracy     three minutes; prints what the accuracy file states
 
@@ -28,7 +28,7 @@ from benchmarks.truths import FILM, FRICTION, converged
 from templates.core.arrays import Array
 from templates.core.language.spec import Text
 from templates.core.units.quantity import Typed
-from templates.oil_film.oil_film_v3 import OilFilm
+from templates.oil_film.oil_film_v2 import OilFilm
 from templates.physics.journals.heat_balance import HOTTEST, HeatBalance
 from templates.physics.journals.static_journal import JournalFilm
 from templates.physics.numerics.roots import bracketed_root

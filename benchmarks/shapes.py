@@ -1,11 +1,11 @@
-"""Bearings of `oil_film` 3 that are not plain: meshes, start line, and grooves under load.
+"""Bearings of `oil_film` 2 that are not plain: meshes, start line, and grooves under load.
 
     python -m benchmarks.shapes mesh        ten minutes: 60 bearings, benchmarks/results/shapes_mesh.json
     python -m benchmarks.shapes start_line  K_xx and the whirl limit with both start lines
     python -m benchmarks.shapes groove      what a film with a groove in the load line bears
 
 The errors of a plain, aligned bearing without grooves are measured by `benchmarks.accuracy`. `mesh` compares
-the film that version 3 states with one extrapolated from 128 × 16 and 256 × 32 intervals. It keeps what it
+the film that it states with one extrapolated from 128 × 16 and 256 × 32 intervals. It keeps what it
 has and goes on there.
 """
 

@@ -24,10 +24,14 @@ ROUND = ("cylinders", "beside", "along", "askew", "spheres")
 
 @dataclass(frozen=True)
 class Place:
-    """The faces of a dimension by their numbers in the part; those of a distance lie on two sides."""
+    """The faces of a dimension by their numbers in the part; those of a distance lie on two sides.
+
+    Of a wall of two parts, `inside` is the part that has the first faces.
+    """
 
     first: tuple[int, ...]
     second: tuple[int, ...] = ()
+    inside: str = ""
 
 
 def located(
@@ -36,7 +40,9 @@ def located(
     sizes: Mapping[str, float],
     names: Iterable[str],
 ) -> dict[str, Carried]:
-    """The declarations, with the planes of named dimensions that repeat along an axis counted on the solids.
+    """Return the declarations, with what only the solids show of the named dimensions.
+
+    The planes of lengths that repeat along an axis are counted; two sides are on the part that has them.
 
     Raises
     ------
@@ -44,8 +50,9 @@ def located(
         `tolerance`, where no planes show such a dimension.
     """
     carriers = Carriers(solids, declared, sizes)
-    repeated = (name for name in names if declared[name].faces in REPEATED)
-    return {**declared, **{name: carriers.counted(name) for name in repeated}}
+    found = {name: carriers.counted(name) for name in names if declared[name].faces in REPEATED}
+    found |= {name: carriers.sided(name) for name in names if declared[name].faces == "sides"}
+    return {**declared, **found}
 
 
 class Carriers:
@@ -69,6 +76,8 @@ class Carriers:
         match one.faces:
             case "planes":
                 return [self._levels(one, size, low, high) for low, high in one.levels]
+            case "sides":
+                return [self._sides(one, size) or Place(self._missing(one, size))]
             case "walls":
                 return [self._walls(one, size)]
             case "between":
@@ -102,6 +111,12 @@ class Carriers:
                 )
                 raise GeometryError("tolerance", detail, (name, other))
         return replace(one, faces="planes", where=of.where, levels=pairs)
+
+    def sided(self, name: str) -> Carried:
+        """Return a dimension between two sides of a part, on the first of its parts that has both."""
+        one, size = self._declared[name], self._sizes[name]
+        standing = (replace(one, part=part) for part in (one.part, *one.others) if part in self._solids)
+        return next((each for each in standing if self._sides(each, size)), one)
 
     def spans(self, name: str) -> list[tuple[float, float]]:
         """Where a dimension that repeats along an axis begins and ends, each time [mm]."""
@@ -143,19 +158,38 @@ class Carriers:
         if not (-count <= low < count and -count <= high < count):
             self._missing(one, size)
         ends = levels[low], levels[high]
-        sides = [tuple(f.number for f in planes if abs(f.surface.point.dot(axis) - z) < _CLOSE) for z in ends]
+        first, second = (
+            tuple(f.number for f in planes if abs(f.surface.point.dot(axis) - z) < _CLOSE) for z in ends
+        )
         if not isclose(abs(ends[1] - ends[0]), size, abs_tol=2 * _CLOSE):
             self._missing(one, size)
-        return Place(*sides)
+        return Place(first, second)
+
+    def _sides(self, one: Carried, size: float) -> Place | None:
+        """Return the planes across an axis on both sides of the origin; None if the part lacks one."""
+        axis = AXES[one.where]
+        planes = [f for f in self._faces(one) if f.kind == "plane" and f.surface.along(axis)]
+        low, high = (
+            tuple(f.number for f in planes if abs(f.surface.point.dot(axis) - side * size / 2) < _CLOSE)
+            for side in (-1, 1)
+        )
+        return Place(low, high) if low and high else None
 
     def _walls(self, one: Carried, size: float) -> Place:
-        axis = AXES[one.where]
-        round_ = [f for f in self._faces(one) if f.kind == "cylinder" and f.surface.about(axis)]
-        diameters = sorted({round(f.surface.diameter, 6) for f in round_})
-        if not diameters or not isclose((diameters[-1] - diameters[0]) / 2, size, abs_tol=2 * _CLOSE):
+        inner = self._about(replace(one, part=one.inside[0]) if one.inside else one)
+        thinnest = min((f.surface.diameter for f in inner), default=0.0)
+        first, second = (
+            tuple(f.number for f in faces if abs(f.surface.diameter - diameter) < 2 * _CLOSE)
+            for faces, diameter in ((inner, thinnest), (self._about(one), thinnest + 2 * size))
+        )
+        if not (first and second):
             self._missing(one, size)
-        ends = diameters[0], diameters[-1]
-        return Place(*(tuple(f.number for f in round_ if abs(f.surface.diameter - d) < _CLOSE) for d in ends))
+        return Place(first, second, one.inside[0] if one.inside else "")
+
+    def _about(self, one: Carried) -> list[FaceSeen]:
+        """Return the cylinders of a part about an axis."""
+        axis = AXES[one.where]
+        return [f for f in self._faces(one) if f.kind == "cylinder" and f.surface.about(axis)]
 
     def _between(self, one: Carried, size: float) -> Place:
         (first,), (second,) = (self.places(name) for name in one.where)

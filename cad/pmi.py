@@ -35,6 +35,7 @@ _TYPES: Mapping[Faces, str] = {
     "askew": _DIAMETER,
     "spheres": "XCAFDimTolObjects_DimensionType_Size_SphericalDiameter",
     "planes": _DISTANCE,
+    "sides": _DISTANCE,
     "walls": _DISTANCE,
     "shoulders": _DISTANCE,
     "discs": _DISTANCE,
@@ -126,7 +127,8 @@ class _Writer:
             one = self._declared[name]
             for form, share in one.forms.items():
                 numbers = [n for place in places[name] for n in (*place.first, *place.second)]
-                self._form(form, within.share(share), self._labels(one, dict.fromkeys(numbers)), one.to)
+                faces = self._labels(one.part, dict.fromkeys(numbers))
+                self._form(form, within.share(share), faces, one.to)
 
     def _dimension(self, one: Carried, place: Place, within: Limits) -> None:
         size = DimensionObject()
@@ -136,7 +138,10 @@ class _Writer:
         size.SetLowerTolValue(-within.lower)  # which the writer turns round
         label = self._tool.AddDimension()
         XCAFDoc_Dimension.Set_s(label).SetObject(size)
-        first, second = self._labels(one, place.first), self._labels(one, place.second)
+        first, second = (
+            self._labels(place.inside or one.part, place.first),
+            self._labels(one.part, place.second),
+        )
         self._tool.SetDimension(first, second, label)
 
     def _form(self, form: Form, width: float, faces: TDF_LabelSequence, to: str) -> None:
@@ -159,17 +164,17 @@ class _Writer:
             label = self._tool.AddDatum()
             XCAFDoc_Datum.Set_s(label).SetObject(datum)
             (place,) = self._carriers.places(one.name)
-            self._tool.SetDatum(self._labels(one, place.first), label)
+            self._tool.SetDatum(self._labels(one.part, place.first), label)
             self._letters[letter] = label
         return self._letters[letter]
 
-    def _labels(self, one: Carried, numbers: Iterable[int]) -> TDF_LabelSequence:
-        """The labels of faces of the part, each made once."""
-        product = self._products[one.part]
+    def _labels(self, part: str, numbers: Iterable[int]) -> TDF_LabelSequence:
+        """Return the labels of faces of a part; each is made once."""
+        product = self._products[part]
         labels = TDF_LabelSequence()
         for number in numbers:
-            if (one.part, number) not in self._faces:
+            if (part, number) not in self._faces:
                 face = product.solid.Faces()[number].wrapped
-                self._faces[one.part, number] = self._shapes.AddSubShape(product.label, face)
-            labels.Append(self._faces[one.part, number])
+                self._faces[part, number] = self._shapes.AddSubShape(product.label, face)
+            labels.Append(self._faces[part, number])
         return labels

@@ -17,7 +17,10 @@ named as the model. One of these says which faces are meant:
 - `spheres`, here `True`;
 - `planes`: from one plane across that axis to another; `levels` counts these planes, `[[0, -1]]` if it does
   not say, which is from the first to the last. Each pair of numbers is a dimension of its own;
-- `walls`: from the thinnest to the thickest cylinder about that axis;
+- `sides`: from a plane across that axis to another one as far on the other side of the origin; the first
+  part that is drawn and has both planes carries it;
+- `walls`: from the thinnest cylinder about that axis to the one thicker by the wall; `inside` names the parts
+  of which one, if it is drawn, has the thinnest cylinder, such as the lining of a shell;
 - `shoulders`: from plane to plane on either side of each cylinder of another dimension, which is named: the
   length of each pin of a shaft;
 - `discs`: from plane to plane, neighbours across the axis of other dimensions, all named, with none of their
@@ -47,15 +50,25 @@ if TYPE_CHECKING:
     from cad.model import CadModel
 
 Faces = Literal[
-    "cylinders", "beside", "along", "askew", "spheres", "planes", "walls", "shoulders", "discs", "between"
+    "cylinders",
+    "beside",
+    "along",
+    "askew",
+    "spheres",
+    "planes",
+    "sides",
+    "walls",
+    "shoulders",
+    "discs",
+    "between",
 ]
 Form = Literal["cylindricity", "perpendicularity", "parallelism"]
 FACES: tuple[Faces, ...] = get_args(Faces)
 FORMS: tuple[Form, ...] = get_args(Form)
-_BY_AXIS = ("cylinders", "beside", "along", "planes", "walls")
+_BY_AXIS = ("cylinders", "beside", "along", "planes", "sides", "walls")
 REPEATED = ("shoulders", "discs")
 """Sorts of faces of a length that may repeat along an axis."""
-_MORE = frozenset({"of", "end", "levels", "datum", "to"})
+_MORE = frozenset({"of", "inside", "end", "levels", "datum", "to"})
 _DIGITS = 9  # decimals of a limit in mm: what differs less is the same limit
 
 
@@ -83,6 +96,8 @@ class Carried:
         The letter of the datum to which perpendicularity and parallelism refer.
     others
         Parts that have the faces where `part` is not drawn.
+    inside
+        Of walls: parts that have the thinnest cylinder where one of them is drawn.
     """
 
     name: str
@@ -95,6 +110,7 @@ class Carried:
     forms: Mapping[Form, float] = field(default_factory=dict)
     to: str = ""
     others: tuple[str, ...] = ()
+    inside: tuple[str, ...] = ()
 
     @property
     def others_named(self) -> tuple[str, ...]:
@@ -102,9 +118,9 @@ class Carried:
         return (self.where,) if isinstance(self.where, str) else tuple(self.where)
 
     def among(self, drawn: Collection[str]) -> Carried:
-        """The same on that of its parts which is drawn; on the first of them if none is."""
+        """Return the same on that of its parts which is drawn; on the first of them if none is."""
         part = next((name for name in (self.part, *self.others) if name in drawn), self.part)
-        return replace(self, part=part)
+        return replace(self, part=part, inside=tuple(name for name in self.inside if name in drawn))
 
 
 @dataclass(frozen=True)
@@ -162,7 +178,10 @@ def _carried(cls: type[CadModel], name: str, said: dict[str, Any]) -> Carried:
         raise _wrong(cls, name, "a geometric tolerance is a share above 0 and up to 1 of its own tolerance")
     if bool(said.get("to")) != bool(forms.keys() - {"cylindricity"}):
         raise _wrong(cls, name, "perpendicularity and parallelism need `to`, a datum, and nothing else does")
-    part, *others = _parts(cls, name, said.get("of", cls.id))
+    part, *others = _parts(cls, name, "of", said.get("of", cls.id))
+    inside = _parts(cls, name, "inside", said["inside"]) if "inside" in said else []
+    if inside and kinds[0] != "walls":
+        raise _wrong(cls, name, "only walls have parts inside")
     return Carried(
         name,
         part,
@@ -174,13 +193,14 @@ def _carried(cls: type[CadModel], name: str, said: dict[str, Any]) -> Carried:
         forms,
         said.get("to", ""),
         tuple(others),
+        tuple(inside),
     )
 
 
-def _parts(cls: type[CadModel], name: str, said: Any) -> list[str]:
+def _parts(cls: type[CadModel], name: str, word: str, said: Any) -> list[str]:
     named = [said] if isinstance(said, str) else said
     if not (isinstance(named, (list, tuple)) and named and all(isinstance(one, str) for one in named)):
-        raise _wrong(cls, name, "of is the name of a part, or a list of names")
+        raise _wrong(cls, name, f"{word} is the name of a part, or a list of names")
     return list(named)
 
 

@@ -98,15 +98,15 @@ Units = Annotated[
 ]
 
 
-async def get_once(
-    request: Request,
-    client: TheClient,
-    idempotency_key: Annotated[
-        str | None, Header(min_length=1, max_length=200, description="the same key, the same change: once")
-    ] = None,
-) -> Once:
+IdempotencyKey = Annotated[
+    str | None, Header(min_length=1, max_length=200, description="the same key, the same change: once")
+]
+
+
+async def get_once(request: Request, client: TheClient, idempotency_key: IdempotencyKey = None) -> Once:
     """The service that recognises a repeated request."""
-    return Once(idempotency_key, f"{request.method} {request.url.path}", await fingerprint(request), client)
+    scope = f"{request.method} {request.scope['path']}"
+    return Once(idempotency_key, scope, await fingerprint(request), client)
 
 
 TheOnce = Annotated[Once, Depends(get_once)]

@@ -28,7 +28,9 @@ def _written(text: object) -> object:
     """
     if isinstance(text, str) and not re.search(WRITTEN, text):
         plain = re.search(PLAIN, text)
-        raise ValueError("write at least one letter" if plain else "leave out the control characters")
+        raise ValueError(
+            "the text needs at least one letter" if plain else "leave out the control characters"
+        )
     return text
 
 

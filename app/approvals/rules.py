@@ -68,9 +68,12 @@ def require_principal(step: Step, who: Principal, row: RevisionRow, taken: Seque
             raise SamePrincipal(f"{detail}; or save a revision of your own", who.id)
         return
     if row.author == who.id:
-        raise SamePrincipal(f"{who.name} is the author of revision {row.number}: another has to act", who.id)
+        raise SamePrincipal(
+            f"{who.name} is the author of revision {row.number}: somebody else has to act", who.id
+        )
     for before in taken:
         if before.principal_id == who.id:
             raise SamePrincipal(
-                f"{who.name} took the step {before.step} of revision {row.number}: another has to act", who.id
+                f"{who.name} took the step {before.step} of revision {row.number}: somebody else has to act",
+                who.id,
             )

@@ -65,7 +65,7 @@ def read_curves(body: bytes) -> dict[str, JsonObject]:
     if faults:
         raise InvalidInputs(faults)
     if not rows:
-        raise _wrong("rows", "empty", "there is a header, but no row below it")
+        raise _wrong("rows", "empty", "there is a header but no row below it")
     values = zip(*rows, strict=True)
     return {c.name: {"value": list(v), "unit": c.unit} for c, v in zip(columns, values, strict=True)}
 
@@ -117,7 +117,9 @@ def _columns(header: list[str], number: int) -> list[Column]:
         except FaultyText as error:
             faults.append(error.fault(name))
     twice = sorted(name for name, count in Counter(c.name for c in columns).items() if count > 1)
-    faults += (Fault(name, "named_twice", f"two columns are named {n}; name them apart") for n in twice)
+    faults += (
+        Fault(name, "named_twice", f"two columns are named {n}; give them different names") for n in twice
+    )
     if faults:
         raise InvalidInputs(faults)
     return columns
@@ -136,7 +138,7 @@ def _column(text: str) -> Column:
     else:
         words, _, named = text.rpartition("_")
         if named not in SUFFIXES:
-            message = f"column {excerpt(text)!r} has no unit; write it as in pressure [bar], or [1] for none"
+            message = f"column {excerpt(text)!r} has no unit; write it like pressure [bar], or [1] for none"
             raise FaultyText("missing_unit", message)
     if not (name := api_name(words)) or not name[0].isalpha():
         raise FaultyText("missing_name", f"column {excerpt(text)!r} has no name; write it as pressure [bar]")
@@ -163,7 +165,7 @@ def _number(text: str, column: Column, separator: str) -> float:
         text = text.replace(",", ".")
     if not _NUMBER.fullmatch(text):
         what = f"{excerpt(text)!r} is not a number" if text else "there is no value"
-        raise FaultyText("not_a_number", f"{column.name}: {what}; write it as in 1234.5, without a unit")
+        raise FaultyText("not_a_number", f"{column.name}: {what}; write it like 1234.5, without a unit")
     value = float(text)
     if value in (float("inf"), -float("inf")):
         raise FaultyText("not_finite", f"{column.name}: {text[:20]} is too large")

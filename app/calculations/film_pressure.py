@@ -53,7 +53,7 @@ def solve_film_pressure(raw: dict[str, Raw]) -> FilmPressure:
     arrays = [name for name, value in film.inputs_si().items() if np.ndim(value)]
     if arrays:
         raise InvalidInputs(
-            Fault(name, "not_a_number", "one value is wanted here, not an array") for name in arrays
+            Fault(name, "not_a_number", "give a single value here, not an array") for name in arrays
         )
     ratio = float(film.W / film.D)
     if not 0.01 <= ratio <= 100:

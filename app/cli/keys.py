@@ -72,7 +72,7 @@ def add_command(
             row = identity.add(name, roles, kind)
         elif roles and set(roles) != set(row.roles):
             raise click.ClickException(
-                f"{name} has the roles {', '.join(row.roles)}; leave --role away for another key, or change "
+                f"{name} has the roles {', '.join(row.roles)}; omit --role for another key, or change "
                 f"them: POST /api/v1/principals/{row.id}"
             )
         key, _ = identity.add_key(row.id, scopes=scopes, expires=until)
@@ -160,7 +160,7 @@ def _moment(span: str | None) -> datetime | None:
     if span is None:
         return None
     if (match := _SPAN.fullmatch(span)) is None:
-        raise click.BadParameter(f"{span!r} is not a span of time; write days as 90d or hours as 12h")
+        raise click.BadParameter(f"{span!r} is not a duration; write days as 90d or hours as 12h")
     amount = int(match[1])
     return datetime.now(UTC) + (timedelta(days=amount) if match[2] == "d" else timedelta(hours=amount))
 

@@ -81,7 +81,7 @@ def restore_command(file: Path, data: Path | None) -> None:
 
             restored, place = team.restore(settings, url, file, _say), "the database"
         elif data is None:
-            raise click.UsageError("name a new folder by --data")
+            raise click.UsageError("name a new folder with --data")
         else:
             restored, place = restore(file, data, _say), str(data.absolute())
     _say(f"restored to {place}, the state of {restored.manifest['created']}")

@@ -123,7 +123,7 @@ def _single_outputs(client: Client, design: str) -> list[str]:
     ]
     if not 0 < len(names) <= MOST_OUTPUTS:
         raise click.ClickException(
-            f"the design has {len(names)} single outputs; name some by --output step.name"
+            f"the design has {len(names)} single outputs; name some with --output step.name"
         )
     return names
 

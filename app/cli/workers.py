@@ -30,7 +30,7 @@ def worker_command(scheduler: str | None, lanes: str | None) -> None:
     os.environ.update({name: value for name, value in given.items() if value is not None})
     settings = Settings()
     if settings.engine == LOCAL:
-        raise click.ClickException(f"name the scheduler by --scheduler, such as {EXAMPLE}")
+        raise click.ClickException(f"name the scheduler with --scheduler, such as {EXAMPLE}")
     _become("machine")
 
 

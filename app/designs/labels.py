@@ -112,7 +112,7 @@ class Labelling:
             appended = repository.append(session, id, number, _carried(head, name, note))
             saved = Saved(id, appended, None, created=False)
             note_revision(session, self.designs.jobs.events, id, appended, head.state)
-            once.keep(session, 200, vars(saved))
+            saved.keep(session, once)
             return saved
 
         try:

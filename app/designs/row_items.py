@@ -35,7 +35,7 @@ def _with_lists(relation: Relation, columns: Mapping[str, Column]) -> Column:
         with np.errstate(all="ignore"):
             return column_of(relation.tree, columns)
     except ValueError:
-        raise FaultyText("shape", f"{relation.text!r} joins arrays of different lengths") from None
+        raise FaultyText("shape", f"{relation.text!r} combines arrays of different lengths") from None
 
 
 def wrong_index(relation: Relation, uses: Mapping[str, Column], row: int) -> FaultyText | None:

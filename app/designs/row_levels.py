@@ -139,7 +139,7 @@ class LevelSearch:
         return self._share(steps, self.tolerance)
 
     def _share(self, steps: Sequence[StepRows], tolerance: float) -> float:
-        """Return the share of rows with a small error in all outputs, or no value at the starting level."""
+        """Return the share of rows whose outputs all have a small error, or no value at the first level."""
         met = np.ones(sum(step.count for step in steps), dtype=bool)
         for name in self.outputs:
             there = _joined(_has_value(step, name) for step in steps)

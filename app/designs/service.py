@@ -37,6 +37,7 @@ from app.reference import Reference
 from app.solids.ages import renew
 from app.storage.database import Database, Unit
 from app.storage.idempotency import Once
+from app.storage.identity import now
 from templates.core.errors import Fault
 
 REGENERATE, REGENERATE_SLOWLY = "regenerate", "regenerate_and_analyse"
@@ -55,6 +56,12 @@ class Saved:
     created: bool
     fresh: bool = True  # saved by this request, not by an earlier one
     is_deferred: bool = False  # the request has waited for steps as long as it does: the job calculates them
+    answer: Design | None = None  # as it was written, where no job changes it and no earlier request wrote it
+
+    def keep(self, session: Session, once: Once) -> None:
+        """Remember what the request led to, in the unit that writes it."""
+        location = {name: value for name, value in vars(self).items() if name != "answer"}
+        once.keep(session, 201 if self.created else 200, location)
 
 
 @dataclass(frozen=True)
@@ -133,9 +140,9 @@ class Designs:
             if before := once.begin(session):
                 return _saved_before(before)
             certain = _with_builds(session, draft)
-            name = certain.written.document["name"]
-            design, revision = repository.create(session, name, certain.written)
-            return self.enqueued(session, design, revision, certain, once, created=True)
+            name, at = certain.written.document["name"], now()
+            design, revision = repository.create(session, name, certain.written, at)
+            return self._enqueued(session, design, revision, certain, once, created=at, at=at)
 
         return self._saved(unit, draft)
 
@@ -154,19 +161,20 @@ class Designs:
         with self.database.read() as session:
             if before := once.find(session):
                 return _saved_before(before)
-            base, document, *_ = repository.newest(session, id)
+            base, document, created, *_ = repository.newest(session, id)
         _require_match(expected, base)
-        return self._append(id, base, merge(document, patch), note, once, "design.change")
+        return self._append(id, base, merge(document, patch), note, once, "design.change", created)
 
     def restore(self, id: str, number: int, note: str | None, expected: str | None, once: Once) -> Saved:
         """A new revision equal to an old one."""
         with self.database.read() as session:
             if before := once.find(session):
                 return _saved_before(before)
-            base = repository.design(session, id).head
+            design = repository.design(session, id)
             document = repository.document(session, id, number)
-        _require_match(expected, base)
-        return self._append(id, base, document, note or f"as revision {number}", once, "design.restore")
+        _require_match(expected, design.head)
+        words = note or f"as revision {number}"
+        return self._append(id, design.head, document, words, once, "design.restore", design.created)
 
     def copy(self, id: str, name: str | None, once: Once) -> Saved:
         """A new design with the newest document of another."""
@@ -209,7 +217,14 @@ class Designs:
         return graph
 
     def _append(
-        self, id: str, base: int, raw: Mapping[str, Raw], note: str | None, once: Once, action: str
+        self,
+        id: str,
+        base: int,
+        raw: Mapping[str, Raw],
+        note: str | None,
+        once: Once,
+        action: str,
+        created: str,
     ) -> Saved:
         draft = self.draft(raw, note, action)
 
@@ -219,11 +234,11 @@ class Designs:
             if repository.document(session, id, base) == draft.written.document:
                 _require_match(f'"{base}"', repository.design(session, id).head)
                 unchanged = Saved(id, base, None, created=False, fresh=False)
-                once.keep(session, 200, vars(unchanged))
+                unchanged.keep(session, once)
                 return unchanged
-            certain = _with_builds(session, draft)
-            revision = repository.append(session, id, base, certain.written)
-            return self.enqueued(session, id, revision, certain, once, created=False)
+            certain, at = _with_builds(session, draft), now()
+            revision = repository.append(session, id, base, certain.written, at)
+            return self._enqueued(session, id, revision, certain, once, created=created, at=at)
 
         return self._saved(unit, draft)
 
@@ -281,20 +296,22 @@ class Designs:
         document, calculation = self.prepare(raw)
         return self._checked(document, calculation)[1]
 
-    def enqueued(
-        self, session: Session, design: str, revision: int, draft: Draft, once: Once, *, created: bool
+    def _enqueued(
+        self, session: Session, design: str, revision: int, draft: Draft, once: Once, *, created: str, at: str
     ) -> Saved:
         """The job of a revision, if it needs one, and the record of the request; in one transaction."""
-        job = None
-        if draft.written.state == "regenerating":
+        job, answer, written = None, None, draft.written
+        if written.state == "regenerating":
             job = self.jobs.enqueue(
                 session, draft.kind, {}, design=design, revision=revision, client=once.client
             )
             if draft.begun is not None:
                 draft.begun.leave_to(job)
-        saved = Saved(design, revision, job, created)
-        note_revision(session, self.jobs.events, design, revision, draft.written.state)
-        once.keep(session, 201 if created else 200, vars(saved))
+        else:
+            answer = views.current(design, revision, written.document, created, at)
+        saved = Saved(design, revision, job, created=revision == 1, answer=answer)
+        note_revision(session, self.jobs.events, design, revision, written.state)
+        saved.keep(session, once)
         return saved
 
     def _saved(self, unit: Unit[Saved], draft: Draft) -> Saved:

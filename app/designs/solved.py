@@ -108,7 +108,7 @@ def _single(raw: object, unit: str, name: str) -> float:
     except FaultyText as error:
         raise InvalidInputs([error.fault(name)]) from None
     if np.ndim(value):
-        raise InvalidInputs([Fault(name, "not_a_number", "one value is wanted here, not an array")])
+        raise InvalidInputs([Fault(name, "not_a_number", "give a single value here, not an array")])
     return float(value)
 
 

@@ -42,5 +42,5 @@ def settled(results: Mapping[str, list[Mapping[str, Raw]]] | None) -> dict[Refer
 
 def _single(value: Value) -> float:
     if not isinstance(value, float):
-        raise FaultyText("not_a_number", "one value is wanted here, not an array")
+        raise FaultyText("not_a_number", "give a single value here, not an array")
     return value

@@ -33,7 +33,7 @@ def refuse_in_address(request: Request) -> None:
         If parameters behind the path have it.
     """
     if NUL in request.scope["path"]:
-        raise HTTPException(404, "nothing has U+0000 in its name")
+        raise HTTPException(404, "a name cannot contain U+0000")
     if b"%00" in request.scope["query_string"]:
         given = request.query_params.multi_items()
         having = [(name, value) for name, value in given if NUL in name or NUL in value]

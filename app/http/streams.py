@@ -34,7 +34,7 @@ class Streams:
             if self.open[client] >= self.most_of_client:
                 raise TooManyStreams(f"a client may have {self.most_of_client} streams of events open")
             if self.open.total() >= self.most:
-                raise TooManyStreams(f"{self.most} streams of events are open, which is the most")
+                raise TooManyStreams(f"{self.most} streams of events are open, the maximum")
             self.open[client] += 1
 
     def leave(self, client: str) -> None:

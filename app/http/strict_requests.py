@@ -303,7 +303,7 @@ def check_type(request: Request, allowed: set[str], error: type[HttpError] = Not
 def _require_type(request: Request, allowed: Container[str], error: type[HttpError], right: str) -> None:
     given = request.headers.get("content-type", "")
     if given.partition(";")[0].strip().lower() not in allowed:
-        raise error(f"content type {given[:80]!r} is not taken here; send {right}")
+        raise error(f"content type {given[:80]!r} is not accepted here; send {right}")
 
 
 def require_step(request: Request) -> None:

@@ -158,7 +158,7 @@ class Provider:
     async def _about(self, http: httpx.AsyncClient) -> Mapping[str, object]:
         about = await _asked(http, "GET", self.issuer + DISCOVERY)
         if _text(about, "issuer").rstrip("/") != self.issuer:
-            raise ProviderRefused("the provider calls itself by another name than CRANKWRIGHT_OIDC_ISSUER")
+            raise ProviderRefused("the provider's issuer differs from CRANKWRIGHT_OIDC_ISSUER")
         return about
 
     def _http(self) -> httpx.AsyncClient:
@@ -182,5 +182,5 @@ async def _asked(
 def _text(about: Mapping[str, object], name: str) -> str:
     text = about.get(name)
     if not isinstance(text, str) or not text:
-        raise ProviderRefused(f"the provider does not say its {name}")
+        raise ProviderRefused(f"the provider does not state its {name}")
     return text

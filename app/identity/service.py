@@ -149,7 +149,7 @@ class Identity:
             _require_own(principal)
             owner = rows.principal(rows.find(session, principal))
             if len(rows.keys_of(session, principal)) >= MOST_KEYS:
-                raise TooManyKeys(f"{owner.name} has {MOST_KEYS} keys, which is the most; revoked ones count")
+                raise TooManyKeys(f"{owner.name} has {MOST_KEYS} keys, the maximum; revoked keys count")
             maker = _maker(session, owner)
             row = ApiKeyRow(
                 prefix=new.prefix, hash=new.hash, principal_id=principal, name=name,

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from sqlalchemy import func, select, text
 from sqlalchemy.orm import Session
 
-from app.identity import usage
 from app.identity.limits import LimitReached, Limits, limits_of, seconds_to_midnight, today
 from app.identity.principal import ACTING, BUILT_IN, LOCAL, acting_as, client_of
 from app.identity.rows import asked_by
@@ -108,7 +107,7 @@ def check(limits: Limits, used: Used, name: str) -> None:
         raise LimitReached(f"{name} has used {amounts}", seconds_to_midnight())
     if used.bytes >= limits.storage_mb * MIB:
         amounts = f"{used.bytes / MIB:.0f} MiB of {limits.storage_mb:.0f} MiB of storage"
-        raise LimitReached(f"{name} has used {amounts}, which no waiting and no deletion gives back", None)
+        raise LimitReached(f"{name} has used {amounts}, which neither waiting nor deletion restores", None)
 
 
 @contextmanager
@@ -126,4 +125,4 @@ def working_for(database: Database, principal: str | None) -> Iterator[None]:
             yield
     finally:
         seconds = time.monotonic() - start
-        database.write(lambda session: usage.note(session, who.id, seconds=seconds))
+        database.write(lambda session: note(session, who.id, seconds=seconds))

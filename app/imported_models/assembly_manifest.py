@@ -34,7 +34,7 @@ class Base(Bounded):
 
 
 class Fixed(Bounded):
-    """A fixed part: a STEP file that was brought, or a model of a design as one of its revisions has it."""
+    """A fixed part: an imported STEP file, or a model of a design as one of its revisions has it."""
 
     model_config = _STRICT
 
@@ -69,7 +69,7 @@ class Fixed(Bounded):
             If it names no source, or both; or a number is none.
         """
         if (self.model is None) == (self.design is None):
-            raise ValueError("give either `model`, a STEP file that was brought, or `design`")
+            raise ValueError("give either `model`, an imported STEP file, or `design`")
         if self.model and (self.revision or self.part):
             raise ValueError("`revision` and `part` belong to `design`")
         if self.design and self.version:

@@ -36,7 +36,7 @@ def require_free(id: str, catalogues: Catalogues) -> None:
     if id in snapshot.templates.ids:
         raise ModelIdTaken(f"{id} is the id of a template")
     if any(name == id and brought(cls) is None for (name, _), cls in snapshot.models.versions.items()):
-        raise ModelIdTaken(f"{id} is the id of a model that came as a file of Python")
+        raise ModelIdTaken(f"{id} is the id of a model in a Python file")
 
 
 def parameter_name(key: str, thing: str, taken: Iterable[str]) -> str:

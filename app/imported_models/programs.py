@@ -113,7 +113,7 @@ class Programs:
         """Return the drawing of a program for some values; raises as `Drawing.draw` does."""
         program = self.by_name.get(described.program)
         if program is None:
-            raise ProgramMissing("program_missing", f"this service drives no Creo: {SET_CREO}")
+            raise ProgramMissing("program_missing", f"this service is not connected to Creo: {SET_CREO}")
         return program.draw(described, values, cancelled)
 
     def close(self) -> None:

@@ -32,7 +32,7 @@ def version(session: Session, id: str, number: int) -> Row:
         If there is none.
     """
     if (row := session.get(Row, (id, number))) is None:
-        raise NotFound(f"model {id[:64]!r} version {number} was not brought as a file")
+        raise NotFound(f"model {id[:64]!r} version {number} was not imported from a file")
     return row
 
 

@@ -38,7 +38,7 @@ def database_file(data: Path, url: str | None) -> Path:
                 f"The database {path.absolute()} is missing, and {marker_of(path).name} notes that it was "
                 "lost while a service used it: restore the last backup into a new folder."
             )
-        raise CannotRun(f"There is no database {path.absolute()}: name the data folder by --data.")
+        raise CannotRun(f"There is no database {path.absolute()}: name the data folder with --data.")
     return path
 
 

@@ -77,7 +77,7 @@ def restore(archive: Path, data: Path, say: Say) -> Restored:
 def _refuse_content(data: Path) -> None:
     if data.exists() and (not data.is_dir() or any(data.iterdir())):
         raise CannotRun(
-            f"{data.absolute()} is not empty, and a restore never overwrites. Name a new folder by --data, "
+            f"{data.absolute()} is not empty, and a restore never overwrites. Name a new folder with --data, "
             f"or stop the service and move the old one aside: mv {data.absolute()} {data.absolute()}.old"
         )
 

@@ -51,7 +51,9 @@ def read_block(pdf: bytes) -> Block:
     except Exception as error:  # whatever somebody wrote into the file
         raise NotReport(f"the file cannot be read as PDF: {plain(str(error), 200)}") from error
     if len(attached) != 1 or len(attached[0]) > LARGEST_BLOCK:
-        raise NotReport(f"the file carries no attachment {ATTACHMENT}: it is not a report, or an old one")
+        raise NotReport(
+            f"the file has no attachment {ATTACHMENT}: it is not a report, or one of an older version"
+        )
     try:
         return Block.model_validate_json(attached[0])
     except ValidationError as error:

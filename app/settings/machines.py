@@ -102,7 +102,7 @@ def check_lanes(lanes: dict[Lane, int]) -> dict[Lane, int]:
         There is none.
     """
     if not any(lanes.values()):
-        raise ValueError('a worker without a place runs nothing: give it one, such as {"geometry": 1}')
+        raise ValueError('a worker needs at least one place, such as {"geometry": 1}')
     return lanes
 
 

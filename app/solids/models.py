@@ -142,7 +142,7 @@ class Models:
         """
         header = read_header(step)
         if header is None:
-            raise NotFound("this file does not say that it is one of ours")
+            raise NotFound("this file does not state that it comes from Crankwright")
         build = self.show(header.build)
         assert build.model is not None, "a recorded build has its model"
         with self.database.read() as session:

@@ -66,7 +66,7 @@ def require_connection(url: str) -> None:
     Raises
     ------
     NotForTeams
-        It names no database of a known kind.
+        It names an unknown kind of database.
     DatabaseUnavailable
         The database server does not answer, or refuses this user.
     """
@@ -79,7 +79,9 @@ def require_connection(url: str) -> None:
             pass
     except DBAPIError as error:
         reason = str(error.orig).strip().partition("\n")[0]
-        raise DatabaseUnavailable(f"CRANKWRIGHT_DATABASE_URL leads to no database ({reason})") from error
+        raise DatabaseUnavailable(
+            f"CRANKWRIGHT_DATABASE_URL does not lead to a database ({reason})"
+        ) from error
     finally:
         engine.dispose()
 
@@ -91,4 +93,4 @@ def require_database(url: str) -> None:
     except (ArgumentError, NoSuchModuleError, ValueError):  # it may hold a password: it is not quoted
         backend = ""
     if backend not in BACKENDS:
-        raise NotForTeams(f"CRANKWRIGHT_DATABASE_URL names no database of a known kind; write {FORMS}.")
+        raise NotForTeams(f"CRANKWRIGHT_DATABASE_URL names an unknown kind of database; write {FORMS}.")

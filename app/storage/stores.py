@@ -67,7 +67,7 @@ def shared_folder(settings: Settings) -> Path | None:
         return None
     path = Path(unquote(place.path))
     if place.netloc not in ("", "localhost") or path == Path("/") or not path.is_absolute():
-        raise _refused(f"it names no folder of this machine; write {FORMS}")
+        raise _refused(f"it is not a folder of this machine; write {FORMS}")
     if not path.parent.is_dir():
         raise _refused(f"there is no folder {path.parent}; mount the folder that the servers share")
     return path
@@ -82,7 +82,9 @@ def _parsed(url: str) -> SplitResult:
     if place.scheme not in ("s3", "file"):
         raise _refused(f"its scheme is {place.scheme[:20]!r}; write {FORMS}")
     if has_more:  # perhaps keys: the text does not quote it
-        raise _refused(f"it holds more than a place; write {FORMS}, and set keys by the AWS environment")
+        raise _refused(
+            f"it contains more than a location; write {FORMS}, and set keys by the AWS environment"
+        )
     return place
 
 
@@ -101,9 +103,9 @@ def opened_bucket(settings: Settings, figures: Figures = NO_FIGURES) -> Bucket:
         raise _refused("files in S3 need the extra `team`: pip install 'crankwright[team]'") from None
     place = _parsed(settings.artifacts_url or "")
     if not _BUCKET.fullmatch(place.netloc):
-        raise _refused(f"{place.netloc[:63]!r} is not a name of a bucket; write {FORMS}")
+        raise _refused(f"{place.netloc[:63]!r} is not the name of a bucket; write {FORMS}")
     if not _PREFIX.fullmatch(place.path):
-        raise _refused("a prefix has letters of ASCII, digits and any of / . _ - only")
+        raise _refused("a prefix may contain only ASCII letters, digits and / . _ -")
     endpoint = _endpoint(settings.s3_endpoint)
     where = f"bucket {place.netloc} at {endpoint or 'Amazon'}"
     try:

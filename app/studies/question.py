@@ -118,7 +118,7 @@ def single(raw: Raw, unit: str, name: str) -> float:
     except FaultyText as error:
         raise InvalidInputs([error.fault(name)]) from None
     if not isinstance(value, float):
-        raise InvalidInputs([Fault(name, "not_a_number", "one value is wanted here, not an array")])
+        raise InvalidInputs([Fault(name, "not_a_number", "give a single value here, not an array")])
     return value
 
 
@@ -144,7 +144,7 @@ def _steps(body: StudyIn, space: Space) -> dict[str, int]:
     intervals = [variable.name for variable in space.variables if isinstance(variable, Interval)]
     given = body.steps if isinstance(body.steps, Mapping) else dict.fromkeys(intervals, body.steps)
     strange = (name for name in given if name not in intervals)
-    faults = [Fault("steps", "unknown_name", f"{name} varies between no bounds") for name in strange]
+    faults = [Fault("steps", "unknown_name", f"{name} has no bounds to vary between") for name in strange]
     for name in intervals:
         if (given.get(name) or 0) < 2:
             faults.append(Fault("steps", "missing", f"give at least 2 steps for {name}"))

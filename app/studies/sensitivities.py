@@ -85,7 +85,7 @@ def _indices(
                     strict=True,
                 )
             ]
-    raise AssertionError("these rows belong to no sensitivity")
+    raise AssertionError("these rows do not belong to a sensitivity study")
 
 
 def _difference(declared: str) -> Callable[[float], Quantity]:

@@ -116,7 +116,7 @@ def _check_size(content: bytes) -> None:
     except (zipfile.BadZipFile, ValueError, NotImplementedError, EOFError):
         raise _wrong("damaged", DAMAGED) from None
     if len(parts) > MOST_PARTS or sum(part.file_size for part in parts) > MOST_UNPACKED:
-        raise _wrong("too_large", "the file unpacks to too much; keep the one sheet with the rows only")
+        raise _wrong("too_large", "the unpacked file is too large; keep only the sheet with the rows")
 
 
 def _wrong(code: str, detail: str) -> InvalidInputs:

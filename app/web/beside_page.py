@@ -117,7 +117,7 @@ async def _brought(
         if work.state == "done" and (version := _VERSION.fullmatch(work.result or "")):
             return {"id": version[1], "version": int(version[2])}
         await asyncio.sleep(GLANCE)
-    raise Refused.because(503, "other work goes first: the assembly is not made yet; send the form again")
+    raise Refused.because(503, "the server is busy: the assembly has not been created; send the form again")
 
 
 async def _form(

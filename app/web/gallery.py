@@ -43,7 +43,7 @@ GALLERY = {
             "steps": {
                 "film": {
                     "template": "oil_film",
-                    "version": 3,
+                    "version": 2,
                     "inputs": {
                         **FILM,
                         "bearing_width": "= ratio * film.bearing_diameter",

@@ -142,7 +142,7 @@ def _torsion(train: Train) -> dict[str, JsonValue]:
 def _life() -> dict[str, JsonValue]:
     return {
         "template": "fatigue_life",
-        "version": 2,
+        "version": 1,
         "inputs": {
             "force_1": "= pin_x * cos(pin_turn) + pin_y * sin(pin_turn)",
             "force_2": "= pin_y * cos(pin_turn) - pin_x * sin(pin_turn)",

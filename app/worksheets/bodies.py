@@ -27,7 +27,7 @@ def storable(text: str) -> str:
         raise ValueError(f"a worksheet has at most {LONGEST_TEXT} bytes in UTF-8, not {size}")
     if (place := text.find("\0")) >= 0:
         line = text.count("\n", 0, place) + 1
-        raise ValueError(f"a worksheet has no character NUL; remove it from line {line}")
+        raise ValueError(f"a worksheet must not contain the character NUL; remove it from line {line}")
     return text
 
 
@@ -40,7 +40,7 @@ def legible(name: str) -> str:
         If it has no letter and no digit, as a name of blanks that nobody sees.
     """
     if not any(map(str.isalnum, name)):
-        raise ValueError("a name has a letter or a digit; write it as in A. Weber")
+        raise ValueError("a name needs a letter or a digit, like A. Weber")
     return name
 
 

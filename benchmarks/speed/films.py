@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks.speed.figures import Figure, median_seconds, processor_seconds
 from benchmarks.supplied_duties import RandomDuty, random_duty
 from templates.core.language.evaluate import evaluate
-from templates.oil_film.oil_film_v3 import OilFilm
+from templates.oil_film.oil_film_v2 import OilFilm
 from templates.physics.films.reynolds import extrapolated_film, static_film
 from templates.physics.supplied.supplied_orbit import COARSE, FINE, supplied_orbit
 
@@ -64,7 +64,7 @@ def mass_conserving() -> Figure:
         lambda: evaluate(OilFilm, OilFilm.example, level="mass_conserving", outputs=output)
     )
     return Figure(
-        "`mass_conserving`, one output", 1e3 * spent, "ms", 30.0, detail="`oil_film` 3, its example"
+        "`mass_conserving`, one output", 1e3 * spent, "ms", 30.0, detail="`oil_film` 2, its example"
     )
 
 

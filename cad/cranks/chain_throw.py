@@ -12,6 +12,7 @@ from cadquery.func import fuse
 
 from cad.cranks.throw import Throw, bore
 from cad.cranks.whole import Half, WholeShaft, placed
+from cad.errors import AnalysisError
 from cad.fillets import Crank
 from cad.header import Header
 from cad.model import CadModel, Part
@@ -47,7 +48,16 @@ def first_throw_apart(whole: WholeShaft) -> ThrowsApart:
 
 
 def throws_apart(whole: WholeShaft) -> ThrowsApart:
-    """All throws of a shaft; throws alike are drawn once."""
+    """Return all throws of a shaft; throws alike are drawn once.
+
+    Raises
+    ------
+    AnalysisError
+        `no_throws`, if a fillet of the only throw reaches beyond the middle of a main journal.
+    """
+    if 2 * whole.like.fillet > 0.9 * whole.like.journal_length:
+        detail = "a fillet reaches to the middle of a main journal, where throws are cut apart"
+        raise AnalysisError("no_throws", detail)
     numbers: dict[tuple[Throw, Throw], int] = {}
     solids: list[ThrowSolid] = []
     places: list[PlacedThrow] = []

@@ -65,7 +65,7 @@ class SplitParameters(CrankRules):
         "deg", "pin split", symbol=r"\delta", default="0 deg", ge=-360, le=360, also=("split of pins",)
     )
 
-    @derived("mm", "middle web thickness", symbol="L_m", ge=0.05, le=5000)
+    @derived("mm", "middle web thickness", symbol="L_m", ge=0.025, le=5000)
     def L_m(self) -> Array:
         """Half of a web's."""
         return 0.5 * self.L_w

@@ -93,14 +93,16 @@ def _unpacked(content: bytes) -> Iterator[tuple[str, bytes]]:
                     raise UnreadableModel("too_large", f"{what}: remove shapes that the model does not need")
                 yield part.filename, read
     except _DAMAGES as error:
-        raise UnreadableModel("package", f"it is not a whole ZIP package ({error}): {AGAIN}") from None
+        raise UnreadableModel("package", f"it is not a complete ZIP package ({error}): {AGAIN}") from None
 
 
 def _check_directory(content: bytes) -> None:
     """Refuse a crowded directory before `zipfile` makes an object of every entry."""
     place = content.rfind(_DIRECTORY, max(0, len(content) - 2**16 - 22))
     if place < 0 or len(content) < place + 22:
-        raise UnreadableModel("package", f"it is not a whole ZIP package (its directory is missing): {AGAIN}")
+        raise UnreadableModel(
+            "package", f"it is not a complete ZIP package (its directory is missing): {AGAIN}"
+        )
     if content.startswith(_LARGE_DIRECTORY, max(0, place - 20)):
         raise UnreadableModel(
             "package", f"it is a package of the form ZIP64, which says its size twice: {AGAIN}"

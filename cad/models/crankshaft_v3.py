@@ -31,7 +31,7 @@ class Crankshaft(SplitParameters, EndParameters):
     the flange at +z, where an engine has its flywheel. Pin angles count from x towards y, as those of
     `engine` 2; their number is that of the throws. All throws are alike but for their counterweights.
 
-    A pin split of 0 is none: one pin a throw, the shaft of version 2. Else each throw has a front pin at its
+    A pin split of 0 is none: one pin a throw. Else each throw has a front pin at its
     pin angle and a rear pin further on by the split, each as long as the pin length, each for one rod, and
     between them a middle web: two half circles about the pins, joined by lines. Each outer web, with its
     counterweight, stands as the pin beside it.
@@ -154,8 +154,8 @@ class Crankshaft(SplitParameters, EndParameters):
 
     @require("fillet", "journal_length", remedy="make the fillet smaller or the journal longer")
     def fillets_fit_on_journal(self) -> Truth:
-        """The two fillets take at most 90 % of a journal's length."""
-        return 2 * self.r_f <= 0.9 * self.L_j
+        """The two fillets of a journal between two throws take at most 90 % of its length."""
+        return (self.n <= 1) | (2 * self.r_f <= 0.9 * self.L_j)
 
     @require(
         "counterweight_radius", "web_width", "web_shape",

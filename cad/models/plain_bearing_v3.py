@@ -1,7 +1,6 @@
-"""Half shells of a thin-walled plain bearing, in their housing or free; see the class below.
+"""Half shells of a plain bearing, in their housing or free, or a full bush; see the class below.
 
-Beside version 2: the free spread, a shell drawn free, and a tang that by default keeps off the sides of the
-groove. Parameters and rules that versions share are in `cad.shells`.
+Parameters and rules are in `cad.shells`.
 """
 
 from __future__ import annotations
@@ -12,7 +11,8 @@ import numpy as np
 from cadquery import Location, Vector
 
 from cad.model import BRIGHT_STEEL, STEEL, Box, Part, mm
-from cad.shells.half_shell import Flange, Groove, HalfShell, Tang
+from cad.shells.half_shell import Flange, FullBush, Groove, HalfShell, Tang
+from cad.shells.parameters import joints
 from cad.shells.reading import ShellSeen
 from cad.shells.relief import Relief
 from cad.shells.rules import ShellRules
@@ -31,6 +31,8 @@ from templates.core.language.template import (
 LINING_DENSITY = 3110.0  # kg/m³, of AlSn20Cu: mixture of its elements by mass
 _ANGLE_DIGITS = 12  # decimals of an angle [rad], so that equal parameters give equal bytes
 WHOLE = 3.14159  # rad; a groove of so much goes from joint to joint
+LININGS = ("upper_lining", "lower_lining", "full_lining")
+BACKS = ("upper_back", "lower_back", "full_back")
 
 
 @units(None, returns="1")
@@ -40,13 +42,16 @@ def is_fitted(state: str) -> Truth:
 
 
 class PlainBearing(ShellRules):
-    """Half shells of a thin-walled plain bearing, as the housing holds them or free: upper, lower, or both.
+    """Half shells of a plain bearing, upper, lower or both, in their housing or free; or a full bush.
 
     z is along the shaft, the joint in the plane y = 0, the crown of the upper shell at +y. The upper shell
     has the oil groove and the oil hole, the lower one is plain. Back and lining are bodies of their own, the
     back of steel, the lining of an aluminium-tin alloy; a groove deeper than the lining, from joint to joint,
-    parts it in two rings. The bore is the finished one: the caller adds the clearance.
+    parts it in two rings. A shell without lining is one body of steel. The bore is the finished one: the
+    caller adds the clearance.
 
+    - *Full*: a bush all round with its oil hole at the crown, without joint, tang, relief and crush height.
+      Its groove of 180° runs all round, a shorter one about the crown.
     - *Tang*: the lip at the back beside the joint on the side +x that locates the shell; its length is
       along the wall, its middle at a quarter of the width, on the side -z. The lower shell mirrors the upper
       one, so the tangs meet. The notch inside, where the tang was pressed out, is not drawn.
@@ -64,7 +69,7 @@ class PlainBearing(ShellRules):
       (tang, relief, crush height) are those beside that joint; the groove keeps its length along the wall.
       Diameters and the groove's angle are given as in the housing for both states.
 
-    A tang, relief, hole, groove, flange or chamfer of no size is none.
+    A lining, tang, relief, hole, flange or chamfer of no size is none, as is a groove of no depth.
 
     Limits
     ------
@@ -75,6 +80,9 @@ class PlainBearing(ShellRules):
     A free shell bends evenly: that a groove or a flange makes it stiffer or softer in places is left out, as
     are the pressure of the seat and the spread that is lost when the engine is hot. A diameter of the bore,
     and of a flange, carries no tolerance in the file of a free shell, because no face has it.
+
+    The tolerance of a wall with a lining lies between a face of the lining and one of the back, so in the
+    file it joins two parts.
 
     References
     ----------
@@ -113,21 +121,22 @@ class PlainBearing(ShellRules):
     film_bore = "inner_diameter"
     rounds_noise = True
     toleranced = {
-        "inner_diameter": {
-            "of": ["upper_lining", "lower_lining"], "cylinders": "z", "datum": "A", "cylindricity": 0.5,
-        },
-        "lining_thickness": {"of": ["upper_lining", "lower_lining"], "walls": "z"},
-        "width": {"of": ["upper_back", "lower_back"], "planes": "z", "perpendicularity": 1, "to": "A"},
-        "flange_diameter": {"of": ["upper_back", "lower_back"], "cylinders": "z"},
-        "flange_thickness": {"of": ["upper_back", "lower_back"], "planes": "z", "levels": [[-2, -1]]},
-        "oil_hole_diameter": {"of": "upper_back", "along": "y"},
+        "inner_diameter": {"of": [*LININGS, *BACKS], "cylinders": "z", "datum": "A", "cylindricity": 0.5},
+        "wall": {"of": BACKS, "inside": LININGS, "walls": "z"},
+        "lining_thickness": {"of": LININGS, "walls": "z"},
+        "width": {"of": BACKS, "planes": "z", "perpendicularity": 1, "to": "A"},
+        "flange_diameter": {"of": BACKS, "cylinders": "z"},
+        "flange_thickness": {"of": BACKS, "planes": "z", "levels": [[-2, -1]]},
+        "oil_hole_diameter": {"of": BACKS, "along": "y"},
+        "oil_groove_width": {"of": [*LININGS, *BACKS], "sides": "z"},
     }  # fmt: skip
 
     state: str = choice("fitted", "free", words="state", default="fitted")
 
-    @derived("mm", "free spread", symbol="s_f", ge=0, le=200)
+    @derived("mm", "free spread", symbol="s_f", ge=0, le=500)
     def s_f(self) -> Array:
-        return 0.01 * self.d
+        """A hundredth of the bore; none of a full bush."""
+        return joints(self.shells) * 0.01 * self.d
 
     @formula("mm", "length of the wall's middle from crown to leg", name="half_length", symbol="L_h")
     def L_h(self) -> Array:
@@ -156,8 +165,22 @@ class PlainBearing(ShellRules):
         """A shell that is drawn free has a free spread of at least 0.05 % of the bore."""
         return is_fitted(self.state) | (self.s_f >= 0.0005 * self.d)
 
+    @require("state", "wall", "inner_diameter", remedy="make the wall thinner, or draw the shell fitted")
+    def a_free_shell_is_thin(self) -> Truth:
+        """The wall of a shell that is drawn free is at most 20 % of the bore."""
+        return is_fitted(self.state) | (self.t <= 0.2 * self.d)
+
+    @require(
+        "state", "free_spread", "shells", remedy="draw it fitted with a free spread of 0, or half shells"
+    )
+    def a_full_bush_is_fitted(self) -> Truth:
+        """A full bush has no free spread, and is drawn fitted."""
+        return (joints(self.shells) > 0) | (is_fitted(self.state) & (self.s_f <= 0))
+
     def build(self) -> tuple[Part, ...]:
         """Back and lining of each shell."""
+        if self.shells == "full":
+            return tuple(self._parts("full", self.drawn("full"), 1))
         parts = []
         for which, side in (("upper", 1), ("lower", -1)):
             if self.shells in ("pair", which):
@@ -166,26 +189,33 @@ class PlainBearing(ShellRules):
 
     def _parts(self, name: str, shell: HalfShell, side: int) -> list[Part]:
         away = Location(Vector(0, side * shell.crush if self.shells == "pair" else 0, 0))
-        back, lining = shell.back(), shell.lining_piece()
-        if side < 0:
-            back, lining = (body.mirror("XZ") for body in (back, lining))
-        pieces = shell.lining_places()
-        places = tuple(away * place for place in pieces)
-        return [
-            Part(f"{name}_back", back, shell.back_volume(), STEEL, places=(away,)),
-            Part(
-                f"{name}_lining", lining, shell.lining_volume() / len(pieces), BRIGHT_STEEL, LINING_DENSITY,
-                places, material="AlSn20Cu",
-            ),
-        ]  # fmt: skip
+        back = shell.back() if side > 0 else shell.back().mirror("XZ")
+        parts = [Part(f"{name}_back", back, shell.back_volume(), STEEL, places=(away,))]
+        if shell.is_lined:
+            lining = shell.lining_piece() if side > 0 else shell.lining_piece().mirror("XZ")
+            pieces = shell.lining_places()
+            places, volume = tuple(away * place for place in pieces), shell.lining_volume() / len(pieces)
+            parts.append(
+                Part(
+                    f"{name}_lining",
+                    lining,
+                    volume,
+                    BRIGHT_STEEL,
+                    LINING_DENSITY,
+                    places,
+                    material="AlSn20Cu",
+                )
+            )
+        return parts
 
     def drawn(self, which: str) -> HalfShell:
         """The parameters of one shell as radii and halves, in its state."""
-        upper, fitted = which == "upper", self.state == "fitted"
+        upper, fitted = which != "lower", self.state == "fitted"
         bore = mm(self.d / 2 if fitted else self.r_f)
         angle = np.pi / 2 if fitted else round(float(self.phi_f), _ANGLE_DIGITS)
         wider = bore - mm(self.d) / 2
-        return HalfShell(
+        form = FullBush if which == "full" else HalfShell
+        return form(
             bore=bore,
             lining=bore + mm(self.t_l),
             outside=mm(self.D) / 2 + wider,
@@ -197,7 +227,7 @@ class PlainBearing(ShellRules):
             groove=Groove(
                 bore + mm(self.t_g), mm(self.w_g) / 2, float(self.phi_g) * angle / (np.pi / 2),
                 bool(self.phi_g > WHOLE),
-            ) if upper and self.w_g > 0 else None,
+            ) if upper and self.t_g > 0 else None,
             hole=mm(self.d_h) / 2 if upper else 0.0,
             tang=Tang(mm(self.w_t), mm(self.l_t), mm(self.h_t), -mm(self.B) / 4) if self.w_t > 0 else None,
             flange=Flange(mm(self.D_f) / 2 + wider, mm(self.b_f), round(float(self.n_f)))
@@ -207,17 +237,21 @@ class PlainBearing(ShellRules):
 
     def bounding_box(self) -> Box:
         """The back or its flanges, the tang on the side +x, and the legs."""
-        shell = self.drawn("upper")
+        shell = self.drawn("full" if self.shells == "full" else "upper")
         left, right, low = reach_of(shell)
         high, b = shell.flange.radius if shell.flange else shell.outside, shell.half_width
         far = high + shell.crush
-        bottom, top = {"pair": (-far, far), "upper": (low, high), "lower": (-high, -low)}[self.shells]
+        bottom, top = {
+            "pair": (-far, far), "upper": (low, high), "lower": (-high, -low), "full": (-high, high),
+        }[self.shells]  # fmt: skip
         return Box((-left, bottom, -b), (right, top, b))
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
         """Every length that the shells have, of the upper one if it is there."""
-        which = "lower" if self.shells == "lower" else "upper"
-        shown = seen[f"{which}_back"], seen[f"{which}_lining"], self.drawn(which)
+        which = "upper" if self.shells == "pair" else self.shells
+        back = seen[f"{which}_back"]
+        shown = back, seen.get(f"{which}_lining", back), self.drawn(which)
         if self.state == "free":
             return FreeShellSeen(*shown).free_sizes(with_oil=which == "upper")
-        return ShellSeen(*shown).sizes(with_oil=which == "upper", side=-1 if which == "lower" else 1)
+        side = {"upper": 1, "lower": -1, "full": 0}[which]
+        return ShellSeen(*shown).sizes(with_oil=which != "lower", side=side)

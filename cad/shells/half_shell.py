@@ -1,4 +1,4 @@
-"""One half shell of steel with its lining, drawn about z with its crown at +y, and its volumes."""
+"""A half shell or a full bush of steel with its lining, drawn about z with its crown at +y; its volumes."""
 
 from __future__ import annotations
 
@@ -50,6 +50,8 @@ class HalfShell:
 
     Of a shell that nothing holds, the arc ends above the plane y = 0, by the angle `lift` on either side;
     what is at a joint is drawn as at y = 0, and turned about z by so much.
+
+    Without a lining its radius is that of the bore, and all is back.
     """
 
     bore: float
@@ -72,9 +74,15 @@ class HalfShell:
         return pi - 2 * self.lift
 
     @property
+    def is_lined(self) -> bool:
+        """Whether there is a lining."""
+        return self.lining > self.bore
+
+    @property
     def is_split(self) -> bool:
         """Whether the groove parts the lining in two rings."""
-        return bool(self.groove and self.groove.is_whole and self.groove.bottom > self.lining)
+        deep = self.groove and self.groove.is_whole and self.groove.bottom > self.lining
+        return bool(self.is_lined and deep)
 
     def back_section(self) -> list[Point]:
         """The steel back as a closed line through (r, z), without a groove."""
@@ -287,3 +295,26 @@ class HalfShell:
             return s * relief.angle_at(s) * (c - (s - r))
 
         return float(quad(ring, r, r + min(c, relief.depth), epsabs=0, epsrel=1e-10)[0])
+
+
+class FullBush(HalfShell):
+    """A bush all round, without joints: a groove from joint to joint is a ring; the hole is at the crown."""
+
+    @property
+    def turn(self) -> float:
+        """A full turn [rad]."""
+        return 2 * pi
+
+    def back(self) -> Shape:
+        """Return the steel: the section turned, with its ring groove, less another groove and the hole."""
+        body = turned(self.back_joint())
+        if self.groove and not self.groove.is_whole and self.groove.bottom > self.lining:
+            body = cut(body, self._ring(self.groove))
+        return cut(body, drill(self.hole, self.outside)) if self.hole > 0 else body
+
+    def lining_piece(self) -> Shape:
+        """Return the lining, or that ring of it on the side +z if the groove parts it."""
+        body = turned(self.lining_joint())
+        if self.groove and not self.groove.is_whole:
+            body = cut(body, self._ring(self.groove))
+        return cut(body, drill(self.hole, self.outside)) if self.hole > 0 else body

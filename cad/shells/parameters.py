@@ -1,7 +1,7 @@
-"""Parameters of a half shell as the housing holds it, which versions of its model share, and what follows.
+"""Parameters of the shells of a plain bearing as the housing holds them, and what follows from them.
 
 The digest of a released model covers this file: what changes here needs a file of its own. Parameters that
-are 0 stand for what is not there: tang, relief, hole, groove, flange, chamfers, crush height.
+are 0 stand for what is not there: lining, tang, relief, hole, groove, flange, chamfers, crush height.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from cad.model import CadModel
-from templates.core.language.template import Array, choice, derived, formula, given, units
+from templates.core.language.template import Array, Truth, choice, derived, formula, given, units
 
 
 @units("m", "m", returns="1")
@@ -20,86 +20,104 @@ def clear_share(width: Array, groove: Array) -> Array:
     return np.where(beside, 0.09, 0.12)
 
 
+@units(None, returns="1")
+def joints(shells: str) -> Array:
+    """Return 1 for half shells, which have joints; 0 for a full bush."""
+    return np.asarray(0.0 if shells == "full" else 1.0)
+
+
+@units("m", "1", returns="1")
+def drawable(length: Array, least: float) -> Truth:
+    """Return whether a length [m] is none, or one that the kernel can draw, at least `least` micrometres."""
+    return (length <= 0) | (length >= 1e-6 * least)
+
+
+@units("m", "1", returns="m")
+def if_drawable(length: Array, least: float) -> Array:
+    """Return a length [m], or 0 where it is less than `least` in micrometres."""
+    return np.where(drawable(length, least), length, 0 * length)[()]
+
+
 class ShellParameters(CadModel):
-    """What a half shell is made from."""
+    """Sizes of half shells or of a full bush."""
 
-    d: Array = given("mm", "inner diameter", symbol="d", ge=5, le=2000, also=("bearing diameter", "bore"))
+    d: Array = given("mm", "inner diameter", symbol="d", ge=1, le=5000, also=("bearing diameter", "bore"))
 
-    @derived("mm", "wall", symbol="t", ge=0.2, le=200)
+    @derived("mm", "wall", symbol="t", ge=0.04, le=1000)
     def t(self) -> Array:
         """A twentieth of the bore."""
         return 0.05 * self.d
 
-    @derived("mm", "width", symbol="B", ge=0.5, le=2000, also=("bearing width",))
+    @derived("mm", "width", symbol="B", ge=0.1, le=5000, also=("bearing width",))
     def B(self) -> Array:
         """Half the bore."""
         return 0.5 * self.d
 
-    shells: str = choice("pair", "upper", "lower", words="shells", default="pair")
+    shells: str = choice("pair", "upper", "lower", "full", words="shells", default="pair")
 
-    @derived("mm", "lining thickness", symbol="t_l", ge=0.02, le=50)
+    @derived("mm", "lining thickness", symbol="t_l", ge=0, le=600)
     def t_l(self) -> Array:
         """An eighth of the wall."""
         return 0.125 * self.t
 
-    @derived("mm", "oil hole diameter", symbol="d_h", ge=0, le=500)
+    @derived("mm", "oil hole diameter", symbol="d_h", ge=0, le=1000)
     def d_h(self) -> Array:
         """As far as the width leaves room for it."""
         return np.minimum(0.08 * self.d, 0.2 * self.B)
 
-    @derived("mm", "oil groove width", symbol="w_g", ge=0, le=500)
+    @derived("mm", "oil groove width", symbol="w_g", ge=0, le=1000)
     def w_g(self) -> Array:
         """A little wider than the hole."""
         return np.minimum(1.25 * self.d_h, 0.5 * self.B)
 
-    @derived("mm", "oil groove depth", symbol="t_g", ge=0, le=100)
+    @derived("mm", "oil groove depth", symbol="t_g", ge=0, le=500)
     def t_g(self) -> Array:
         """About a third of the wall, if there is a groove."""
         return 0.35 * self.t * np.sign(self.w_g)
 
     phi_g: Array = given("deg", "oil groove angle", symbol=r"\varphi_g", default="180 deg", ge=20, le=180)
 
-    @derived("mm", "tang width", symbol="w_t", ge=0, le=500)
+    @derived("mm", "tang width", symbol="w_t", ge=0, le=1000)
     def w_t(self) -> Array:
-        """0.12 of the width; 0.09 where a side would be in the plane of the groove's."""
-        return self.B * clear_share(self.B, self.w_g)
+        """0.12 of the width; 0.09 where a side would be in the plane of the groove's; none of a full bush."""
+        return joints(self.shells) * self.B * clear_share(self.B, self.w_g)
 
-    @derived("mm", "tang length", symbol="l_t", ge=0.05, le=500)
+    @derived("mm", "tang length", symbol="l_t", ge=0.05, le=1000)
     def l_t(self) -> Array:
         """Along the wall."""
         return 0.08 * self.d
 
-    @derived("mm", "tang height", symbol="h_t", ge=0.02, le=200)
+    @derived("mm", "tang height", symbol="h_t", ge=0.01, le=1000)
     def h_t(self) -> Array:
         """Above the back."""
         return 0.4 * self.t
 
-    @derived("mm", "relief height", symbol="h_r", ge=0.05, le=500)
+    @derived("mm", "relief height", symbol="h_r", ge=0.05, le=1500)
     def h_r(self) -> Array:
         """Above the joint."""
         return 0.12 * self.d
 
-    @derived("mm", "relief depth", symbol="d_r", ge=0, le=20)
+    @derived("mm", "relief depth", symbol="d_r", ge=0, le=100)
     def d_r(self) -> Array:
-        """At the joint: a tenth of the lining."""
-        return 0.1 * self.t_l
+        """At the joint: a tenth of the lining; none if that is too little to be drawn, or of a full bush."""
+        return joints(self.shells) * if_drawable(0.1 * self.t_l, 1.0)
 
-    @derived("mm", "inner chamfer", symbol="c_i", ge=0, le=100)
+    @derived("mm", "inner chamfer", symbol="c_i", ge=0, le=500)
     def c_i(self) -> Array:
-        """Of the bore: a fifth of the wall."""
-        return 0.2 * self.t
+        """Of the bore: a fifth of the wall; none if that is too little to be drawn."""
+        return if_drawable(0.2 * self.t, 10.0)
 
-    @derived("mm", "outer chamfer", symbol="c_o", ge=0, le=100)
+    @derived("mm", "outer chamfer", symbol="c_o", ge=0, le=500)
     def c_o(self) -> Array:
         """Of the back: a quarter of the wall."""
         return 0.25 * self.t
 
-    @derived("mm", "flange diameter", symbol="D_f", ge=0, le=5000)
+    @derived("mm", "flange diameter", symbol="D_f", ge=0, le=15000)
     def D_f(self) -> Array:
         """None."""
         return 0 * self.d
 
-    @derived("mm", "flange thickness", symbol="b_f", ge=0.02, le=500)
+    @derived("mm", "flange thickness", symbol="b_f", ge=0.02, le=1000)
     def b_f(self) -> Array:
         """As thick as the wall."""
         return self.t

@@ -16,15 +16,18 @@ _SAME = 1e-6  # [mm]
 
 @dataclass(frozen=True)
 class ShellSeen:
-    """Back and lining of one half shell, and what it should be: of equal sizes the nearer one is meant."""
+    """Back and lining of one shell, and what it should be: of equal sizes the nearer one is meant.
+
+    Without a lining the back stands for it.
+    """
 
     back: Seen
     lining: Seen
     wanted: HalfShell
 
     def sizes(self, *, with_oil: bool, side: int) -> dict[str, float]:
-        """Every parameter by name; `side` is 1 of an upper shell, -1 of a lower one."""
-        joint = self.back.levels(Y)[0 if side > 0 else -1]
+        """Every parameter by name; `side` is 1 of an upper shell, -1 of a lower one, 0 of a full bush."""
+        joint = self.back.levels(Y)[0 if side > 0 else -1] if side else 0.0
         return {
             "inner_diameter": 2 * self.bore,
             "wall": self.wall,
@@ -56,8 +59,8 @@ class ShellSeen:
 
     @property
     def lining_wall(self) -> float:
-        """Thickness of the lining [mm]."""
-        return self.lining.diameters(Z)[-1] / 2 - self.bore
+        """Thickness of the lining [mm]; 0 if there is none."""
+        return self.lining.diameters(Z)[-1] / 2 - self.bore if self.wanted.is_lined else 0.0
 
     @property
     def groove_turn(self) -> float:

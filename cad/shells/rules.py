@@ -9,28 +9,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from cad.shells.parameters import ShellParameters
-from templates.core.language.template import Array, Truth, require, units
-
-
-@units("m", "1", returns="1")
-def drawable(length: Array, least: float) -> Truth:
-    """True if a length [m] is none, or one that the kernel can tell from none, `least` in micrometres."""
-    return (length <= 0) | (length >= 1e-6 * least)
+from cad.shells.parameters import ShellParameters, drawable, joints
+from templates.core.language.template import Array, Truth, require
 
 
 class ShellRules(ShellParameters):
-    """Parameters that make a half shell."""
+    """Parameters that make half shells or a full bush."""
 
     @require("lining_thickness", "wall", remedy="make the lining thinner or the wall thicker")
     def back_is_steel(self) -> Truth:
         """The lining takes at most 60 % of the wall."""
         return self.t_l <= 0.6 * self.t
-
-    @require("wall", "inner_diameter", remedy="make the wall thinner")
-    def wall_is_thin(self) -> Truth:
-        """The wall is at most 20 % of the bore: the shell is thin."""
-        return self.t <= 0.2 * self.d
 
     @require("oil_groove_width", "inner_chamfer", "width", remedy="make the groove narrower")
     def groove_within_width(self) -> Truth:
@@ -52,18 +41,25 @@ class ShellRules(ShellParameters):
 
     @require("oil_hole_diameter", "inner_diameter", remedy="make the hole smaller")
     def hole_within_bore(self) -> Truth:
-        """The oil hole takes at most 40 % of the bore."""
-        return self.d_h <= 0.4 * self.d
+        """The oil hole takes at most 80 % of the bore, so that it has a wall all around."""
+        return self.d_h <= 0.8 * self.d
+
+    @require("oil_hole_diameter", "relief_height", "relief_depth", "inner_diameter",
+             remedy="make the hole smaller or the relief lower")  # fmt: skip
+    def hole_clears_relief(self) -> Truth:
+        """The oil hole ends above the joint relief: it is at most 99 % as wide as the bore is there."""
+        above = np.sqrt(np.maximum(self.d**2 / 4 - self.h_r**2, 0.0))
+        return (self.d_r <= 0) | (self.d_h / 2 <= 0.99 * above)
 
     @require("oil_groove_depth", "wall", remedy="make the groove shallower or the wall thicker")
     def groove_within_wall(self) -> Truth:
         """The oil groove takes at most 80 % of the wall."""
         return self.t_g <= 0.8 * self.t
 
-    @require("oil_groove_depth", "oil_groove_width", remedy="give the groove both sizes, or neither")
-    def groove_has_a_section(self) -> Truth:
-        """An oil groove has a width and a depth, or neither."""
-        return ((self.t_g <= 0) & (self.w_g <= 0)) | ((self.t_g > 0) & (self.w_g > 0))
+    @require("oil_groove_depth", "oil_groove_width", remedy="give the groove a width, or no depth")
+    def groove_has_width(self) -> Truth:
+        """An oil groove that has a depth has a width."""
+        return (self.t_g <= 0) | (self.w_g > 0)
 
     @require("oil_groove_depth", "lining_thickness",
              remedy="end the groove within the lining or in the back, 5 % of the lining off")  # fmt: skip
@@ -80,19 +76,20 @@ class ShellRules(ShellParameters):
              remedy="make the hole as wide as the groove, or change it by 1 %")  # fmt: skip
     def hole_clears_groove_edge(self) -> Truth:
         """An oil hole wider than its groove is wider by 1 %; for less, OpenCASCADE returns wrong solids."""
-        return (self.w_g <= 0) | (self.d_h <= self.w_g) | (self.d_h >= 1.01 * self.w_g)
+        apart = (self.d_h <= self.w_g) | (self.d_h >= 1.01 * self.w_g)
+        return (self.w_g <= 0) | (self.t_g <= 0) | apart
 
     @require("oil_groove_angle", "oil_hole_diameter", remedy="make the groove longer or the hole smaller")
     def groove_holds_the_hole(self) -> Truth:
         """A groove over a part of the bore is longer than the oil hole is wide, by 10 %."""
-        return (self.w_g <= 0) | (self.d * np.sin(self.phi_g / 2) >= 1.1 * self.d_h)
+        return (self.t_g <= 0) | (self.d * np.sin(self.phi_g / 2) >= 1.1 * self.d_h)
 
     @require("oil_groove_angle", "relief_height",
              remedy="take 180°, or end the groove 5° above the relief")  # fmt: skip
     def groove_ends_above_relief(self) -> Truth:
         """A groove goes from joint to joint (180°), or ends 5° above the joint relief and at 160° at most."""
         end = np.arcsin(np.minimum(2 * self.h_r / self.d, 1.0)) + np.pi / 36
-        return (self.w_g <= 0) | (self.phi_g > 3.14159) | (self.phi_g <= np.minimum(np.pi - 2 * end, 2.8))
+        return (self.t_g <= 0) | (self.phi_g > 3.14159) | (self.phi_g <= np.minimum(np.pi - 2 * end, 2.8))
 
     @require("relief_height", "inner_diameter", remedy="make the relief lower")
     def relief_is_low(self) -> Truth:
@@ -165,7 +162,7 @@ class ShellRules(ShellParameters):
         """No side of the tang is in the plane of a groove's side; 0.5 % of the width is between them."""
         low, high, off = self.B / 4 - self.w_t / 2, self.B / 4 + self.w_t / 2, 0.005 * self.B
         clear = (abs(low - self.w_g / 2) >= off) & (abs(high - self.w_g / 2) >= off)
-        return (self.w_t <= 0) | (self.w_g <= 0) | clear
+        return (self.w_t <= 0) | (self.t_g <= 0) | clear
 
     @require("tang_height", "wall", remedy="make the tang lower")
     def tang_is_low(self) -> Truth:
@@ -196,3 +193,13 @@ class ShellRules(ShellParameters):
     def relief_is_drawable(self) -> Truth:
         """The relief is 0 deep, or at least 1 µm."""
         return drawable(self.d_r, 1.0)
+
+    @require("lining_thickness", remedy="use 0 for none")
+    def lining_is_drawable(self) -> Truth:
+        """The lining is 0 thick, or at least 5 µm."""
+        return drawable(self.t_l, 5.0)
+
+    @require("shells", "tang_width", "relief_depth", "crush_height", remedy="use 0 for none, or half shells")
+    def full_bush_has_no_joint(self) -> Truth:
+        """A full bush has no joint, so it has no tang, no joint relief and no crush height."""
+        return (joints(self.shells) > 0) | ((self.w_t <= 0) & (self.d_r <= 0) & (self.a <= 0))

@@ -81,8 +81,9 @@ class Engine(EngineMotion):
     direction; one that only turns points to x at that angle.
     Orders are of the pistons alone; shaking force and couple are exact and of all that moves, with balance
     shafts. Roll moment is what walls and heads put on the frame about the shaft.
-    Mean torque is that of the curve, by the trapezoidal rule. An energy area is that between torque and mean
-    torque from crossing to crossing; energy_area shows at each angle the area in which it lies.
+    Mean torque and power are those of the work of the gas, exact, whatever the step. Running energy and
+    energy areas are of the curve and its own mean, by the trapezoidal rule. An energy area is that between
+    torque and mean from crossing to crossing; energy_area shows at each angle the area in which it lies.
     Main loads act from the frame on the shaft, crankpin loads from the rod on the pin, in the engine's axes;
     rows are bearings. oil_film_cycle asks for the sense: say load_sense sleeve_on_journal.
     main_load: determinate, every load on the two mains of its span by the lever.

@@ -1,4 +1,4 @@
-"""Measured curves beside calculated ones: film, angular speed or strain over the crank angle.
+"""Measured curves beside calculated ones, with verdicts on how far they differ.
 
 A measurement has its own angles; it is read at those of the calculation.
 """
@@ -30,13 +30,17 @@ class MeasuredCurves(Template):
     """Measured curves beside calculated ones: film, angular speed or strain over the crank angle.
 
     A measurement has its own angles; it is read at those of the calculation, and the difference is stated.
+    Each curve has two criteria: the root of the mean square of its difference, and the largest difference,
+    against a limit that you give. There is no usual limit: without one a criterion is not checked.
 
     Limits
     ------
     Calculation and measurement repeat with one cycle. Between its points, and from the last to the first, a
     measurement is linear; it leaves no gap above a quarter of the cycle. Its angles plus measured_shift are
     those of the calculation. A difference is measured less calculated. Means count each calculated angle
-    alike. Nothing is filtered, and the error of the measurement is not known here.
+    alike. Nothing is filtered, and the error of the measurement is not known here: a limit smaller than it
+    judges the instrument. The verdict holds at the calculated angles: a peak that lies between two of them
+    is not seen.
 
     References
     ----------
@@ -53,6 +57,69 @@ class MeasuredCurves(Template):
         "measured_speed": {"value": [1501, 1494, 1492, 1501, 1514, 1506, 1500, 1496], "unit": "rpm"},
         "calculated_strain": {"value": [0, 2e-4, 1e-4, 0, 9e-4, 5e-4, 1e-4, 0], "unit": "1"},
         "measured_strain": {"value": [1e-5, 2.2e-4, 9e-5, 0, 8.5e-4, 5.2e-4, 1e-4, 2e-5], "unit": "1"},
+    }
+
+    criteria = {
+        "rms_film": {
+            "require": "rms_film_difference <= permissible_rms_film_difference",
+            "words": "the measured film differs little from the calculated one over the cycle",
+            "limits": {
+                "permissible_rms_film_difference": {
+                    "unit": "um",
+                    "words": "root of the mean square of measured less calculated film",
+                }
+            },
+        },
+        "largest_film": {
+            "require": "largest_film_difference <= permissible_largest_film_difference",
+            "words": "the measured film differs little from the calculated one at every angle",
+            "limits": {
+                "permissible_largest_film_difference": {
+                    "unit": "um",
+                    "words": "largest difference of measured and calculated film",
+                }
+            },
+        },
+        "rms_speed": {
+            "require": "rms_speed_difference <= permissible_rms_speed_difference",
+            "words": "the measured speed differs little from the calculated one over the cycle",
+            "limits": {
+                "permissible_rms_speed_difference": {
+                    "unit": "rpm",
+                    "words": "root of the mean square of measured less calculated speed",
+                }
+            },
+        },
+        "largest_speed": {
+            "require": "largest_speed_difference <= permissible_largest_speed_difference",
+            "words": "the measured speed differs little from the calculated one at every angle",
+            "limits": {
+                "permissible_largest_speed_difference": {
+                    "unit": "rpm",
+                    "words": "largest difference of measured and calculated speed",
+                }
+            },
+        },
+        "rms_strain": {
+            "require": "rms_strain_difference <= permissible_rms_strain_difference",
+            "words": "the measured strain differs little from the calculated one over the cycle",
+            "limits": {
+                "permissible_rms_strain_difference": {
+                    "unit": "1",
+                    "words": "root of the mean square of measured less calculated strain",
+                }
+            },
+        },
+        "largest_strain": {
+            "require": "largest_strain_difference <= permissible_largest_strain_difference",
+            "words": "the measured strain differs little from the calculated one at every angle",
+            "limits": {
+                "permissible_largest_strain_difference": {
+                    "unit": "1",
+                    "words": "largest difference of measured and calculated strain",
+                }
+            },
+        },
     }
 
     theta: Array = curve("deg", "crank angle", along=CYCLE, symbol=r"\theta", ge=-7200, le=7200)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from templates.core.language.template import Array, Truth, curve, formula, profile, require, shared, text
 from templates.groups.engine_balance import EngineBalance
+from templates.groups.engine_cylinders import EACH
 from templates.physics.crankshaft.main_bearings import (
     Vectors,
     along_x,
@@ -19,14 +20,13 @@ from templates.physics.engine.engine_curves import (
     areas_in_words,
     balancers,
     balancers_are_whole,
-    mean_of,
     piston_shaking,
     roll_moment,
     running_energy,
     swing_of,
     torque,
 )
-from templates.physics.engine.engine_gas import gas_force, pressures
+from templates.physics.engine.engine_gas import gas_force, indicated, pressures, torque_of_work
 from templates.physics.engine.engine_sizes import is_manageable
 from templates.physics.engine.offset_crank import RodMotion, axial_force, pin_force, rod_speed, wall_force
 from templates.physics.engine.slider_crank import crank_angles
@@ -127,10 +127,17 @@ class EngineMotion(EngineBalance):
         """Of all rods on the crank."""
         return torque(self.rod_forces, self.motion, self.theta)
 
-    @formula("N*m", "mean torque", symbol=r"\overline{T}")
+    @profile("bar", "indicated mean effective pressure", along=EACH, symbol="p_{mi}",
+             latex=r"\frac{1}{A\,s}\oint p\,dV")  # fmt: skip
+    def p_mi(self) -> Array:
+        """Of each cylinder; exact, whatever the step."""
+        return indicated(self.gas, self.f_p, self.layout)
+
+    @formula("N*m", "mean torque", symbol=r"\overline{T}",
+             latex=r"\frac{1}{\pi\,z}\sum p_{mi}\,A\,s")  # fmt: skip
     def T_mean(self) -> Array:
-        """That of the curve."""
-        return mean_of(self.T)
+        """That of the work of the gas; exact, whatever the step."""
+        return torque_of_work(self.p_mi, self.D, self.crank.stroke, self.strokes)
 
     @formula("kW", "mean power", symbol="P")
     def P(self) -> Array:

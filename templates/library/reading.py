@@ -70,7 +70,7 @@ def read_sources(path: Path) -> dict[str, Source]:
     _each_once(path, (record["key"] for record in records))
     for record in records:
         if not (record["citation"] and record["read"]):
-            raise UnusableTable(path, f"{record['key']} has no citation, or nobody read it")
+            raise UnusableTable(path, f"{record['key']} has no citation, or is not marked as read")
     return {record["key"]: Source(record["citation"], record["read"]) for record in records}
 
 
@@ -92,7 +92,7 @@ def _records(path: Path) -> Iterator[dict[str, str]]:
     lines = [line for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
     for record in csv.DictReader(lines, strict=True, restkey="beyond the head", restval=""):
         if "beyond the head" in record:
-            raise UnusableTable(path, f"{next(iter(record.values()))!r} has more cells than the head")
+            raise UnusableTable(path, f"{next(iter(record.values()))!r} has more cells than the header")
         yield {name: text.strip() for name, text in record.items()}
 
 
@@ -120,7 +120,7 @@ def _values(
     for head, text in record.items():
         match = _QUANTITY.fullmatch(head)
         if match is None and head not in _OTHERS and not head.startswith("source of "):
-            raise UnusableTable(path, f"the head {head!r} is none; write quantities as in `NAME [mm]`")
+            raise UnusableTable(path, f"the head {head!r} is not valid; write quantities like `NAME [mm]`")
         if match and text:
             own = f"source of {match[1]}"
             source = _citation(path, record, own if record.get(own) else "source", sources)
@@ -130,7 +130,9 @@ def _values(
 def _citation(path: Path, record: Mapping[str, str], column: str, sources: Mapping[str, Source]) -> str:
     key = record[column]
     if key not in sources:
-        raise UnusableTable(path, f"{record['id']} has the {column} {key!r}, which is in no list of sources")
+        raise UnusableTable(
+            path, f"{record['id']} has the {column} {key!r}, which is not in the list of sources"
+        )
     return sources[key].citation
 
 

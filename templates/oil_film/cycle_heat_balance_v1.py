@@ -6,30 +6,26 @@ of the supply give one viscosity; the orbit and the smallest film are those of t
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from templates.core.language.declare import limits
 from templates.core.language.template import (
     Array,
     Truth,
-    choice,
-    curve,
-    derived,
     formula,
     given,
     profile,
     require,
     shared,
 )
+from templates.groups.fed_bearing import FedBearing
 from templates.groups.oil import Oil
 from templates.physics.heat.cycle_heat import (
-    LEVELS,
     CycleBearing,
     CycleHeat,
     CycleOil,
-    cycle_heat,
     feed_flow_of,
-    groove_alone,
     left_by_HTHS,
     loss_of,
     rate_of,
@@ -37,33 +33,33 @@ from templates.physics.heat.cycle_heat import (
     temperature_of,
     viscosity_at_150,
     viscosity_of,
-    warmed_duty,
 )
+from templates.physics.heat.marched_heat import MARCHED_LEVELS, heat_of_cycle
 from templates.physics.journals.oil import by_law
 from templates.physics.numerics.arrays import spread
-from templates.physics.orbits.cyclic_film import (
-    CycleFilm,
-    Duty,
-    cycle_length,
-    largest_load,
-    mean_speed,
-)
+from templates.physics.orbits.cyclic_film import CycleFilm, Duty
 from templates.physics.supplied.fed_cycle import FedDuty, FedOrbit, fed_film, fed_orbit
-from templates.physics.supplied.feeding import Feeding, is_back, within_bearing
 
 BOOKER = "Booker 1965"
+ORBIT = "Booker 1965; supplied: Woloszynski et al. 2015"
 CROSS = "Cross 1965"
+LAWS = "ASTM D341; Vogel 1921"
 ISO = "ISO 7902-1:1998"
 NO_HTHS = "no HTHS viscosity is given: the oil does not thin by shear"
-NO_GROOVE = "no groove is given"
+BETWEEN = (
+    "give an hths_viscosity in mPa*s below that at low shear and 150 °C, see low_shear_viscosity_hot, and "
+    "above endless_shear_ratio times that"
+)
+ALL_OF_IT = "the side flow of level supplied is all the oil that leaves, what the supply drives with it"
 CYCLE = "crank_angle"
 UNBALANCED = (
     "no viscosity was found at which heat and viscosity agree: give more supply pressure or clearance, "
-    "cooler or thicker oil, or less load; without side flow nothing carries the heat off"
+    "cooler or thicker oil, or less load; without side flow nothing carries the heat off. At level supplied "
+    "a film may starve: see the verdict of oil_film_cycle 3"
 )
 
 
-class CycleHeatBalance(Oil):
+class CycleHeatBalance(Oil, FedBearing):
     """Heat balance of a journal bearing's film over an engine cycle: its effective viscosity.
 
     Loss and side flow of the film over the cycle, the flow that the supply pressure drives, and the
@@ -73,17 +69,24 @@ class CycleHeatBalance(Oil):
     ------
     One temperature and one viscosity for the whole film and cycle, at the mean of supply and outlet, as ISO
     7902-1 has it for a steady load. Nothing is stored in the walls, and what they carry off is the share of
-    the loss that heat_share leaves. The film is that of oil_film_cycle 2 at the same level: massless journal,
+    the loss that heat_share leaves. The film is that of oil_film_cycle 3 at the same level: massless journal,
     rigid, aligned, laminar; see there for load sense, angles and axes.
     Side flow is what the motion of the journal displaces from the ends. Feed flow is what the supply
     pressure drives from the groove over its two lands, with the gap along the orbit; the film's pressure does
     not hinder it, as in the standard. The ends of a groove that does not go around let out oil besides, and
-    holes do: both are left out, which errs to the hot side.
+    holes do: both are left out. The film is taken as always full, so more oil is displaced than leaves.
+    Level supplied conserves the oil: its side flow is all that leaves by the ends, and no feed flow is added.
+    It takes three or four marches of a second each, and one point at a time. A film that starves or does not
+    settle has no balance. On the example half as much oil leaves as at level mobility_grooved, and the rise
+    is half as large again.
     Levels mobility_short and mobility do not know the groove in their film, but count its flow.
     Shear thinning after Cross needs the HTHS viscosity of the oil (150 °C, 1e6 1/s). The shear rate is |U|/h,
     as mean over the circle and the cycle. What endless shear leaves, by default half, and the exponent, by
-    default 1, are properties of the oil for which no general source is known. The critical rate is taken from
-    150 °C to the film's temperature by the ratio of the viscosities.
+    default 1, are properties of the oil, for which there is no general source. The critical rate is taken
+    from 150 °C to the film's temperature by the ratio of the viscosities at low shear, as where time and
+    temperature superpose.
+    Power loss and mean shear rate have the formulas of a full film; level supplied takes the shear of the oil
+    that is there in the loss, and leaves the rate as it is.
     A dynamic_viscosity that is given is that of the film; heat and shear do not change it.
     Densities and viscosities are those at ambient pressure.
     No error of the model is stated: no measured cycle with all its inputs was at hand.
@@ -92,14 +95,16 @@ class CycleHeatBalance(Oil):
     ----------
     ISO 7902-1:1998, clause 6.4, for the balance.
     Booker: Journal of Basic Engineering 87, 1965, for the mobility method.
+    Woloszynski, Podsiadlo, Stachowiak: Tribology Letters 58:18, 2015, for mass-conserving cavitation.
     Cross: Journal of Colloid Science 20, 1965, p. 417; ASTM D4683 and SAE J300 for HTHS.
     ASTM D341 (Walther) or Vogel: Physikalische Zeitschrift 22, 1921, for the viscosity.
     """
 
-    levels = LEVELS
+    levels = MARCHED_LEVELS
     default_level = "mobility"
-    most_points = {"mobility_short": 2000, "mobility": 500, "mobility_grooved": 500}
+    most_points = {"mobility_short": 2000, "mobility": 500, "mobility_grooved": 500, "supplied": 1}
     precision = 1e-6
+    level_precision = {"supplied": 1e-5}  # its secants end where a march repeats
     example = {
         "crank_angle": {"value": list(range(0, 720, 30)), "unit": "deg"},
         "load_x": {
@@ -162,22 +167,6 @@ class CycleHeatBalance(Oil):
         },
     }
 
-    theta: Array = curve("deg", "crank angle", symbol=r"\theta", ge=-720, le=1440)
-    F_x: Array = curve("N", "load x")
-    F_y: Array = curve("N", "load y")
-    sense: str = choice(
-        "journal_on_sleeve", "sleeve_on_journal", words="load sense", default="journal_on_sleeve"
-    )
-    omega_J: Array = curve("rpm", "speed", constant=True, also=("journal speed",))
-    omega_B: Array = curve("rpm", "sleeve speed", constant=True, default="0 rpm")
-    omega_F: Array = curve("rpm", "frame speed", constant=True, default="0 rpm")
-    D: Array = given("mm", "bearing diameter", gt=0)
-    W: Array = given("mm", "bearing width", gt=0)
-    c: Array = given("mm", "diametral clearance", gt=0)
-    W_g: Array = given("mm", "groove width", symbol="B_{g}", alternative=True, gt=0)
-    phi_g: Array = given("deg", "groove start", symbol=r"\varphi_{g}", default="0 deg", ge=-360, le=360)
-    ext_g: Array = given("deg", "groove extent", symbol=r"\Delta\varphi_{g}", default="360 deg", gt=0, le=360)
-    p_s: Array = given("bar", "supply pressure", alternative=True, gt=0)
     T_s: Array = given("degC", "supply temperature", symbol="T_{s}", ge=-100, le=400)
     rho_c: Array = given("kJ/(m**3*K)", "heat capacity", default="1800 kJ/(m**3*K)", gt=0, source=ISO)
     k: Array = given("1", "heat share", default="1", ge=0, le=1)
@@ -186,86 +175,39 @@ class CycleHeatBalance(Oil):
     r_inf: Array = given("1", "endless shear ratio", symbol=r"r_{\infty}", default="0.5", ge=0, lt=1)
     n: Array = given("1", "Cross exponent", default="1", gt=0, le=3, source=CROSS)
 
-    @derived("rpm", "crank speed", symbol=r"\Omega", gt=0, remedy="give it where the journal does not turn")
-    def Omega(self) -> Array:
-        """The mean speed of the journal."""
-        return mean_speed(self.omega_J)
-
-    @require("crank_angle", remedy="12 to 3600 angles, the last point not repeated, no gap in between")
-    def one_cycle(self) -> Truth:
-        """The crank angles rise and cover one cycle of 360° or 720° once."""
-        return bool(np.isfinite(self.period))
-
-    @require("diametral_clearance", "bearing_diameter", remedy="give the clearance as bore minus journal")
-    def clearance_within_bearing(self) -> Truth:
-        """The diametral clearance is smaller than the bearing diameter."""
-        return self.c < self.D
-
-    @require("groove_width", "bearing_width", remedy="give the groove's width in mm, across the bearing")
-    def groove_within_bearing(self) -> Truth:
-        """The groove takes at most 95 % of the bearing's width."""
-        return within_bearing(self.W_g, self.W, self.W_g, self.D)
-
-    @require("supply_pressure", missing=True, remedy="give the pressure above ambient, such as 4 bar")
-    def fed_under_pressure(self) -> Truth:
-        """The supply pressure is known where a groove feeds oil."""
-        return np.isfinite(self.p_s) | np.isnan(self.W_g)
-
-    @require("sleeve_speed", "frame_speed", remedy="let it rest in the frame, or give a groove of 360 deg")
-    def sleeve_comes_back(self) -> Truth:
-        """A sleeve with a groove that ends is back at its place in the frame after the cycle."""
-        return is_back(self.duty, self.omega_B, self.feeding.partial())
-
-    @require("supply_pressure", warning="unused_input", remedy="give groove_width, or leave it out")
-    def pressure_counts(self) -> Truth:
-        """The supply pressure drives oil from a groove."""
-        return np.isnan(self.p_s) | np.isfinite(self.W_g)
-
     @require("hths_viscosity", warning="unused_input", remedy="leave it out, or dynamic_viscosity")
     def viscosity_follows(self) -> Truth:
         """Shear thins the oil where its viscosity is not given."""
         return np.isnan(self.as_given("eta")) | np.isnan(self.eta_H)
 
+    @require("groove_width", warning="unused_input", remedy="take level mobility_grooved or supplied")
+    def groove_counts(self) -> Truth:
+        """A groove counts in the film of levels mobility_grooved and supplied."""
+        return self.level in ("mobility_grooved", "supplied") or ~self.feeding.grooved
+
+    @require("sleeve_hole_length", warning="unused_input", remedy="take level supplied")
+    def sleeve_hole_counts(self) -> Truth:
+        """A hole in the sleeve feeds the film at level supplied alone."""
+        return (self.level == "supplied") | ~self.feeding.sleeve_holed
+
+    @require("pin_hole_length", warning="unused_input", remedy="take level supplied")
+    def pin_hole_counts(self) -> Truth:
+        """A hole in the pin feeds the film at level supplied alone."""
+        return (self.level == "supplied") | ~self.feeding.pin_holed
+
+    @require("supply_pressure", warning="unused_input", remedy="give groove_width, or leave it out")
+    def pressure_counts(self) -> Truth:
+        """The supply pressure drives oil from a groove; from holes at level supplied alone."""
+        return np.isnan(self.p_s) | self.feeding.grooved | (self.level == "supplied")
+
     def ladder(self) -> tuple[str, ...]:
-        """The levels that know how the bearing is fed."""
-        return ("mobility_grooved",) if np.any(np.isfinite(self.W_g)) else ("mobility_short", "mobility")
+        """The levels that know how the bearing is fed; level supplied only where something feeds it."""
+        cheap = ("mobility_grooved",) if np.any(self.feeding.grooved) else ("mobility_short", "mobility")
+        return (*cheap, "supplied") if np.all(self.feeding.count > 0) else cheap
 
     def starting_level(self) -> str:
-        """The level that knows the groove, if there is one."""
-        return self.ladder()[-1]
-
-    @shared
-    def period(self) -> Array:
-        """The cycle [rad]; NaN where the angles are none."""
-        return cycle_length(self.theta)
-
-    @formula("1", "relative clearance", symbol=r"\psi")
-    def psi(self) -> Array:
-        return self.c / self.D
-
-    @formula(
-        "1", "width ratio", symbol="b", ge=0.02, le=10, remedy="level mobility_short takes 0.01 … 100",
-        per_level={"mobility_short": limits(0.01, 100, published=(None, 0.25))},
-    )  # fmt: skip
-    def b(self) -> Array:
-        return self.W / self.D
-
-    @formula(
-        "1", "land ratio", symbol="b_{g}", ge=0, absent=NO_GROOVE,
-        remedy="each land beside the groove has at least 2 % of the diameter: give a narrower groove_width",
-        per_level={"mobility_grooved": limits(0.02, 5)},
-    )  # fmt: skip
-    def b_g(self) -> Array:
-        return (self.W - self.W_g) / (2 * self.D)
-
-    @formula("N", "largest load", symbol="F_{max}")
-    def F_max(self) -> Array:
-        return largest_load(self.F_x, self.F_y)
-
-    @shared
-    def feeding(self) -> Feeding:
-        """The groove."""
-        return groove_alone(self.D, self.W, self.W_g, self.phi_g, self.ext_g)
+        """The cheap level that knows the groove, if there is one."""
+        return next(level for level in ("mobility", "mobility_grooved") if level in self.ladder())
 
     @formula("s/m**2", "load scale", symbol="s")
     def s(self) -> Array:
@@ -275,18 +217,20 @@ class CycleHeatBalance(Oil):
     @shared
     def duty(self) -> Duty:
         """What the bearing has to do, with oil of 1 Pa s."""
-        sign = 1.0 if self.sense == "journal_on_sleeve" else -1.0
-        return Duty(
-            self.theta, sign * self.F_x, sign * self.F_y, self.omega_J, self.omega_B, self.omega_F,
-            self.Omega, self.s, self.b,
-        )  # fmt: skip
+        return replace(self.motion, scale=self.s)
+
+    @shared
+    def bearing(self) -> CycleBearing:
+        """The bearing over its cycle."""
+        return CycleBearing(self.level, self.duty, self.feeding, self.p_s, self.c / 2, relieved=True)
 
     @shared
     def eta_given(self) -> Array:
         """The viscosity of the film, if it is given."""
         return self.as_given("eta")
 
-    @formula("mPa*s", "low shear viscosity hot", symbol=r"\eta_{150}")
+    @formula("mPa*s", "low shear viscosity hot", symbol=r"\eta_{150}", source=LAWS,
+             latex=r"\eta\left(150\,\mathrm{°C}\right)")  # fmt: skip
     def eta_150(self) -> Array:
         """At low shear and 150 °C, the temperature of the HTHS viscosity."""
         return viscosity_at_150(
@@ -296,7 +240,7 @@ class CycleHeatBalance(Oil):
 
     @formula(
         "1", "HTHS ratio", symbol="x", name="hths_ratio", ge=1e-6, le=1 - 1e-6, absent=NO_HTHS,
-        source=CROSS, remedy="HTHS lies between the viscosities at low and at endless shear at 150 °C",
+        source=CROSS, remedy=BETWEEN,
     )  # fmt: skip
     def hths_ratio(self) -> Array:
         """What shear of 1e6 1/s leaves of what it can take."""
@@ -314,23 +258,27 @@ class CycleHeatBalance(Oil):
     @shared
     def heat(self) -> CycleHeat:
         """The balance."""
-        return cycle_heat(CycleBearing(self.level, self.duty, self.feeding, self.p_s, self.c / 2), self.oil)
+        return heat_of_cycle(self.bearing, self.oil)
 
     @formula(
-        "mPa*s", "effective viscosity", symbol=r"\eta_{e}", gt=0, lt=1e9, remedy=UNBALANCED,
-        assumes=("b", "b_g"),
+        "mPa*s", "effective viscosity", symbol=r"\eta_{e}", gt=0, lt=1e9, remedy=UNBALANCED, source=CROSS,
+        assumes=("b", "b_g", "inlets"),
+        latex=r"r_{\infty}\,\eta+\frac{\left(1-r_{\infty}\right)\eta}{1+\frac{1-x}{x}\left(\frac{\dot\gamma\,\eta}"
+        r"{10^{6}\,\mathrm{s^{-1}}\,\eta_{150}}\right)^{n}}",
     )  # fmt: skip
     def eta_e(self) -> Array:
-        """Of the whole film, at its temperature and shear rate."""
+        """Of the whole film, at its temperature and shear rate; without an HTHS viscosity it is η."""
         return viscosity_of(self.heat)
 
-    @formula("degC", "film temperature", symbol="T")
+    @formula("degC", "film temperature", symbol="T_{m}", source=ISO,
+             latex=r"T_{s}+\frac{k\,P}{2\,\rho_{c}\left(Q+Q_{p}\right)}")  # fmt: skip
     def T_film(self) -> Array:
-        """The mean of supply and outlet."""
+        """The mean of supply and outlet, by the heat that the oil carries off; supplied: without Q_p."""
         return temperature_of(self.heat, self.eta_e)
 
     @formula("degC", "outlet temperature", symbol="T_{ex}", source=ISO)
     def T_ex(self) -> Array:
+        """Where the oil leaves."""
         return 2 * self.T_film - self.T_s
 
     @formula("K", "temperature rise", symbol=r"\Delta T", source=ISO)
@@ -338,7 +286,9 @@ class CycleHeatBalance(Oil):
         """From supply to outlet."""
         return self.T_ex - self.T_s
 
-    @formula("1/s", "mean shear rate", symbol=r"\dot\gamma")
+    @formula("1/s", "mean shear rate", symbol=r"\dot\gamma",
+             latex=r"\frac{1}{T}\int_{T}\frac{D\left|\omega_{J}-\omega_{B}\right|}{"
+             r"c\,\sqrt{1-\epsilon^{2}}}d\theta")  # fmt: skip
     def rate(self) -> Array:
         """Sliding speed over gap, as mean over circle and cycle."""
         return rate_of(self.heat, self.eta_e)
@@ -348,25 +298,32 @@ class CycleHeatBalance(Oil):
         """The share of the viscosity that shear takes."""
         return 1 - self.eta_e / self.eta
 
-    @formula("W", "power loss", symbol="P")
+    @formula("W", "power loss", symbol="P",
+             latex=r"\frac{1}{T}\int_{T}\left(\frac{\pi\,\eta_{e}\,W\,D^{3}\left(\omega_{J}-\omega_{B}\right)^{2}}{"
+             r"2\,c\,\sqrt{1-\epsilon^{2}}}+\vec{F}\cdot\vec{v}\right)d\theta")  # fmt: skip
     def P(self) -> Array:
-        """Mean over the cycle."""
+        """Mean over the cycle; v is the centre's velocity, seen from axes that turn at the mean speed."""
         return loss_of(self.heat, self.eta_e)
 
-    @formula("l/min", "side flow", symbol="Q")
+    @formula("l/min", "side flow", symbol="Q", latex=r"\frac{W\,D\,c\,\Omega}{2}\,\bar{q}")
     def Q(self) -> Array:
-        """What the motion of the journal displaces."""
+        """What the motion of the journal displaces; at level supplied all that leaves by the ends.
+
+        With a bar it is that of the dimensionless film, as mean over the cycle.
+        """
         return side_flow_of(self.heat, self.eta_e)
 
-    @formula("l/min", "feed flow", symbol="Q_{p}", source=ISO)
+    @formula("l/min", "feed flow", symbol="Q_{p}", source=ISO, absent=ALL_OF_IT,
+             latex=r"\frac{p_{s}\,D}{6\,\eta_{e}\left(W-B_{g}\right)}\,\frac{1}{T}\int_{T}\int_{\Delta\varphi_{g}}"
+             r"h^{3}\,d\varphi\,d\theta")  # fmt: skip
     def Q_p(self) -> Array:
-        """What the supply pressure drives from the groove."""
+        """What the supply pressure drives from the groove over its lands, with the gap along the groove."""
         return feed_flow_of(self.heat, self.eta_e)
 
     @shared
     def fed(self) -> FedDuty:
         """The duty at the effective viscosity."""
-        return warmed_duty(self.duty, self.feeding, self.eta_e)
+        return self.bearing.fed(self.eta_e)
 
     @shared
     def orbit(self) -> FedOrbit:
@@ -378,22 +335,28 @@ class CycleHeatBalance(Oil):
         """Its pressure."""
         return fed_film(self.level, self.fed, self.orbit)
 
-    @formula("1", "maximum eccentricity", symbol=r"\epsilon_{max}", lt=1, source=BOOKER)
+    @formula("1", "maximum eccentricity", symbol=r"\epsilon_{max}", lt=1, source=ORBIT)
     def eps_max(self) -> Array:
+        """Relative; between the angles too."""
         return self.orbit.eps_max
 
-    @formula("um", "minimum film thickness", symbol="h_{0}", source=BOOKER)
+    @formula("um", "minimum film thickness", symbol="h_{0}")
     def h_0(self) -> Array:
+        """The smallest of the cycle, between the angles too."""
         return self.c * (1 - self.eps_max) / 2
 
     @formula("deg", "minimum film angle", symbol=r"\theta_{h}")
     def theta_h(self) -> Array:
+        """Crank angle of the smallest film."""
         return self.orbit.angle
 
     @profile("um", "film thickness", along=CYCLE, symbol="h", latex=r"\frac{c}{2}\left(1-\epsilon\right)")
     def h(self) -> Array:
+        """The smallest around the bearing, at each crank angle."""
         return spread(self.c / 2, self.orbit.gap)
 
-    @formula("MPa", "maximum pressure", symbol="p_{max}")
+    @formula("MPa", "maximum pressure", symbol="p_{max}",
+             latex=r"\frac{\eta_{e}\,\Omega}{\psi^{2}}\,\max\bar p\left(\theta\right)")  # fmt: skip
     def p_max(self) -> Array:
+        """The largest of the cycle, at its angles; with a bar, of the dimensionless film."""
         return self.film.P_max * self.eta_e * self.Omega / self.psi**2

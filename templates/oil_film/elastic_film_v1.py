@@ -1,6 +1,7 @@
-"""Oil film of a journal bearing under static load whose liner, housing and oil give way to the pressure.
+"""Oil film of a journal bearing under static load whose liner, bore and oil give way to the pressure.
 
-A plain, aligned bearing at three levels: rigid; with its liner as columns; with its housing as a thick ring.
+A plain, aligned bearing: rigid; with its liner as columns; with its housing as a thick ring; with its bore by
+the compliance of a drawn housing or rod.
 """
 
 from __future__ import annotations
@@ -8,19 +9,42 @@ from __future__ import annotations
 import numpy as np
 
 from templates.core.language.declare import limits
-from templates.core.language.template import Array, Truth, formula, given, require, shared, text
+from templates.core.language.template import (
+    Array,
+    Truth,
+    derived,
+    formula,
+    given,
+    require,
+    shared,
+    table,
+    text,
+)
 from templates.groups.journal import ISO, Journal
+from templates.groups.journal_criteria import CRITERIA
 from templates.groups.oil import Oil
+from templates.physics.elastic.bore_journal import (
+    ALL_LEVELS,
+    ELASTIC,
+    Bore,
+    bore_film_at,
+    neglected_in_bore,
+)
+from templates.physics.elastic.bore_modes import (
+    MODES,
+    Rows,
+    count_modes,
+    gains_no_energy,
+    is_mutual,
+    is_square,
+)
 from templates.physics.elastic.compliance import liner_compliance
 from templates.physics.elastic.elastic_journal import (
     HOUSING,
-    LEVELS,
     LINER,
     RIGID,
     Elasticity,
     ElasticJournalFilm,
-    elastic_film_at,
-    neglected_deformation,
     roelands_exponent,
     wall_ratio,
 )
@@ -28,7 +52,7 @@ from templates.physics.journals.lubrication_regime import friction_coefficient
 
 LAME = "Lamé 1852; Michell 1899"
 ROELANDS = "Roelands 1966"
-RIGID_HAS_NONE = "level rigid has none; take level liner or housing"
+RIGID_HAS_NONE = "level rigid has none; take level liner, housing or elastic"
 UNBORNE = (
     "no film was found that bears this: lower the load, or stiffen what gives way. Where a soft liner is "
     "pressed far into its backing, the ends of the bearing, which no pressure bends, almost touch the journal"
@@ -36,9 +60,10 @@ UNBORNE = (
 
 
 class ElasticFilm(Oil, Journal):
-    """Oil film of a journal bearing under static load whose liner, housing and oil give way to the pressure.
+    """Oil film of a journal bearing under static load whose liner, bore and oil give way to the pressure.
 
-    A plain, aligned bearing at three levels: rigid; with its liner as columns; with its housing as a ring.
+    A plain, aligned bearing: rigid; with its liner as columns; with its housing as a thick ring; with its
+    bore by the compliance of a drawn housing or rod.
 
     Limits
     ------
@@ -49,17 +74,27 @@ class ElasticFilm(Oil, Journal):
     Level liner: a bonded layer on a rigid back, each column for itself. It holds for a layer that is thin
     beside the length of the pressed zone; near Poisson's ratio 1/2 a layer is softer than its columns.
     Level housing: the liner, and behind it a ring in plane strain, free outside. It feels the mean of the
-    pressure across the width, so it bends no ends: real housings give way less at their ends, or more. Ribs,
-    caps, bolts and what carries the ring are left out. Its first harmonic, which carries the load, moves the
-    bore as a whole: eccentricity is that of the journal against the displaced bore, and may exceed 1.
-    40 harmonics count. The journal is rigid; thermal growth and the fit of the shell are left out.
-    Oil thickens after Roelands with the coefficient given, at levels liner and housing only: with rigid walls
-    and thickening oil there may be no film at all. Its density does not change.
+    pressure across the width. Ribs, caps, bolts and what carries the ring are left out. 40 harmonics count.
+    Level elastic: the liner, and behind it the bore whose compliance is given: the matrix of the analysis
+    bore_compliance of a bearing_housing or connecting_rod, 38 rows and columns. Modes are harmonics 0 to 9
+    around, even along the bore or as Legendre's second polynomial, scaled to a mean square of 1. Harmonics 10
+    to 40 are those of a half plane of housing_modulus and housing_poisson_ratio.
+    The matrix counts its angle from the block or shank in the sense of rotation, and load_angle is from there
+    to the load, which is what the journal pushes with. For the other sense of rotation change the sign of
+    each entry between a cosine and a sine; a bore that mirrors itself has none.
+    The bearing lies in the middle of bore_width and is not wider. Linear and static; nothing that differs
+    from end to end, so no misalignment; the joint neither opens nor slides; no inertia of a moving rod.
+    At both levels the motion of the bore as a whole is left out: eccentricity is that of the journal against
+    the displaced bore, and may exceed 1. The journal is rigid; thermal growth and the fit of the shell are
+    left out.
+    Oil thickens after Roelands with the coefficient given, at the soft levels only: with rigid walls and
+    thickening oil there may be no film at all. Its density does not change.
     A film is refused where the deformation exceeds a hundred times the smallest film.
-    Criterion elasticity compares what the level leaves out, estimated from the largest pressure and the load,
-    with the smallest film. Where the deformation is small it exceeds the solution by 0 to 25 %.
-    A point takes about 0.06 s of processor time at level liner and 0.1 to 0.4 s at level housing, and up to
-    2 s if it is refused; at level rigid some milliseconds alone, far less among many.
+    Criterion elasticity compares what the level leaves out, estimated from the largest pressure, the load and
+    the compliance, with the smallest film; a matrix goes before a ring. With a matrix it takes the rigid
+    film's place and shape of the pressure, and may be a quarter below the solution.
+    A point takes about 0.06 s of processor time at level liner, 0.1 to 0.4 s at level housing, 0.2 to 1 s at
+    level elastic, and some seconds if it is refused; at level rigid some milliseconds.
 
     References
     ----------
@@ -67,13 +102,14 @@ class ElasticFilm(Oil, Journal):
     de l'élasticité, 1852; Barber: Elasticity, 3rd ed. 2010, for the ring.
     Johnson: Contact Mechanics, 1985, section 4.3, for the layer as columns.
     Roelands: Correlational aspects of the viscosity-temperature-pressure relationship, Delft 1966.
+    Johnson, section 13.2, for the half plane.
     Oh, Goenka: Journal of Tribology 107, 1985, p. 389, for elastic engine bearings.
     DIN 31652:1983, ISO 7902:1998, for the rigid film.
     """
 
-    levels = LEVELS
+    levels = ALL_LEVELS
     default_level = RIGID
-    most_points = {"rigid": 5_000, "liner": 100, "housing": 50}
+    most_points = {"rigid": 5_000, "liner": 100, "housing": 50, "elastic": 20}
     precision = 1e-6
     example = {
         "radial_load": "10 kN",
@@ -92,28 +128,9 @@ class ElasticFilm(Oil, Journal):
             "source": "an estimate of the deformation at the largest pressure; see the limits",
             "warning": "elasticity_matters",
         },
-        "own_film": {
-            "require": "minimum_film_thickness >= permissible_film",
-            "words": "the smallest film is not thinner than its user permits",
-            "limits": {"permissible_film": {"unit": "um", "words": "smallest film that its user permits"}},
-        },
-        "film_exists": {
-            "require": "minimum_film_thickness >= 0.05 um",
-            "words": "the film is not thinner than the finest surfaces are rough",
-            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
-            "warning": "film_too_thin",
-        },
-        "pressure": {
-            "require": "maximum_pressure <= permissible_pressure",
-            "words": "the pressure of the film is within what the bearing material bears",
-            "limits": {
-                "permissible_pressure": {
-                    "unit": "MPa",
-                    "words": "largest pressure of the film that the bearing material bears",
-                    "from": "bearing_material",
-                }
-            },
-        },
+        "own_film": CRITERIA["own_film"],
+        "film_exists": CRITERIA["film_exists"],
+        "pressure": CRITERIA["pressure"],
     }
 
     T_film: Array = given("degC", "oil temperature", symbol="T", alternative=True, ge=-100, le=500)
@@ -124,6 +141,33 @@ class ElasticFilm(Oil, Journal):
     E_h: Array = given("GPa", "housing modulus", default="210 GPa", gt=0)
     nu_h: Array = given("1", "housing Poisson ratio", symbol=r"\nu_{h}", default="0.3", ge=0, le=0.49)
     alpha: Array = given("1/MPa", "pressure viscosity", symbol=r"\alpha_{p}", default="0 1/MPa", ge=0, le=0.1)
+    C_b: Rows = table("um/GPa", "compliance", *MODES, most=38, symbol="C_{ij}", ge=-1e9, le=1e9)
+    theta_F: Array = given("deg", "load angle", symbol=r"\theta_{F}", default="0 deg", ge=-360, le=360)
+
+    @derived("mm", "bore width", symbol="W_{b}", gt=0)
+    def W_b(self) -> Array:
+        """Along the bore whose compliance is given: that of the bearing, unless given."""
+        return self.W
+
+    @require("compliance", remedy="give 38 rows in the order of its columns, one for each mode")
+    def compliance_is_square(self) -> Truth:
+        """The compliance has as many rows as columns, 38."""
+        return is_square(self.C_b)
+
+    @require("compliance", remedy="give equal values in row i, column j and in row j, column i")
+    def compliance_is_mutual(self) -> Truth:
+        """The compliance is symmetric, because work is mutual (Betti)."""
+        return is_mutual(self.C_b)
+
+    @require("compliance", remedy="give a matrix without negative eigenvalues, as an elastic bore has")
+    def compliance_takes_energy(self) -> Truth:
+        """No pressure moves the bore against itself."""
+        return gains_no_energy(self.C_b)
+
+    @require("bearing_width", "bore_width", remedy="give the width of the bore that was analysed")
+    def bearing_within_bore(self) -> Truth:
+        """The bearing is not wider than the bore whose compliance is given."""
+        return (self.W <= 1.000001 * self.W_b) | np.isnan(self.W_b)
 
     @require(
         "housing_outer_diameter", "bearing_diameter", "liner_thickness", remedy="give that of its outside"
@@ -133,15 +177,18 @@ class ElasticFilm(Oil, Journal):
         return (self.D_h >= 1.001 * (self.D + 2 * self.t_l)) | np.isnan(self.D_h)
 
     @require(
-        "pressure_viscosity", warning="unused_input", remedy="take level liner or housing, or leave it out"
+        "pressure_viscosity", warning="unused_input", remedy="take a level that is not rigid, or leave it out"
     )
     def thickening_counts(self) -> Truth:
-        """Oil thickens under pressure at levels liner and housing only."""
+        """Oil does not thicken under pressure at level rigid."""
         return (self.level != RIGID) | (self.alpha == 0)
 
     def ladder(self) -> tuple[str, ...]:
         """The levels for which what gives way is known."""
-        known = {RIGID: True, LINER: bool(np.all(self.t_l > 0)), HOUSING: bool(np.all(np.isfinite(self.D_h)))}
+        known = {
+            RIGID: True, LINER: bool(np.all(self.t_l > 0)), HOUSING: bool(np.all(np.isfinite(self.D_h))),
+            ELASTIC: bool(len(self.C_b)),
+        }  # fmt: skip
         return tuple(level for level in self.levels if known[level])
 
     @formula("1", "Sommerfeld number", symbol="S_{0}", ge=0, source=ISO)
@@ -168,6 +215,15 @@ class ElasticFilm(Oil, Journal):
         """Outer over inner diameter of the housing, 1 without one."""
         return wall_ratio(self.D_h, self.D + 2 * self.t_l)
 
+    @formula(
+        "1", "compliance modes", symbol="n_{m}",
+        remedy="level elastic needs compliance, the matrix of an analysis bore_compliance",
+        per_level={"elastic": limits(38)},
+    )  # fmt: skip
+    def n_m(self) -> Array:
+        """Rows of the bore's compliance, 0 without one."""
+        return count_modes(self.C_b)
+
     @formula("um/GPa", "liner compliance", symbol="C_{l}", source="Johnson 1985")
     def C_l(self) -> Array:
         return liner_compliance(self.t_l, self.E_l, self.nu_l)
@@ -186,12 +242,22 @@ class ElasticFilm(Oil, Journal):
         )  # fmt: skip
 
     @shared
+    def bore(self) -> Bore:
+        """What level elastic takes besides."""
+        return Bore(self.C_b, self.W / self.W_b, self.theta_F)
+
+    @shared
     def unbounded_film(self) -> ElasticJournalFilm:
         """The film at this level, wherever it leads."""
-        return elastic_film_at(self.level, self.S_0, self.b, self.elasticity)
+        return bore_film_at(self.level, self.S_0, self.b, self.elasticity, self.bore)
 
     @formula(
-        "1", "relative eccentricity", ge=0, lt=1000, assumes=("b", "liner_ratio", "wall"), remedy=UNBORNE
+        "1",
+        "relative eccentricity",
+        ge=0,
+        lt=1000,
+        assumes=("b", "liner_ratio", "wall", "n_m"),
+        remedy=UNBORNE,
     )
     def eps(self) -> Array:
         """Displacement of the journal against the displaced bore, over the radial clearance."""
@@ -243,9 +309,9 @@ class ElasticFilm(Oil, Journal):
     @formula("um", "neglected deformation", symbol="u_{n}", source=LAME)
     def u_n(self) -> Array:
         """What would give way besides, by an estimate."""
-        return neglected_deformation(
-            self.level, self.p_max, self.F, self.D / 2, self.W, self.C_l,
-            self.D / 2 + self.t_l, self.D_h / 2, self.E_h, self.nu_h,
+        return neglected_in_bore(
+            self.level, self.p_max, self.F, self.D / 2, self.W, self.C_l, self.D / 2 + self.t_l,
+            self.D_h / 2, self.E_h, self.nu_h, self.C_b, self.W_b, self.theta_F + self.theta_p,
         )  # fmt: skip
 
     @formula("1", "largest thickening", symbol=r"\eta_{max}/\eta", source=ROELANDS)

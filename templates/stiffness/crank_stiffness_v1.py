@@ -11,7 +11,13 @@ from typing import Any
 import numpy as np
 
 from templates.core.language.template import Array, Template, Truth, formula, given, require, text
-from templates.physics.shafts.torsion_throw import reason, recommended, recommended_stiffness, ring
+from templates.physics.shafts.torsion_throw import ring
+from templates.physics.shafts.torsion_transition import (
+    joined_stiffness,
+    reason,
+    recommended,
+    share_of_wilson,
+)
 
 CARTER = "Carter 1928"
 WILSON = "Ker Wilson 1956"
@@ -31,7 +37,10 @@ class CrankStiffness(Template):
     Limits
     ------
     Carter is for flexible webs without overlap of journal and pin, Ker Wilson for stiff webs with overlap;
-    the sign of the overlap recommends one of them, both are returned.
+    the overlap recommends one of them, both are returned.
+    Where the overlap is within ±0.1 (journal diameter + pin diameter) the recommended stiffness passes from
+    one to the other without a jump: their flexibilities are joined in shares. The literature names the sign
+    of the overlap and no width; the width is ours.
     With a throw below 0.2 (journal diameter + pin diameter) Ker Wilson's web term is negative: a warning.
     Where it outweighs journal and pin the formula gives no stiffness: a refusal, of this formula alone.
     Sensitivities are d ln K/d ln x, all other dimensions kept: a value of 2 means that 1 % more of the
@@ -160,17 +169,21 @@ class CrankStiffness(Template):
     def s(self) -> Array:
         return (self.D_j + self.D_c) / 2 - self.R
 
+    @formula("1", "share of Wilson", symbol="c_s")
+    def c_s(self) -> Array:
+        return share_of_wilson(self.s, self.D_j, self.D_c)
+
     @text("recommended")
     def which(self) -> str:
-        return recommended(self.s)
+        return recommended(self.c_s)
 
     @text("reason")
     def why(self) -> str:
-        return reason(self.s, self.R_e)
+        return reason(self.c_s, self.R_e)
 
     @formula("N*m/rad", "recommended stiffness", symbol="K")
     def K(self) -> Array:
-        return recommended_stiffness(self.s, self.K_C, self.K_W)
+        return joined_stiffness(self.c_s, self.K_C, self.K_W)
 
     @formula("%", "Wilson minus Carter, of Carter", symbol=r"\Delta_C", **COMPARABLE)
     def delta_C(self) -> Array:

@@ -58,7 +58,7 @@ def shelf(database):
         ({"state": "failed"}, ["100 % Größe"]),
         ({"template": "oil_film"}, ["main SHELL", "Main bearing"]),
         ({"template": "oil_film/2"}, ["Main bearing"]),
-        ({"template": "oil_film/3"}, []),
+        ({"template": "oil_film/9"}, []),
         ({"template": "oil"}, []),
         ({"template": "plain_bearing"}, ["main SHELL"]),
         ({"template": "plain_bearings"}, []),

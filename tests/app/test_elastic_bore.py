@@ -13,7 +13,7 @@ from templates.core.language.evaluate import evaluate
 from templates.door import built_in
 from tests.recorded_bore import BORE_WIDTH, MODULUS, POISSON_RATIO, recorded_bore
 
-FILM = built_in().get("elastic_film", 2)
+FILM = built_in().get("elastic_film", 1)
 MESH = {"elements": 10, "degrees_of_freedom": 90, "order": 2, "mirror_plane": "xy"}
 RELATED = {
     "compliance": "= housing.bore_compliance.compliance",
@@ -34,7 +34,7 @@ def design(bore, level):
     return {
         "name": "elastic film",
         "models": {"housing": housing(bore, level)},
-        "steps": {"film": {"template": "elastic_film", "version": 2, "level": "elastic", "inputs": inputs}},
+        "steps": {"film": {"template": "elastic_film", "version": 1, "level": "elastic", "inputs": inputs}},
     }
 
 

@@ -69,7 +69,7 @@ def test_a_worker_needs_places_of_lanes_that_there_are(lanes, monkeypatch):
 @pytest.mark.parametrize(
     ("arguments", "environment", "said"),
     [
-        (["worker"], {}, "name the scheduler by --scheduler"),
+        (["worker"], {}, "name the scheduler with --scheduler"),
         (
             ["worker", "--scheduler", "tcp://10.0.0.1:1"],
             {},

@@ -79,8 +79,8 @@ def design(http, served):
         )
     steps = {
         "train": {"template": "forced_torsion", "version": 1, "inputs": TORSION},
-        "life": {"template": "fatigue_life", "version": 2, "inputs": LIFE},
-        "other": {"template": "fatigue_life", "version": 2, "inputs": {
+        "life": {"template": "fatigue_life", "version": 1, "inputs": LIFE},
+        "other": {"template": "fatigue_life", "version": 1, "inputs": {
             **LIFE, "stress_of_force_1": {"value": [TENSOR], "unit": "MPa/kN"}}},
     }  # fmt: skip
     saved = created(http, {"name": "engine", "models": {"shaft": shaft}, "steps": steps})
@@ -173,7 +173,7 @@ def test_the_description_offers_no_option_of_other_files(http):
 
 def life_of(use, source="shaft"):
     step = {
-        "template": {"id": "fatigue_life", "version": 2, "digest": "0"},
+        "template": {"id": "fatigue_life", "version": 1, "digest": "0"},
         "inputs": {},
         "outputs": {"load_use": {"value": use, "unit": "1"}},
         "relations": {"stress_of_force_1": f"= {source}.unit_loads.stress_of_force_1"},

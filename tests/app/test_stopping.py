@@ -28,12 +28,12 @@ from serving import (
 )
 
 from app.calculations.bodies import OIL_FILM
-from templates.oil_film.cycle_heat_balance_v2 import CycleHeatBalance
+from templates.oil_film.cycle_heat_balance_v1 import CycleHeatBalance
 
 DESIGNS = f"{API}/designs"
 CPU = re.compile("(process_cpu_seconds_total|crankwright_children_cpu_seconds) ")
 EVALUATE = f"{API}/templates/oil_film/versions/2/evaluate"
-CYCLE = f"{API}/templates/cycle_heat_balance/versions/2/evaluate"
+CYCLE = f"{API}/templates/cycle_heat_balance/versions/1/evaluate"
 MARCHED = {"inputs": CycleHeatBalance.example, "level": "supplied"}  # takes longer than a server drains
 
 

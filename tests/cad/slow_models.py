@@ -20,7 +20,7 @@ housings, are models of their own, in the quick lane; so is a later version."""
 BALLS = ("deep_groove_bearing", 1)
 """To draw one takes as long as all other models in the quick lane together."""
 
-DRAWN = (("connecting_rod", 1), ("plain_bearing", 3), ("thrust_washer", 2))
+DRAWN = (("connecting_rod", 1), ("plain_bearing", 3), ("thrust_washer", 1))
 """Models whose drawings and files of all kinds are in the quick lane: they are made from the STEP file by the
 same code for every model. These have holes, grooves, colours, and the simplest solid."""
 

@@ -13,7 +13,7 @@ from cad.overlaps import gap, overlaps
 from cad.regenerate import Build, regenerate
 from cad.step import Body, read_step
 from templates.core.errors import InvalidInputs
-from templates.oil_film.oil_film_v3 import OilFilm
+from templates.oil_film.oil_film_v2 import OilFilm
 
 WITHOUT_CRUSH = {**BearingAssembly.example, "crush_height": "0 mm", "housing_bore": "52.855 mm"}
 

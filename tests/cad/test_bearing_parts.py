@@ -20,7 +20,7 @@ from templates.core.errors import InvalidInputs
 from templates.core.language.spec import Choice, Derived
 
 NEW = [
-    ("thrust_washer", 2),
+    ("thrust_washer", 1),
     ("flanged_bush", 1),
     ("plain_bearing", 2),
     ("plain_bearing", 3),

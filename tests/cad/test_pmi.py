@@ -23,9 +23,11 @@ from cad.step import read_step
 from templates.core.errors import InvalidInputs
 from templates.core.units.fits import deviations
 
-QUICK = [("plain_bearing", 1)] * 6 + [("ball_bearing", 1)] * 3 + [("crank_throw", 1)]
+QUICK = (
+    [("plain_bearing", 1)] * 3 + [("plain_bearing", 3)] * 3 + [("ball_bearing", 1)] * 3 + [("crank_throw", 1)]
+)
 ALL = [
-    ("plain_bearing", 1), ("ball_bearing", 1), ("flanged_bush", 1), ("thrust_washer", 2), ("crank_throw", 1),
+    ("plain_bearing", 1), ("ball_bearing", 1), ("flanged_bush", 1), ("thrust_washer", 1), ("crank_throw", 1),
     ("crankshaft", 1), ("crankshaft", 2), ("plain_bearing", 2), ("plain_bearing", 3), ("bearing_housing", 1),
     ("bearing_assembly", 1), ("connecting_rod", 1),
 ]  # fmt: skip
@@ -76,8 +78,11 @@ def scaled(cls, rng):
             given[name] = {"value": [v * factor for v in raw["value"]], "unit": "mm"}
         else:
             given[name] = raw
-    if "shell" in cls.inputs:
-        given["shell"] = str(rng.choice(["half", "full"]))
+    for name in ("shell", "shells"):
+        if name in cls.inputs:
+            given[name] = str(rng.choice(cls.inputs[name].options))
+    if given.get("shells") == "full":
+        given |= dict.fromkeys(("tang_width", "relief_depth", "crush_height", "free_spread"), "0 mm")
     return as_text(cls.from_quantities(given))
 
 

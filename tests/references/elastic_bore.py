@@ -210,7 +210,7 @@ def balanced(film: Film, So: float) -> Film:
         if done and np.array_equal(moved, inside):
             return after
         film, inside = after, moved
-    raise Lost("the film does not settle")
+    raise Lost("the film does not converge")
 
 
 def _step(film: Film, H: Array, inside: Mask, So: float) -> tuple[Array, float, float]:

@@ -33,14 +33,14 @@ def refusal(opened, **place):
     [
         ("bucket", "write s3://bucket"),
         ("gs://bucket", "its scheme is 'gs'"),
-        ("s3://", "not a name of a bucket"),
-        ("s3://B", "not a name of a bucket"),
-        ("s3://a b", "not a name of a bucket"),
+        ("s3://", "not the name of a bucket"),
+        ("s3://B", "not the name of a bucket"),
+        ("s3://a b", "not the name of a bucket"),
         ("s3://bucket/a?b", "AWS environment"),
-        ("s3://bucket/ä", "letters of ASCII"),
+        ("s3://bucket/ä", "only ASCII letters"),
         ("s3://key:SECRET@bucket", "AWS environment"),
-        ("file://host/folder", "no folder of this machine"),
-        ("file:///", "no folder of this machine"),
+        ("file://host/folder", "not a folder of this machine"),
+        ("file:///", "not a folder of this machine"),
         ("file:///nowhere/files", "there is no folder /nowhere"),
         ("file:///proc/files", "cannot be written"),
         ("s3://[", "not a URL"),
@@ -112,6 +112,6 @@ def test_keys_of_a_database_that_does_not_answer(tmp_path):
     environment = {"CRANKWRIGHT_DATABASE_URL": "postgresql+psycopg://crank:SECRET@127.0.0.1:1/crank"}
     result = CliRunner().invoke(main, ["keys", "list", "--data", str(tmp_path)], env=environment)
     assert result.exit_code == 1
-    assert "CRANKWRIGHT_DATABASE_URL leads to no database (" in result.output
+    assert "CRANKWRIGHT_DATABASE_URL does not lead to a database (" in result.output
     assert "Traceback" not in result.output
     assert "SECRET" not in result.output

@@ -8,7 +8,7 @@ from math import cos, pi, sqrt
 from templates.bearing_load.engine_v2 import Engine as EngineOfCrankpins
 
 ENGINE, ROLLING, BURNT = ("engine", 2), ("rolling_bearing_life", 1), ("combustion_cycle", 1)
-TWIST, BESIDE = ("forced_torsion", 1), ("measured_curves", 2)
+TWIST, BESIDE = ("forced_torsion", 1), ("measured_curves", 1)
 # One inertia on a shaft to the ground in resonance at 200 rad/s: 1 N m over a loss factor of 0.01.
 TONE = {
     **dict.fromkeys([

@@ -138,12 +138,9 @@ def test_property_the_templates_that_read_by_a_string_are_those_known():
     }
     assert {name: read for name, read in names.items() if read} == {
         "oil_film2": {"eta", "a_V", "b_V"},
-        "oil_film3": {"eta", "a_V", "b_V"},
         "stress_life1": {"sigma_a", "sigma_m", "K_t"},
         "cycle_heat_balance1": {"eta", "a_V", "b_V"},
-        "cycle_heat_balance2": {"eta", "a_V", "b_V"},
         "elastic_film1": {"a_V", "b_V"},
-        "elastic_film2": {"a_V", "b_V"},
         "mixed_friction1": {"a_V", "b_V"},
         "thermal_film1": {"eta", "a_V", "b_V"},
         "thrust_bearing1": {"eta", "a_V", "b_V"},

@@ -82,8 +82,8 @@ def test_a_refused_design_says_what_to_give(http):
 def test_the_design_says_that_there_is_a_newer_version(http):
     old = http.get(f"/designs/{bearing(http, 'old version')}").text
     assert 'data-upgrade="film"' in old
-    assert "there is a version 3" in old
-    step = {"template": "oil_film", "version": 3, "inputs": INPUTS}
+    assert "there is a version 2" in old
+    step = {"template": "oil_film", "version": 2, "inputs": INPUTS}
     new = created(http, {"name": "new version", "steps": {"film": step}})["id"]
     assert "data-upgrade" not in http.get(f"/designs/{new}").text
 

@@ -19,7 +19,7 @@ DESIGN = {
     },
     "steps": {
         "life": {
-            "template": "fatigue_life", "version": 2, "outputs": ["load_use", "safety_factor"],
+            "template": "fatigue_life", "version": 1, "outputs": ["load_use", "safety_factor"],
             "inputs": {
                 "force_1": {"value": [4, 10, 46, 22, 8, 2, -6, -9], "unit": "kN"},
                 "stress_of_force_1": "= throw.unit_loads.stress_of_force_1",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated
 
 from fastapi import Header, Path, Query, Response
@@ -42,16 +42,12 @@ async def answer_saved(
     done = not saved.is_deferred and await finished(jobs, saved.job, prefer)
     status = (201 if saved.created else 200) if done else 202
     place = f"/api/v1/jobs/{saved.job}" if saved.job and not done else f"/api/v1/designs/{saved.design}"
-    answer = await run_in_threadpool(shown, designs, saved.design, saved.revision, status, proposals)
-    answer.headers["Location"] = place
-    return answer
-
-
-def shown(
-    designs: Designs, id: str, number: int | None, status: int, proposals: Sequence[Proposal] | None = None
-) -> Response:
-    """A design as of a revision, by default the newest; the ETag is that revision."""
-    design = designs.show(id, number)
+    design = saved.answer or await run_in_threadpool(designs.show, saved.design, saved.revision)
     if proposals is not None:
         design = MappedDesign(**dict(design), proposals=list(proposals))
-    return written(design, status, {"ETag": f'"{design.revision}"'})
+    return shown(design, status, {"Location": place})
+
+
+def shown(design: Design, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
+    """A design as an answer; the ETag is its revision."""
+    return written(design, status, {**(headers or {}), "ETag": f'"{design.revision}"'})

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Body, Path, Query, Request, Response
@@ -10,14 +12,17 @@ from pydantic.config import JsonDict
 
 from app.api.dependencies import (
     ExpensiveSteps,
+    IdempotencyKey,
     TheDatabase,
     TheDesigns,
     TheJobs,
-    TheLabelling,
     TheOnce,
     ThePreviews,
     TheThreads,
     Units,
+    expensive_steps,
+    get_once,
+    services_of,
 )
 from app.api.waiting import accepted, later, written
 from app.designs import repository, views
@@ -48,12 +53,14 @@ from app.designs.schemas.designs import (
     State,
 )
 from app.designs.schemas.labels import MOST_TAGS, Tag
-from app.http.clients import TheClient
+from app.designs.service import Saved
+from app.http.clients import TheClient, get_client
 from app.http.pages import Cursor, Limit, page
 from app.http.roles import needs
-from app.http.strict_requests import StrictRoute
+from app.http.strict_requests import PlainRoute, StrictRequest, StrictRoute
 from app.plain import JsonObject
 from app.schemas.problems import refusals
+from app.storage.idempotency import Once
 from app.storage.tables import DesignRow
 from templates.core.errors import Fault, InvalidInputs
 
@@ -62,6 +69,8 @@ PRINTABLE = r"^[^\x00-\x1f\x7f]*$"  # no control characters, as in names of desi
 router = APIRouter(
     prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
 )
+saves = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=PlainRoute)
+"""What is called most: create and PATCH."""
 
 Explained = Annotated[str, Path(max_length=140, description="`model.width`; `film.film`, a criterion")]
 NamePart = Annotated[
@@ -95,22 +104,19 @@ Patch = Annotated[
 MERGE_PATCH: JsonDict = {"requestBody": {"content": {"application/merge-patch+json": {"schema": PATCH}}}}
 
 
-@router.post("", status_code=201, response_model=Design, responses={**later(Design), **refusals(429)})
+@saves.post("", status_code=201, response_model=Design, responses={**later(Design), **refusals(429)})
 async def create_design(
+    request: StrictRequest,
     body: DesignIn,
-    designs: TheDesigns,
-    threads: TheThreads,
-    jobs: TheJobs,
-    once: TheOnce,
-    request: Request,
     prefer: Prefer = None,
+    idempotency_key: IdempotencyKey = None,
 ) -> Response:
     """A new design; its models are built. 201 when they are ready, 202 while they are being built."""
     raw = body.model_dump()  # not in JSON's mode, which hides a NaN as null
     note = raw.pop("note")
     raw.pop("model")
-    saved = await threads.run_within(seconds_waited(prefer), request, designs.create, raw, note, once)
-    return await answer_saved(designs, jobs, saved, prefer)
+    create = services_of(request).designs.create
+    return await _saved(request, prefer, idempotency_key, partial(create, raw, note))
 
 
 @router.get("")
@@ -142,31 +148,36 @@ def list_designs(
 @router.get("/{id}", response_model=Design, responses=refusals(404))
 def show_design(id: Id, designs: TheDesigns) -> Response:
     """A design as of its newest revision; the ETag is that revision."""
-    return shown(designs, id, None, 200)
+    return shown(designs.show(id))
 
 
-@router.patch("/{id}", response_model=Design, responses=CHANGED, openapi_extra=MERGE_PATCH)
+@saves.patch("/{id}", response_model=Design, responses=CHANGED, openapi_extra=MERGE_PATCH)
 async def change_design(
+    request: StrictRequest,
     id: Id,
     body: Patch,
-    designs: TheDesigns,
-    labelling: TheLabelling,
-    threads: TheThreads,
-    jobs: TheJobs,
-    once: TheOnce,
-    request: Request,
     if_match: IfMatch = None,
     prefer: Prefer = None,
+    idempotency_key: IdempotencyKey = None,
 ) -> Response:
     """A new revision; models are rebuilt only where one of their parameters changed.
 
     A new name alone keeps all results: nothing is calculated.
     """
     patch, note = _noted(body)
-    saved = await threads.run_within(
-        seconds_waited(prefer), request, labelling.change, id, patch, note, if_match, once
-    )
-    return await answer_saved(designs, jobs, saved, prefer)
+    change = services_of(request).labelling.change
+    return await _saved(request, prefer, idempotency_key, partial(change, id, patch, note, if_match))
+
+
+async def _saved(
+    request: StrictRequest, prefer: str | None, key: str | None, save: Callable[[Once], Saved]
+) -> Response:
+    """Save a design in a thread that may wait for the pool; return the answer."""
+    services, client = services_of(request), await get_client(request)
+    once = await get_once(request, client, key)
+    await expensive_steps(request, client)
+    saved = await services.threads.run_within(seconds_waited(prefer), request, save, once)
+    return await answer_saved(services.designs, services.jobs, saved, prefer)
 
 
 @router.delete("/{id}", status_code=204, responses=refusals(404, 409))

@@ -179,7 +179,9 @@ def _name(grid: Grid, row: int, variants: Collection[str], faults: list[Fault]) 
     elif name in RESERVED:
         faults.append(Fault(where, "reserved", RESERVED[name]))
     elif name in variants:
-        faults.append(Fault(where, "named_twice", f"{plain(name)} has a row already; name this one apart"))
+        faults.append(
+            Fault(where, "named_twice", f"{plain(name)} has a row already; give this one another name")
+        )
     return name, len(faults) == before
 
 

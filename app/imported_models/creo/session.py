@@ -194,6 +194,6 @@ def _volume(properties: Fields, names: tuple[str, ...]) -> float:
     volume = properties.get("volume")
     if isinstance(volume, bool) or not isinstance(volume, int | float) or not 0 < volume < 1e18:
         raise GeometryError(
-            "creo_mass_properties", f"Creo gives the volume {volume!r}: a number > 0 is wanted", names
+            "creo_mass_properties", f"Creo gives the volume {volume!r}: it must be a number above 0", names
         )
     return float(volume)

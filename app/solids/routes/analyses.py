@@ -159,7 +159,7 @@ def _checked(cls: type[CadModel], kind: str, body: AnalysisIn) -> tuple[str, ...
     names = ", ".join(offered(kind))
     wrong = faults(kind, body)
     wrong += [
-        Fault("outputs", "unknown_name", f"{name[:40]!r} is none of {names}")
+        Fault("outputs", "unknown_name", f"{name[:40]!r} is not one of {names}")
         for name in asked
         if name not in offered(kind)
     ]

@@ -152,7 +152,7 @@ async def build_model(
     if unknown:
         offered = ", ".join(MEDIA_TYPES)
         raise InvalidInputs(
-            Fault("artifacts", "unknown_name", f"{k[:40]!r} is none of {offered}") for k in unknown
+            Fault("artifacts", "unknown_name", f"{k[:40]!r} is not one of {offered}") for k in unknown
         )
     shape = catalogues.models.get(id, number).from_quantities(body.parameters)
     kinds = tuple(dict.fromkeys(("step", *body.artifacts)))
@@ -284,6 +284,6 @@ def send_file(
         If there is none: its build was deleted since the file was made.
     """
     if file is None:
-        raise NotFound("the build was deleted a moment ago; ask again, and it is made again")
+        raise NotFound("the build has just been deleted; send the request again to rebuild it")
     sent = {"ETag": f'"{file.sha256}"', **(headers or {})}
     return StoredFile(store, file.sha256, MEDIA_TYPES[plain_kind(file.kind)], sent, name)

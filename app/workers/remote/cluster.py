@@ -99,7 +99,7 @@ class Cluster:
         for _ in range(_TURNS):
             with suppress(NeverBegun):
                 return self._run_once(lane, order, preferred, on_progress, cancelled)
-        raise WorkerLost(f"{_TURNS} machines have gone, each before the work came there")
+        raise WorkerLost(f"{_TURNS} machines stopped before the work reached them")
 
     def _run_once(
         self,

@@ -99,9 +99,7 @@ class ListDefinitions(Statements):
             return
         term = self.expression(inner)
         if term.axis is None or term.axis.length != len(targets):
-            raise Untranslatable(
-                "names for the items of something that is not a list of as many", "define each by itself"
-            )
+            raise Untranslatable("names for the items of a list of another length", "define each by itself")
         if not term.text.isidentifier() and not term.text.startswith("["):
             term = self.declare(outcome, "items", term, self.asked(value)).term()
         for place, part in enumerate(targets, 1):

@@ -51,7 +51,7 @@ class Lists(Writer):
             raise Untranslatable("index that is calculated", "write the index as a number")
         place = int(at.number) + 1 - term.axis.start
         if not 1 <= place <= term.axis.length:
-            raise Untranslatable("item that the list does not have", "write an index within the list")
+            raise Untranslatable("item beyond the end of the list", "write an index within the list")
         if not term.text.replace("_", "").isalnum() and not term.text.startswith("["):
             raise Untranslatable("item of an expression", "give the list a name of its own")
         return Term(f"{term.text}[{place}]")

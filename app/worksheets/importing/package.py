@@ -61,7 +61,7 @@ class Package:
         try:
             self._zip = zipfile.ZipFile(io.BytesIO(content))
         except _DAMAGES as error:
-            raise SheetNotRead("package", f"it is not a whole ZIP package ({error}): {AGAIN}") from None
+            raise SheetNotRead("package", f"it is not a complete ZIP package ({error}): {AGAIN}") from None
         self._parts = self._zip.infolist()
         if len(self._parts) > MOST_PARTS:
             raise _crowded(len(self._parts))
@@ -107,12 +107,12 @@ def _check_directory(content: bytes) -> None:
     if content[place : place + 4] != _END or content[-2:] != b"\0\0":
         place = content.rfind(_END, max(0, place - _LONGEST_COMMENT))
     if place < 0 or len(content) < place + _END_SIZE:
-        raise SheetNotRead("package", f"it is not a whole ZIP package (its directory is missing): {AGAIN}")
+        raise SheetNotRead("package", f"it is not a complete ZIP package (its directory is missing): {AGAIN}")
     entries, size = struct.unpack("<HI", content[place + 10 : place + 16])
     if entries > MOST_PARTS:
         raise _crowded(entries)
     if size > LONGEST_DIRECTORY:
-        raise SheetNotRead("package", f"its directory has {size} bytes, which no sheet needs: {AGAIN}")
+        raise SheetNotRead("package", f"its directory has {size} bytes, too many for a sheet: {AGAIN}")
 
 
 def _crowded(parts: int) -> SheetNotRead:
@@ -125,16 +125,16 @@ def _check_names(names: Iterable[str]) -> None:
     for name in names:
         steps = name.replace("\\", "/").split("/")
         if len(name) > LONGEST_NAME or name.startswith(("/", "\\")) or ".." in steps or ":" in name:
-            raise SheetNotRead("package", f"its part {name[:60]!a} leads out of the package: {AGAIN}")
+            raise SheetNotRead("package", f"its part {name[:60]!a} lies outside the package: {AGAIN}")
         if name in seen:
-            raise SheetNotRead("package", f"it has two parts of the name {name[:60]!a}: {AGAIN}")
+            raise SheetNotRead("package", f"it has two parts called {name[:60]!a}: {AGAIN}")
         seen.add(name)
 
 
 def _check_part(part: zipfile.ZipInfo) -> None:
     if part.flag_bits & _ENCRYPTED:
         what = f"its part {part.filename[:60]!a} is encrypted"
-        raise SheetNotRead("encrypted", f"{what}: take the password off in Mathcad, and send that file")
+        raise SheetNotRead("encrypted", f"{what}: remove the password in Mathcad, and send that file")
     if part.compress_type not in _METHODS:
         what = f"its part {part.filename[:60]!a} is packed by method {part.compress_type}"
         raise SheetNotRead("package", f"{what}; a sheet has deflated parts: {AGAIN}")

@@ -218,7 +218,7 @@ def _monomial(node: Node) -> Scaled:
     for part in node.parts:
         named = unit_named(part.attributes.get("unit", ""))
         if named is None:
-            raise ValueError("a unit that there is not here")
+            raise ValueError("a unit that does not exist here")
         over = int(part.attributes.get("power-numerator", "1"))
         under = int(part.attributes.get("power-denominator", "1")) or 1
         product = product.times(named.raised(Fraction(over, under)))

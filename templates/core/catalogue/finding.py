@@ -122,7 +122,9 @@ def find(
         if not issubclass(cls, base):
             continue  # a calculation beside models
         if (cls.id, cls.version) in versions:
-            raise UnusableFile(str(path), f"{cls.id} version {cls.version} stands in another file already")
+            raise UnusableFile(
+                str(path), f"{cls.id} version {cls.version} is already declared in another file"
+            )
         versions[cls.id, cls.version] = cls
     return Catalogue(dict(sorted(versions.items())), kind)
 

@@ -172,7 +172,7 @@ def read_criterion(name: str, raw: Any, meanings: Mapping[str, Described]) -> Cr
         if used_name not in names:
             raise FaultyText("unknown_name", unknown_name(used_name, names, "name").detail)
     if unused := [limit.name for limit in limits if limit.name not in used]:
-        raise FaultyText("unused_limit", f"the limit {unused[0]} does not stand in `require`")
+        raise FaultyText("unused_limit", f"the limit {unused[0]} does not occur in `require`")
     kind = _shared_kind(value, limit_side, {n: Kind(unit(names[n].unit).base) for n in used}, names)
     return Criterion(
         name=name,
@@ -206,7 +206,7 @@ def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
         raise FaultyText("syntax", f"`require` is a text of at most {LONGEST_REQUIRE} characters")
     sides = _SIGN.split(text)
     if len(sides) != 3 or "=" in sides[0] + sides[2]:
-        form = "write it as in film.minimum_film_thickness >= 3 um"
+        form = "write it like film.minimum_film_thickness >= 3 um"
         raise FaultyText("syntax", f"a criterion compares two sides by one >= or <=; {form}")
     sign: Sign = ">=" if sides[1] == ">=" else "<="
     value, limit = parse(sides[0].strip()), parse(sides[2].strip())
@@ -241,7 +241,7 @@ def _mapping(raw: Any) -> Mapping[str, Any]:
 
 def _limit(name: str, raw: Any, meanings: Mapping[str, Described]) -> Limit:
     if name in meanings:
-        raise FaultyText("twice", f"{name} is an input or output already; name the limit otherwise")
+        raise FaultyText("twice", f"{name} is already an input or output; give the limit another name")
     _check_keys(raw, _LIMIT_KEYS, "unit")
     unit(raw["unit"])
     default = _default(raw["default"], meanings, raw["unit"]) if "default" in raw else None

@@ -78,10 +78,7 @@ class Judgement:
 
 
 def sentence(judgement: Judgement) -> str:
-    """Return a verdict as a sentence about the case: `film 1.53 um < permissible_film 2 um (131 %).
-
-    Not met`.
-    """
+    """Return a verdict as a sentence: `film 1.53 um < permissible_film 2 um (131 %): not met`."""
     sign = ">=" if ">=" in judgement.require else "<="
     left, right = (side.strip() for side in judgement.require.split(sign))
     opposite = {">=": "<", "<=": ">"}[sign] if judgement.misses else sign

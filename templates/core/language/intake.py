@@ -47,7 +47,7 @@ def _read_one(declared: Input, raw: Any) -> Typed | str:
         )  # as answers write it
         if isinstance(option, str) and option in declared.options:
             return option
-        raise FaultyText("not_an_option", f"{excerpt(raw)} is none of {', '.join(declared.options)}")
+        raise FaultyText("not_an_option", f"{excerpt(raw)} is not one of {', '.join(declared.options)}")
     return read(raw, declared.meaning.unit)
 
 

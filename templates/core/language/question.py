@@ -46,7 +46,7 @@ def read_question(
         if formula is None:
             faults.append(unknown_name(name, cls.formulas, "output").within("target"))
         elif isinstance(formula, (Profile, Text)):
-            faults.append(Fault(f"target.{name}", "not_a_number", "only a single value can be aimed at"))
+            faults.append(Fault(f"target.{name}", "not_a_number", "the target must be a single value"))
         else:
             wanted = _scalar(value, formula.meaning.unit, f"target.{name}", faults)
     faults += _faulty_inputs(cls, raw, unknown, declared, ends)
@@ -89,7 +89,7 @@ def _scalar(raw: Any, unit: str, name: str, faults: list[Fault]) -> float:
     try:
         typed = read(raw, unit)
         if np.ndim(typed.si):
-            raise FaultyText("not_a_number", "one value is wanted here, not an array")
+            raise FaultyText("not_a_number", "give a single value here, not an array")
         return float(typed.si)
     except FaultyText as error:
         faults.append(error.fault(name))

@@ -75,7 +75,7 @@ class Template(Calculation):
         declared = {name: v for name, v in everything.items() if isinstance(v, Declaration)}
         if reserved := sorted(name for name in declared if name in cls._own_words()):
             names = ", ".join(reserved)
-            raise TypeError(f"{cls.__name__}: {names} has a meaning in every template; name it otherwise")
+            raise TypeError(f"{cls.__name__}: {names} is reserved in every template; choose another name")
         cls.declarations, cls._ancestry, cls._dependencies = declared, {}, {}
         named = by_name(declared)
         cls.inputs = {name: v for name, v in named.items() if isinstance(v, (Given, Choice, Derived))}

@@ -149,7 +149,7 @@ class Writer:
         Raises
         ------
         TypeError
-            For syntax that has no place in a formula.
+            For syntax that is not allowed in a formula.
         """
         match node:
             case ast.Constant(value=int() | float() as value):
@@ -168,7 +168,7 @@ class Writer:
                 return self._operation(node)
             case ast.Call():
                 return self._call(node)
-        raise TypeError(f"{ast.unparse(node)!r} has no place in a formula; move it to a physics function")
+        raise TypeError(f"{ast.unparse(node)!r} is not allowed in a formula; move it to a physics function")
 
     def _in(self, node: ast.expr, tightness: int) -> str:
         """Return the LaTeX of a node, in parentheses where it binds more loosely than its place needs."""
@@ -189,7 +189,7 @@ class Writer:
                 return f"{self._in(node.left, SUM)}+{self._in(node.right, SUM)}", SUM
             case ast.Sub():
                 return f"{self._in(node.left, SUM)}-{self._in(node.right, PRODUCT)}", SUM
-        raise TypeError(f"{ast.unparse(node)!r} has no place in a formula")
+        raise TypeError(f"{ast.unparse(node)!r} is not allowed in a formula")
 
     def _call(self, node: ast.Call) -> Written:
         if any(keyword.arg != "axis" for keyword in node.keywords):

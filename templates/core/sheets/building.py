@@ -142,7 +142,7 @@ class Builder:
         names = tuple(map(str, options.children))
         if len(set(names)) < len(names) or any("." in option for option in names):
             remedy = "write different words, as in (walther | vogel)"
-            raise statement.refuse("choice", "each option is one word, and stands once", options, remedy)
+            raise statement.refuse("choice", "each option must be one word, given once", options, remedy)
         if default is not None and str(default) not in names:
             message = f"the default {default} is not an option"
             raise statement.refuse("choice", message, default, f"write one of {', '.join(names)}")
@@ -212,7 +212,7 @@ class Builder:
             meant = self._meant(statement, self.reader.declared_unit(statement, unit_text), words, clauses)
             if meant.name in meanings:
                 message = f"two unknowns have the name {meant.name}"
-                raise statement.refuse("name", message, words, "say it in other words")
+                raise statement.refuse("name", message, words, "use other words")
             meanings[meant.name] = meant
         system = system_of(statement, self.reader, tree, unknowns)
         for name, meant in zip(unknowns, meanings.values(), strict=True):
@@ -229,7 +229,7 @@ class Builder:
         blamed = body.inputs = self.built.inputs_beneath(body.uses)
         if not blamed:
             advice = "compare a given with something"
-            raise statement.refuse("no_truth", "the rule is about no input", tree, advice)
+            raise statement.refuse("no_truth", "the rule mentions no input", tree, advice)
         rule = Requirement(body, blamed, remedy or f"change {' or '.join(blamed)}", False, "")
         self.built.parts[f"{RULE} {statement.chunk.line}"] = rule
         self.built.note(statement, f"{RULE} {statement.chunk.line}", "", rule.sentence, node)
@@ -240,7 +240,7 @@ class Builder:
         said, text = said_in(statement, clauses, self.reader), words_of(statement, words)
         name, criterion = criterion_of(statement, node, text, said, self.built.parts)
         if name in self.built.criteria:
-            raise statement.refuse("name", f"another check is named {name}", words, "say it in other words")
+            raise statement.refuse("name", f"another check is named {name}", words, "use other words")
         self.built.criteria[name] = criterion
         self.built.note(statement, name, "", text, node)
 
@@ -252,7 +252,7 @@ class Builder:
     def _condition(self, statement: Parsed, tree: lark.Tree[Any]) -> tuple[Any, bool]:
         node, sort = self.reader.part(statement, tree)
         if not sort.truth:
-            remedy = "write it as in p <= 30 MPa"
+            remedy = "write it like p <= 30 MPa"
             raise statement.refuse("no_truth", "this is a quantity, not a condition", tree, remedy)
         return node, bool(sort.axis)
 
@@ -269,7 +269,7 @@ class Builder:
         other = self.built.lines.setdefault(meant.name, statement.chunk.line)
         if other != statement.chunk.line:
             message = f"line {other} has the same words, or words that make the name {meant.name} as well"
-            raise statement.refuse("name", message, words, "say it in other words")
+            raise statement.refuse("name", message, words, "use other words")
         if said.example is not None and statement.kind == "given":
             self.built.example[meant.name] = said.example
         return meant

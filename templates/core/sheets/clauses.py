@@ -52,7 +52,7 @@ def _meaning(statement: Parsed, unit_text: str, words: lark.Token, said: Said) -
         return meaning(unit_text, text, **said.keywords)
     except TypeError:
         message = f"the words {text[:60]!r} make no name: they need a letter first"
-        raise statement.refuse("name", message, words, 'write words as in "bearing diameter"') from None
+        raise statement.refuse("name", message, words, 'write words like "bearing diameter"') from None
 
 
 def words_of(statement: Parsed, words: lark.Token) -> str:
@@ -66,7 +66,7 @@ def words_of(statement: Parsed, words: lark.Token) -> str:
     text = " ".join(words[1:-1].split())
     if len(text) > LONGEST_WORDS:
         message = f"words have at most {LONGEST_WORDS} characters"
-        raise statement.refuse("too_large", message, words, "write the rest as prose, behind >")
+        raise statement.refuse("too_large", message, words, "write the rest as prose, after >")
     if not text:
         raise statement.refuse("name", "the words are missing", words, "say what it is")
     return text

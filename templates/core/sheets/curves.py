@@ -37,11 +37,11 @@ def curve_of(
         for one, side in zip(units, sides, strict=True)
     )
     if len(along) < 2:
-        raise statement.refuse("curve", "a curve has two points or more", points[0], "give another point")
+        raise statement.refuse("curve", "a curve needs at least two points", points[0], "give another point")
     for before, after, point in zip(along, along[1:], points[1:], strict=False):
         if not before < after:
             remedy = "sort the points, each once"
-            raise statement.refuse("curve", "the points of a curve ascend", point, remedy)
+            raise statement.refuse("curve", "the points of a curve must ascend", point, remedy)
     return _called(name, units, _operation(name, units, along, values, said, sides[0]))
 
 

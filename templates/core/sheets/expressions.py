@@ -101,7 +101,7 @@ class Reader:
         part = self.part(statement, tree)
         constant, sort = part
         if not isinstance(constant, Constant):
-            raise statement.refuse("limit", "a limit is one number", tree, "write it as in <= 2 m")
+            raise statement.refuse("limit", "a limit is one number", tree, "write it like <= 2 m")
         if next(tree.find_data("quantity"), None) is None and is_number(sort.kind):
             return float(constant.value)
         value = self.fitting(statement, part, unit_text, "a limit", tree).value

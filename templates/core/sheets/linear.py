@@ -169,7 +169,7 @@ def system_of(statement: Parsed, reader: Reader, tree: lark.Tree[Any], unknowns:
         raise statement.refuse("equation", message, tree, remedy) from None
     for name in unknowns:
         if not any(name in row for row in rows):
-            message = f"{name} does not stand in the equations"
+            message = f"{name} does not occur in the equations"
             raise statement.refuse("equation", message, tree, "leave it out, or write an equation with it")
     return System(unknowns, node, rows)
 

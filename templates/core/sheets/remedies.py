@@ -37,7 +37,7 @@ _GENERAL = {
     "index": "count from 1, with a whole number or a name in [1]",
     "unknown_function": "correct the name, or declare the function above this line",
     "unknown_unit": "write a unit as in kN, mm**2/s, W/(m*K)",
-    "syntax": "write it as in log(x), max(a, b), x[2]",
+    "syntax": "write it like log(x), max(a, b), x[2]",
     "not_finite": "write a number below 1e308",
     "too_large": "give its parts names of their own, and call functions less often",
 }

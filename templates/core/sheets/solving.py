@@ -140,10 +140,10 @@ def equation_of(statement: Parsed, reader: Reader, tree: lark.Tree[Any], name: s
     """
     node, sort = reader.part(statement, tree)
     if not (isinstance(node, Apply) and node.operation.sign == "=="):
-        raise statement.refuse("equation", "this is not an equation", tree, "write it as in F / A == 10 MPa")
+        raise statement.refuse("equation", "this is not an equation", tree, "write it like F / A == 10 MPa")
     if sort.axis:
         message = f"the equation holds a list over {sort.axis}"
         raise statement.refuse("axis_mismatch", message, tree, "take max(…) or sum(…) of it")
     if name not in names_in(node):
-        raise statement.refuse("equation", f"{name} does not stand in the equation", tree)
+        raise statement.refuse("equation", f"{name} does not occur in the equation", tree)
     return node

@@ -155,7 +155,7 @@ class _Builder:
         """Return an item of an array or of a list that is written out."""
         shown = excerpt(f"{whole if isinstance(whole, lark.Token) else 'the list'}[{index}]")
         if whole in CONSTANTS or index in CONSTANTS:
-            raise FaultyText("syntax", f"{shown}: pi is not an array, and no index")
+            raise FaultyText("syntax", f"{shown}: pi is neither an array nor an index")
         place = str(index) if index.type == "NAME" else _place(shown, float(index))
         if isinstance(whole, lark.Token):
             return self.named_item(str(whole), place)
@@ -192,9 +192,7 @@ class _Builder:
             With code `too_large`: what stands between two signs is compared, and so calculated, twice.
         """
         if any(_size(node) > MAX_TWICE for node, _ in sides[1:-1]):
-            raise FaultyText(
-                "too_large", "chained comparisons stand in each other too often; join them by `and`"
-            )
+            raise FaultyText("too_large", "chained comparisons are nested too deeply; join them by `and`")
         pairs = zip(signs, sides, sides[1:], strict=False)
         tests = [self.apply(COMPARISONS[sign], [one, other]) for sign, one, other in pairs]
         return tests[0] if len(tests) == 1 else self.apply(LOGIC["and"], tests)

@@ -117,7 +117,7 @@ def _read_text(text: str, declared: str) -> Typed:
     if written := split(name):
         return _toleranced(_finite(float(number)), written, declared)
     if is_zone(name):
-        raise FaultyText("missing_unit", f'{number} {name} has no unit; write it as in "{number} mm {name}"')
+        raise FaultyText("missing_unit", f'{number} {name} has no unit; write it like "{number} mm {name}"')
     return _quantity(_finite(float(number)), name, declared)
 
 
@@ -200,9 +200,7 @@ def _in_si(magnitude: Value, scale: Unit) -> Value:
 
 def _number(raw: Any) -> float:
     if isinstance(raw, bool) or not isinstance(raw, (int, float)):
-        raise FaultyText(
-            "not_a_number", f"{excerpt(raw)} is not a number; write it as in 1.5, without quotes"
-        )
+        raise FaultyText("not_a_number", f"{excerpt(raw)} is not a number; write it like 1.5, without quotes")
     try:
         return _finite(float(raw))
     except OverflowError:

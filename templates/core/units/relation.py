@@ -126,7 +126,7 @@ class Relation:
             with np.errstate(all="ignore"):
                 return value_of(self.tree, all_values)
         except ValueError:
-            raise FaultyText("shape", f"{self.text!r} joins arrays of different lengths") from None
+            raise FaultyText("shape", f"{self.text!r} combines arrays of different lengths") from None
 
     def _with_items(self, values: Mapping[str, Value]) -> Mapping[str, Value]:
         """Return the values, and those of items of arrays by their text."""

@@ -60,7 +60,7 @@ def power(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -
         raise FaultyText("unit_mismatch", f"an exponent of a quantity with a unit is at most {MAX_EXPONENT}")
     degrees: list[Any] = list(registry.get_dimensionality(base.base).values())
     if any(abs(degree * plain) > MAX_UNIT_POWER for degree in degrees):
-        raise FaultyText("unit_mismatch", f"a unit to a power beyond {MAX_UNIT_POWER} measures nothing")
+        raise FaultyText("unit_mismatch", f"a unit to a power beyond {MAX_UNIT_POWER} has no meaning")
     return Kind(registry.Unit(base.base**plain))
 
 

@@ -94,7 +94,7 @@ def _truth(operation: Operation, sorts: list[Sort]) -> bool:
     truths = [sort.truth for sort in sorts]
     if operation is IF:
         if not truths[0]:
-            raise FaultyText("no_truth", "behind `if` stands a condition, such as x < 3 mm, not a quantity")
+            raise FaultyText("no_truth", "`if` needs a condition, such as x < 3 mm, not a quantity")
         if truths[1] != truths[2]:
             raise FaultyText("no_truth", "then and else are two quantities or two conditions")
         return truths[1]
@@ -104,7 +104,7 @@ def _truth(operation: Operation, sorts: list[Sort]) -> bool:
     if not is_logic and any(truths):
         raise FaultyText(
             "no_truth",
-            f"{operation.sign} takes quantities, and a condition is none; write if … then … else …",
+            f"{operation.sign} takes quantities, not a condition; write if … then … else …",
         )
     return is_logic or operation is IS or operation in COMPARISONS.values()
 
@@ -114,7 +114,9 @@ def _axis(operation: Operation, sorts: list[Sort]) -> tuple[str, bool]:
     axes = list(dict.fromkeys(sort.axis for sort in sorts if sort.axis))
     if operation is LIST:
         if axes:
-            raise FaultyText("axis_mismatch", f"an item of a list is a single value, no list over {axes[0]}")
+            raise FaultyText(
+                "axis_mismatch", f"an item of a list is a single value, not a list over {axes[0]}"
+            )
         return literal_axis(len(sorts)), False
     if operation is ITEM:
         return _single_item(*sorts), False
@@ -133,7 +135,7 @@ def _single_item(whole: Sort, index: Sort) -> str:
     if not whole.axis:
         raise FaultyText("axis_mismatch", "a single value has no items")
     if index.axis:
-        raise FaultyText("axis_mismatch", f"an index is a single number, no list over {index.axis}")
+        raise FaultyText("axis_mismatch", f"an index is a single number, not a list over {index.axis}")
     return ""
 
 

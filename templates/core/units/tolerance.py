@@ -104,7 +104,7 @@ def split(text: str) -> Written | None:
         detail = "a fit names two parts: give the bore the first zone, and the shaft the second"
         raise FaultyText("not_a_tolerance", f"{excerpt(rest)} is not a tolerance of one value; {detail}")
     if rest[0] in "±+−":
-        raise FaultyText("not_a_tolerance", f"{excerpt(rest)} is not a tolerance; write it as in {FORMS}")
+        raise FaultyText("not_a_tolerance", f"{excerpt(rest)} is not a tolerance; write it like {FORMS}")
     return None
 
 
@@ -169,7 +169,7 @@ def from_object(raw: Mapping[str, Any], name: str, declared: str, si: Value) -> 
     if "zone" in raw:
         return _of_zone(raw["zone"], limits, si, name, distribution)
     if not limits:
-        raise FaultyText("not_a_tolerance", "a distribution has no limits alone; give plus, minus or a zone")
+        raise FaultyText("not_a_tolerance", "a distribution needs limits: give plus, minus or a zone")
     return _between(*_ends(limits), distribution)
 
 
@@ -186,12 +186,10 @@ def _deviation(raw: Any, name: str, declared: str) -> float:
     if isinstance(raw, str):
         match = re.fullmatch(rf"([+\-−]?)\s*({NUMBER})\s*(.*)", raw.strip(), re.DOTALL)
         if not match or len(raw) > LONGEST_TEXT:
-            raise FaultyText("not_a_quantity", f"{excerpt(raw)} is not a tolerance; write it as in 5 {name}")
+            raise FaultyText("not_a_quantity", f"{excerpt(raw)} is not a tolerance; write it like 5 {name}")
         return float(match[1].replace("−", "-") + match[2]) * _of_text(match[3], declared).factor
     if isinstance(raw, bool) or not isinstance(raw, (int, float)):
-        raise FaultyText(
-            "not_a_number", f"{excerpt(raw)} is not a number; write it as in 1.5, without quotes"
-        )
+        raise FaultyText("not_a_number", f"{excerpt(raw)} is not a number; write it like 1.5, without quotes")
     try:
         return float(raw) * require_same_kind(name, declared).factor
     except OverflowError:
@@ -224,7 +222,7 @@ def _ends(limits: Mapping[str, float]) -> tuple[float, float]:
         for key, size in limits.items():
             if size < 0:
                 hint = "for limits on one side give upper and lower with their signs"
-                raise FaultyText("out_of_range", f"{key} is how far the value may lie off: 0 or more; {hint}")
+                raise FaultyText("out_of_range", f"{key} is the largest deviation: give 0 or more; {hint}")
         return 0.0 - limits.get("minus", 0.0), limits.get("plus", 0.0)
     if limits.keys() != {"upper", "lower"}:
         raise FaultyText("not_a_tolerance", "give plus and minus, or both upper and lower")
@@ -235,9 +233,11 @@ def _of_zone(
     zone: Any, limits: Mapping[str, float], si: Value, name: str, distribution: Distribution
 ) -> Tolerance:
     if not isinstance(zone, str):
-        raise FaultyText("unknown_zone", f"{excerpt(zone)} is not a tolerance zone; write it as in H7")
+        raise FaultyText("unknown_zone", f"{excerpt(zone)} is not a tolerance zone; write it like H7")
     if not isinstance(si, float):
-        raise FaultyText("not_single", "a zone is that of one size; give each item its own, as in 48 mm H7")
+        raise FaultyText(
+            "not_single", "a tolerance zone applies to one size; give each item its own, as in 48 mm H7"
+        )
     tolerance, _ = in_zone(zone, si, name, distribution)
     if limits and not np.allclose(_ends(limits), deviations(zone, si), rtol=1e-6, atol=1e-12):
         raise FaultyText("not_a_tolerance", f"these are not the limits of {zone}; give the zone alone")
@@ -265,7 +265,7 @@ def _between(lower: float, upper: float, distribution: Distribution = "normal") 
     if not (math.isfinite(lower) and math.isfinite(upper)):
         raise FaultyText("not_finite", "a tolerance must be finite: not NaN, infinity or above 1.8e308")
     if lower > upper:
-        raise FaultyText("not_a_tolerance", "the lower limit lies above the upper one; exchange them")
+        raise FaultyText("not_a_tolerance", "the lower limit lies above the upper one; swap them")
     return Tolerance(lower, upper, distribution)
 
 

@@ -95,7 +95,7 @@ def unit(text: str) -> Unit:
         If the text is not a unit, or one that Pint does not know.
     """
     if len(text) > LONGEST_UNIT or not _PATTERN.fullmatch(text):
-        raise FaultyText("unknown_unit", f"{text[:60]!a} is not a unit; write it as in kN, mm**2/s, W/(m*K)")
+        raise FaultyText("unknown_unit", f"{text[:60]!a} is not a unit; write it like kN, mm**2/s, W/(m*K)")
     forget_units()
     try:
         named = registry.Unit("" if text == "1" else text)

@@ -106,7 +106,7 @@ def cavitation(network: Network, start: tuple[Array, Array] | None = None) -> Ca
             P[free], void[free] = np.where(pair[0] >= pair[1], pair * [[1], [0]], pair * [[0], [1]]) / scale
             return Cavitation(P, void, step, float(np.abs(network.loss(P, void)[free]).max()) / flow)
         P[free], void[free] = (pair + _newton_step(slopes, scale, loss, pair, fischer)) / scale
-    raise ArithmeticError("the cavities' extent did not settle")
+    raise ArithmeticError("the cavities' extent did not converge")
 
 
 def _newton_step(slopes: ColumnScaledSum, scale: Array, loss: Array, pair: Array, fischer: Array) -> Array:

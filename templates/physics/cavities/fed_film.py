@@ -117,7 +117,7 @@ def fed_coefficients(eps: float, ratio: float, attitude: float, feed: Feed) -> t
 
     Returns
     -------
-    Both, NaN where the cavities do not settle.
+    Both, NaN where the cavities do not converge.
     """
     try:
         film = linear_film(solved_ring(max(eps, _SMALLEST), ratio, feed.placed(attitude), 0.0, *_FINE))

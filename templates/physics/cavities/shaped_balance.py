@@ -106,7 +106,7 @@ def balance(loaded: Loaded) -> Balance:
             return _refined(loaded, start, meshes)
         except (ArithmeticError, RuntimeError, np.linalg.LinAlgError) as reason:  # the last: singular
             failure = reason
-    raise NoBalance("no place was found at which the film bears the load") from failure
+    raise NoBalance("no position of the journal was found where the film supports the load") from failure
 
 
 def _ladders(loaded: Loaded) -> list[tuple[tuple[int, int], ...]]:
@@ -137,7 +137,7 @@ def _inside(loaded: Loaded, e: Array) -> Array:
         if narrowest(loaded.bore, loaded.lie(e))[0] > 10 * LEAST_GAP:
             return e
         e = e * 0.9
-    raise NoBalance("the tilted journal touches the bore wherever it lies")
+    raise NoBalance("the tilted journal touches the bore in every position")
 
 
 def _refined(loaded: Loaded, e: Array, meshes: tuple[tuple[int, int], ...]) -> Balance:
@@ -146,7 +146,7 @@ def _refined(loaded: Loaded, e: Array, meshes: tuple[tuple[int, int], ...]) -> B
     for mesh in meshes:
         film, lie = _agreed(loaded, e, mesh, films[-1][0] if films else None)
         if np.linalg.det(film.linear[0]) <= 0:
-            raise NoBalance("the place found is not stable")
+            raise NoBalance("the equilibrium position found is not stable")
         films.append((film, lie))
         e = lie.e
     (coarse, at_coarse), (fine, at_fine) = films[-2:]
@@ -189,8 +189,8 @@ def _searched(
             return film, e
         film, e = _nearer(loaded, film, e, share * step, nodes, pockets)
         if float(film.H.nodes.min()) < LEAST_GAP:
-            raise NoBalance("the film that would bear it is thinner than a millionth of the clearance")
-    raise NoBalance("the search for the journal's place does not settle")
+            raise NoBalance("the film that would support it is thinner than a millionth of the clearance")
+    raise NoBalance("the search for the journal's position does not converge")
 
 
 def _nearer(

@@ -206,4 +206,4 @@ def ruptured(balances: Network, start: tuple[Array, Array] | None = None) -> Cav
         if np.array_equal(after, film):
             return Cavitation(P, np.zeros(free.size), step, 0.0)
         film = after
-    raise ArithmeticError("the film's extent did not settle")
+    raise ArithmeticError("the film's extent did not converge")

@@ -186,7 +186,7 @@ def confirmed(found: Balanced, So: float, to_load: float) -> Balanced:
             step = off * (turn - before[0]) / (before[1] - off)
         before = (turn, off)
         found = _nearer(found, So, turn, float(np.clip(step, -_LARGEST_TURN, _LARGEST_TURN)))
-    raise NoBalance("the direction in which the journal goes does not settle")
+    raise NoBalance("the direction of the journal does not converge")
 
 
 def _nearer(found: Balanced, So: float, turn: float, step: float) -> Balanced:

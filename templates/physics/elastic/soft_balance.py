@@ -77,10 +77,10 @@ def soft_balance(So: float, softness: Softness, rigid: Balanced) -> Balanced:
         except (NoBalance, RuntimeError, np.linalg.LinAlgError) as failure:
             step /= 3
             if step < _LEAST_STEP * max(done, 0.1 * at_once):
-                raise NoBalance("the film is lost while the bearing gives way") from failure
+                raise NoBalance("the film breaks down while the bearing deforms") from failure
             continue
         if float((after.film.deformation / after.film.H.min()).max()) > MOST_DEFORMED:
-            raise NoBalance("the bearing gives way so far that its ends all but touch")
+            raise NoBalance("the bearing deforms so far that its ends nearly touch")
         at, step, done = after, max(step, 0.7 * share), share
     return at
 
@@ -140,7 +140,7 @@ def settled(film: SoftFilm, inside: Mask, So: float, graded: float, steps: int =
         if done and np.array_equal(moved, inside):
             return Balanced(after, inside, graded, steps + step + 1)
         film, inside = after, moved
-    raise NoBalance("the film does not settle")
+    raise NoBalance("the film does not converge")
 
 
 def _step(film: SoftFilm, inside: Mask, So: float) -> tuple[Array, float]:

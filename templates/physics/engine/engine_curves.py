@@ -164,9 +164,3 @@ def areas_in_words(theta: Array, T: Array) -> str | Array:
 def swing_of(energy: Array) -> Array:
     """Return the largest less smallest running energy [J]."""
     return np.asarray(np.ptp(energy, axis=-1))[()]
-
-
-@units("N*m", returns="N*m")
-def mean_of(T: Array) -> Array:
-    """Return the mean of a torque over the cycle [N m]."""
-    return np.asarray(T.mean(axis=-1))[()]

@@ -17,7 +17,8 @@ from templates.physics.engine.gas_pressure import GasCycle, NoGas, Tabulated, on
 from templates.physics.engine.offset_crank import OffsetCrank, RodMotion
 
 _HALVINGS = 60
-_FINE = 3600  # steps of the work of a cycle
+_NODES = 128  # of Gauss's rule over the change of the charge, which is smooth
+_NODES_A_RADIAN = 24  # of the same rule between two angles of a table
 
 
 @dataclass(frozen=True)
@@ -26,10 +27,17 @@ class OffsetPolytropic(Polytropic):
 
     crank: OffsetCrank
 
-    def volume(self, angle: Array | float) -> Array:
-        """Return the volume at an angle for each cylinder, over the swept volume."""
+    def way(self, angle: Array | float) -> Array:
+        """Return the way of each piston from its highest place at an angle, over its stroke."""
         turned = np.asarray(angle + self.crank.top)[..., None]
-        return self.v_dead + self.crank.travel(turned)[..., 0]
+        return self.crank.travel(turned)[..., 0]
+
+    def way_between(self, begin: Array, end: Array) -> Array:
+        """Return the integral of that way from angle to angle [rad], by Gauss's rule."""
+        node, weight = np.polynomial.legendre.leggauss(_NODES)
+        middle, half = np.asarray(end + begin) / 2, np.asarray(end - begin) / 2
+        angle = middle[..., None] + half[..., None] * node + self.crank.top[..., None]
+        return half * (self.crank.travel(angle) @ weight)
 
     @cached_property
     def cut(self) -> Array:
@@ -42,12 +50,23 @@ class OffsetPolytropic(Polytropic):
             low, high = np.where(reached, low, middle), np.where(reached, middle, high)
         return self.firing + high
 
+
+@dataclass(frozen=True)
+class OffsetTabulated(Tabulated):
+    """A table of pressures with the volumes of an offset crank; angles count from top dead centre."""
+
+    crank: OffsetCrank
+
     def mean_effective(self) -> Array:
-        """Return the work of a cycle over the swept volume [Pa], by the trapezoidal rule."""
-        angle = np.linspace(0, self.cycle, _FINE + 1)
-        travel = self.crank.travel(angle + self.crank.top[..., None])
-        p = self.pressure(angle + 0 * travel, travel)
-        return np.sum((p[..., 1:] + p[..., :-1]) / 2 * np.diff(travel), axis=-1)
+        """Return the work of a cycle over the swept volume [Pa]: −dp/dθ times the integral of the way."""
+        width = np.diff(self.angle, append=self.angle[0] + self.cycle)
+        count = 6 + int(np.ceil(_NODES_A_RADIAN * width.max()))
+        node, weight = np.polynomial.legendre.leggauss(count)
+        angle = self.angle[:, None] + width[:, None] * (1 + node) / 2
+        travel = self.crank.travel(angle.ravel() + self.crank.top[..., None])
+        way = travel.reshape(*travel.shape[:-1], *angle.shape) @ (weight / 2)
+        rise = np.diff(self.p, append=self.p[..., :1])
+        return -np.sum(rise[..., None, :] * way, axis=-1)
 
 
 def _for_each(record: Charge | Valves) -> list[Array]:
@@ -67,7 +86,7 @@ def engine_gas(
     if name == "none":
         return NoGas(np.asarray(p_c)[..., None])
     if name == "table":
-        return Tabulated(*one_cycle(angle, p, cycle), crank.l / crank.r, cycle)
+        return OffsetTabulated(*one_cycle(angle, p, cycle), crank.l / crank.r, cycle, crank)
     if name != "four_stroke":
         charge, valves = ideal(name, charge), AT_DEAD_CENTRES
     each = Charge(*_for_each(charge))
@@ -86,6 +105,20 @@ def pressures(gas: GasCycle, layout: Layout, motion: RodMotion, theta: Array) ->
     """Return the pressure in each cylinder [Pa], (…, N, K), at crank angles theta [rad], (K,)."""
     zero = 2 * np.pi if layout.strokes == 4 else 0.0
     return gas.pressure(theta - layout.firing[..., None] + zero, motion.crank.travel(motion.alpha))
+
+
+@units(None, "1", None, returns="Pa")
+def indicated(gas: GasCycle, factor: Array, layout: Layout) -> Array:
+    """Return the work of a cycle over the swept volume [Pa] of each cylinder, (…, N), with its factor."""
+    mean = np.atleast_1d(factor) * gas.mean_effective()
+    return np.broadcast_to(mean, (*mean.shape[:-1], layout.firing.shape[-1]))
+
+
+@units("Pa", "m", None, "1", returns="N*m")
+def torque_of_work(p_mi: Array, bore: Array, stroke: Array, strokes: Array) -> Array:
+    """Return the mean torque [N m] of the work of all cylinders in a cycle of that many strokes."""
+    work = p_mi * np.pi * np.atleast_1d(bore) ** 2 / 4 * np.atleast_1d(stroke)
+    return np.asarray(work.sum(axis=-1) / (np.pi * strokes))[()]
 
 
 def gas_force(p: Array, p_c: Array, factor: Array, bore: Array) -> Array:

@@ -137,21 +137,36 @@ class Polytropic(GasCycle):
 
     def volume(self, angle: Array | float) -> Array:
         """Return the volume at an angle for each point."""
-        return self.v_dead + _travel(angle, self.n)
+        return self.v_dead + self.way(angle)
+
+    def way(self, angle: Array | float) -> Array:
+        """Return the way of the piston from top dead centre at an angle for each point, over the stroke."""
+        return _travel(angle, self.n)
+
+    def way_between(self, begin: Array, end: Array) -> Array:
+        """Return the integral of that way from angle to angle [rad]."""
+        return travel_integral(end, self.n) - travel_integral(begin, self.n)
 
     def mean_effective(self) -> Array:
         """Return the work of each event in closed form, over the swept volume."""
         c, dead = self.charge, self.v_dead
         end = np.maximum(self.exhaust_opens, self.emptied)
         return (
-            _linear_work(self.n, self.exchange_begins, self.exchange_ends, c.exhaust, c.suction)
-            + c.suction * (_travel(self.inlet_closes, self.n) - _travel(self.exchange_ends, self.n))
+            self._linear_work(self.exchange_begins, self.exchange_ends, c.exhaust, c.suction)
+            + c.suction * (self.way(self.inlet_closes) - self.way(self.exchange_ends))
             + _polytropic_work(c.suction, self.v_closed, dead, c.compression_exponent)
             + c.combustion * (c.cutoff - 1) * dead
             + _polytropic_work(c.combustion, self.v_cut, self.v_opened, c.expansion_exponent)
-            + _linear_work(self.n, self.exhaust_opens, end, self.p_opened, c.exhaust)
-            + c.exhaust * (_travel(self.exchange_begins, self.n) - _travel(end, self.n))
+            + self._linear_work(self.exhaust_opens, end, self.p_opened, c.exhaust)
+            + c.exhaust * (self.way(self.exchange_begins) - self.way(end))
         )
+
+    def _linear_work(self, begin: Array, end: Array, p_1: Array, p_2: Array) -> Array:
+        """Return the work while the pressure goes linearly in angle from p_1 to p_2; none if at once."""
+        angle = end - begin
+        slope = (p_2 - p_1) / np.where(angle > 0, angle, 1)
+        work = p_2 * self.way(end) - p_1 * self.way(begin) - slope * self.way_between(begin, end)
+        return np.where(angle > 0, work, 0.0)
 
 
 def _column(value: Array | float) -> Array:
@@ -167,15 +182,6 @@ def _polytropic_work(p_1: Array, v_1: Array, v_2: Array, exponent: Array) -> Arr
     power = (exponent - 1) * np.log(v_2 / v_1)
     mean = np.where(power == 0, 1.0, -np.expm1(-power) / np.where(power == 0, 1.0, power))
     return p_1 * v_1 * np.log(v_2 / v_1) * mean
-
-
-def _linear_work(n: Array, begin: Array, end: Array, p_1: Array, p_2: Array) -> Array:
-    """Return the work while the pressure goes linearly in crank angle from p_1 to p_2; none if at once."""
-    angle = end - begin
-    slope = (p_2 - p_1) / np.where(angle > 0, angle, 1)
-    volumes = travel_integral(end, n) - travel_integral(begin, n)
-    work = p_2 * _travel(end, n) - p_1 * _travel(begin, n) - slope * volumes
-    return np.where(angle > 0, work, 0.0)
 
 
 def gas_cycle(

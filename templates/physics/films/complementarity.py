@@ -69,7 +69,7 @@ def rupture(equations: Equations, film: Mask | None = None) -> Rupture:
         if np.array_equal(after, film):
             return Rupture(P, film, matrix, step)
         film = after
-    raise ArithmeticError("the film's extent did not settle")
+    raise ArithmeticError("the film's extent did not converge")
 
 
 def finer(film: Mask) -> Mask:

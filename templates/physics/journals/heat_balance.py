@@ -32,12 +32,9 @@ HOTTEST = 773.15
 _ACCURACY = 1e-13
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Running:
-    """A bearing at work, in SI; arrays that broadcast together.
-
-    Name the arguments. They may stand in a row only because version 2 of oil_film is released like that.
-    """
+    """A bearing at work, in SI; arrays that broadcast together."""
 
     F: Array
     """Load [N]."""

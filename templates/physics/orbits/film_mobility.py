@@ -74,7 +74,7 @@ def film_mobility(
     ValueError
         If an argument lies outside its range.
     ArithmeticError
-        If the film does not settle in 200 steps, which no film should need.
+        If the film does not converge in 200 steps, which no film should need.
     """
     require_film(np.asarray(eps), np.asarray(ratio))
     require(np.asarray(abs(load_direction) <= np.pi), "load_direction must lie in [-pi, pi]")
@@ -122,7 +122,7 @@ def _settled(system: _Squeezed, load_direction: float, film: Mask) -> Motion:
             side = -excess[:-1, -1][film[:-1, -2]].sum() / (24 * np.hypot(*velocity))
             return Motion(velocity, _crest(P[:-1, 0]), float(side), film)
         film = after
-    raise ArithmeticError("the film's extent did not settle")
+    raise ArithmeticError("the film's extent did not converge")
 
 
 def _forces(mesh: Mesh, pressures: Array) -> Array:

@@ -21,10 +21,7 @@ RPM = 2 * np.pi / 60
 
 @units("rad/s", "1", returns="rad/s", latex=r"\frac{{{0}}}{{{1}}}")
 def critical_speeds(omega: Array, orders: Array) -> Array:
-    """Return speeds [rad/s.
-
-    ..., order, mode] at which orders excite the natural frequencies omega [..., mode].
-    """
+    """Return the speeds [rad/s], [..., order, mode], at which orders excite omega [..., mode]."""
     return omega[..., None, :] / np.atleast_1d(orders)[..., :, None]
 
 
@@ -38,10 +35,7 @@ def campbell_speeds(speeds: Array) -> Array:
 
 @units("1", "rad/s", returns="rad/s", latex=r"{0}\,{1}")
 def excitation(orders: Array, speeds: Array) -> Array:
-    """Return the angular frequencies [rad/s; ..., order, speed] that orders excite at speeds [rad/s.
-
-    ..., speed].
-    """
+    """Return the angular frequencies [rad/s], [..., order, speed], that orders excite at [..., speed]."""
     return np.atleast_1d(orders)[..., :, None] * speeds[..., None, :]
 
 

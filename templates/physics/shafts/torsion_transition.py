@@ -1,6 +1,6 @@
 """From Carter's formula to Ker Wilson's, without a jump where pin and journal begin to overlap.
 
-For `crank_stiffness` 2. The literature chooses by the sign of the overlap and names no width. At overlap 0
+For `crank_stiffness` 1. The literature chooses by the sign of the overlap and names no width. At overlap 0
 nothing happens to the steel: the webs stiffen steadily as the throw becomes shorter. So the two formulas are
 joined over a range of throws. Its middle is the published boundary, R = (D_j + D_c)/2, its half width
 0.1 (D_j + D_c): half of the length 0.2 (D_j + D_c) by which Ker Wilson shortens the throw for what pin and

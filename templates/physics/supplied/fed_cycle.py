@@ -131,7 +131,7 @@ class FedOrbit:
 
     @property
     def reason(self) -> str:
-        """Return why no film repeats, in words; empty where one does, or without a march."""
+        """Return why no film repeats, in words; empty where one does or level supplied did not march."""
         return self.marched.reason if self.marched else ""
 
     @property

@@ -70,7 +70,7 @@ class Placing:
                 if size < _NOISE:
                     return self._film(fluidity, self.y)
                 if fresh:
-                    raise NoBalance("no place of the journal bears more of the load")
+                    raise NoBalance("no position of the journal supports more of the load")
                 self.slopes = None
                 continue
             y, film, after = nearer
@@ -80,7 +80,7 @@ class Placing:
             if np.hypot(*after) > _STALE * size:
                 self.slopes = None
             self.y, lack = y, after
-        raise NoBalance("the journal's place does not settle")
+        raise NoBalance("the journal's position does not converge")
 
     def _nearer(
         self, fluidity: Array, step: Array, size: float, tries: int
@@ -101,7 +101,7 @@ class Placing:
         step = -np.linalg.lstsq(np.asarray(self.slopes), lack, rcond=1e-12)[0]
         size = float(np.hypot(*step))
         if not size > 0:
-            raise NoBalance("the force does not depend on the journal's place")
+            raise NoBalance("the force does not depend on the journal's position")
         return np.asarray(step * min(1.0, _LONGEST / size))
 
     def _film(self, fluidity: Array, y: Array) -> Pressed:
@@ -111,7 +111,7 @@ class Placing:
             film = pressed(gap, self.near)
         except (ArithmeticError, RuntimeError) as failure:
             if self.near is None:
-                raise NoBalance("the cavities do not settle") from failure
+                raise NoBalance("the cavities do not converge") from failure
             self.near = None
             return self._film(fluidity, y)
         self.near = film.P, film.void
@@ -122,7 +122,7 @@ class Placing:
         along, ahead = film.force
         size = float(np.hypot(along, ahead))
         if not (np.isfinite(size) and size > 0):
-            raise NoBalance("the film bears nothing")
+            raise NoBalance("the film supports no load")
         return np.array([np.log(size / self.load), np.arctan2(ahead, along)])
 
     def _differences(self, fluidity: Array, lack: Array) -> Array:

@@ -143,13 +143,13 @@ def heated(film: Pressed, heating: Heating, edges: Array) -> Heated:
     Raises
     ------
     RuntimeError
-        If nothing carries the heat off.
+        If nothing removes the heat.
     """
     flow = carried(film)
     system = _System(flow, heating, edges)
     T = splu(system.matrix()).solve(system.right)
     if not np.isfinite(T).all():
-        raise RuntimeError("nothing carries the heat off")
+        raise RuntimeError("nothing removes the heat")
     return system.read(T)
 
 

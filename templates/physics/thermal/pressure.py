@@ -126,7 +126,7 @@ def pressed(gap: Gap, start: tuple[Array, Array] | None = None) -> Pressed:
     Raises
     ------
     ArithmeticError
-        If the cavities do not settle.
+        If the cavities do not converge.
     """
     shape = gap.arc.phi.size, gap.arc.zeta.size
     near = None if start is None else (start[0].ravel(), start[1].ravel())

@@ -76,10 +76,7 @@ def is_one_cycle(theta: Array) -> bool:
 
 @units("rad", "N*m", returns="1")
 def closes(theta: Array, T: Array) -> bool:
-    """Return whether a last point of a torque [N m.
-
-    ..., angle] that repeats the first angle has its torque.
-    """
+    """Return whether a last point that repeats the first angle has its torque [N m], [..., angle]."""
     cycle = cycle_of(theta)
     if cycle is None or np.ndim(T) == 0 or np.shape(T)[-1] != cycle.count + 1:
         return True

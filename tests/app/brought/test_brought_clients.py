@@ -13,7 +13,7 @@ from cad.regenerate import regenerate
 
 @pytest.fixture(scope="module")
 def washer():
-    return regenerate("thrust_washer", 2, {"inner_diameter": 0.03}).step
+    return regenerate("thrust_washer", 1, {"inner_diameter": 0.03}).step
 
 
 def run(served, *arguments):

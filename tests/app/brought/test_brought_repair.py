@@ -15,7 +15,7 @@ from cad.regenerate import regenerate
 def kept(tmp_path_factory):
     """A data folder with one build of a fixed part; the digests of its STEP file and of the file as sent."""
     data = tmp_path_factory.mktemp("brought") / "data"
-    washer = regenerate("thrust_washer", 2, {"inner_diameter": 0.03}).step
+    washer = regenerate("thrust_washer", 1, {"inner_diameter": 0.03}).step
     with serving(Settings(data=data, wait_seconds=20)) as server:
         with httpx.Client(base_url=server.url, timeout=90, trust_env=False) as http:
             model = imported(http, "bought_washer", washer)

@@ -120,7 +120,8 @@ def test_property_its_curve_is_the_pressure_table_of_an_engine():
     }
     raw = {**Engine.example, "cylinder_offset": "0 mm", "crank_angle_step": "1 deg", **table}
     torque = evaluate(Engine, raw, outputs=["mean_torque"]).outputs["mean_torque"].value
-    theta, p = np.radians(out["crank_angle"]), out["gas_pressure"] * 1e5
+    theta = np.radians(np.arange(0, 720, 0.002))
+    p = np.interp(theta, np.radians(out["crank_angle"]), out["gas_pressure"] * 1e5, period=4 * np.pi)
     phi = np.arcsin(0.043 / 0.145 * np.sin(theta))
     lever = 0.043 * (np.sin(theta) + np.cos(theta) * np.tan(phi))
     assert torque == pytest.approx(4 * np.pi / 4 * 0.086**2 * np.mean(p * lever), rel=1e-9)

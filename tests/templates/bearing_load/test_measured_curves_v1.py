@@ -1,4 +1,4 @@
-"""measured_curves 1: a known curve sampled elsewhere, its shift, its offset; refusals."""
+"""measured_curves: a known curve sampled elsewhere, its shift, its offset; refusals."""
 
 import numpy as np
 import pytest

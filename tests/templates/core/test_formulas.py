@@ -37,7 +37,7 @@ class TestLanguage:
                 b = given("mm", "Bore")
 
     def test_property_words_of_the_language_are_refused(self):
-        with pytest.raises(TypeError, match="version has a meaning"):
+        with pytest.raises(TypeError, match="version is reserved"):
 
             class Reserved(Template):
                 version = given("1", "number")

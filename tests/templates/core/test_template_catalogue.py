@@ -66,7 +66,7 @@ class TestFinding:
         results = [evaluate(cls, cls.example).outputs["twice_the_length"].value for cls in (one, other)]
         assert results == [4, 6]
         assert digest(one) != digest(other)
-        with pytest.raises(UnusableFile, match="another file already"):
+        with pytest.raises(UnusableFile, match="already declared in another file"):
             find([tmp_path], Template)
 
     def test_property_latest_is_the_newest_that_is_not_withdrawn(self, tmp_path):

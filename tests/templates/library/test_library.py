@@ -166,8 +166,8 @@ def test_a_whole_table_is_read(tmp_path):
 
 @pytest.mark.parametrize(("line", "message"), [
     ("tin,a metal,5.5,150,book,,,no", "not confirmed"),
-    ("tin,a metal,5.5,150,,,,yes", "in no list of sources"),
-    ("tin,a metal,5.5,150,book,rumour,,yes", "'rumour', which is in no list"),
+    ("tin,a metal,5.5,150,,,,yes", "not in the list of sources"),
+    ("tin,a metal,5.5,150,book,rumour,,yes", "'rumour', which is not in the list"),
     ("tin,a metal,soft,150,book,,,yes", "'soft' is not a number"),
     ("tin,a metal,inf,150,book,,,yes", "'inf' is not a number"),
     ("tin,a metal,,,book,,,yes", "no value"),
@@ -188,7 +188,7 @@ def test_a_row_that_is_there_twice_is_refused(tmp_path):
 
 @pytest.mark.parametrize(("head", "message"), [
     (HEAD.replace("[MPa]", "[Mpsi/soft]"), "unit"),
-    (HEAD.replace("load [MPa]", "load"), "write quantities as in"),
+    (HEAD.replace("load [MPa]", "load"), "write quantities like"),
 ])  # fmt: skip
 def test_a_head_that_is_none_is_refused(tmp_path, head, message):
     with pytest.raises(UnusableTable, match=message):
@@ -197,5 +197,5 @@ def test_a_head_that_is_none_is_refused(tmp_path, head, message):
 
 @pytest.mark.parametrize("line", ["book,,a copy", "book,A book,"])
 def test_a_source_that_nobody_read_is_refused(tmp_path, line):
-    with pytest.raises(UnusableTable, match="no citation, or nobody read it"):
+    with pytest.raises(UnusableTable, match="no citation, or is not marked as read"):
         read_sources(written(tmp_path, "key,citation,read", line))

@@ -145,7 +145,7 @@ class TestLevels:
         assert fed > dry
 
     def test_property_dear_levels_take_few_points(self):
-        with pytest.raises(InvalidInputs, match="level reynolds takes at most 400 points at once, not 500"):
+        with pytest.raises(InvalidInputs, match="level reynolds takes at most 100 points at once, not 500"):
             evaluate(OilFilm, bearing(np.ones(500), np.ones(500)), level="reynolds")
 
     def test_property_tables_are_checked(self):

@@ -148,7 +148,7 @@ class TestRecommendation:
     @pytest.mark.parametrize(
         ("throw", "word", "reason"),
         [(30, "wilson", "web term is negative"), (68.5, "wilson", "short and stiff"),
-         (92.5, "carter", "webs bend"), (100, "carter", "webs bend")],
+         (112, "carter", "webs bend"), (130, "carter", "webs bend")],
     )  # fmt: skip
     def test_property_overlap_decides(self, throw, word, reason):
         result = outputs({**HAND, "throw": f"{throw} mm"})
@@ -157,7 +157,7 @@ class TestRecommendation:
         assert result["recommended_stiffness"] == result[f"stiffness_{word}"]
 
     def test_property_a_bad_throw_has_no_recommendation(self):
-        many = {**HAND, "throw": {"value": [68.5, -1, 100], "unit": "mm"}}
+        many = {**HAND, "throw": {"value": [68.5, -1, 130], "unit": "mm"}}
         answer = evaluate(CrankStiffness, many).outputs["recommended"]
         assert answer.value.tolist() == ["wilson", None, "carter"]
         assert [bool(reason) for reason in answer.reasons] == [False, True, False]

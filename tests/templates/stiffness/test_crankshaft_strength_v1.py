@@ -7,7 +7,7 @@ import pytest
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.stiffness.crankshaft_strength_v1 import CrankshaftStrength
-from templates.stiffness.fatigue_life_v2 import FatigueLife
+from templates.stiffness.fatigue_life_v1 import FatigueLife
 
 EXAMPLE = CrankshaftStrength.example
 

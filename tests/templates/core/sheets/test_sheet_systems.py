@@ -117,7 +117,7 @@ TWO = 'solve x [N] "first", y [N] "second" so that '
         (TWO + "x + y == F and x > y", "equation", "these are not equations joined by and"),
         (TWO + "x + y == F or x == y", "equation", "these are not equations joined by and"),
         (TWO + "x + y", "equation", "these are not equations joined by and"),
-        (TWO + "x == F and 2 * x == F", "equation", "y does not stand in the equations"),
+        (TWO + "x == F and 2 * x == F", "equation", "y does not occur in the equations"),
         (TWO + "x + y == g and x == y", "axis_mismatch", "the equations hold a list over cycle"),
         (TWO + "x + y == F and x == 2 mm", "unit_mismatch", "== needs equal units, not N and m"),
         (TWO.replace("y [N]", "y [mm]") + "x + y == F and x == F", "unit_mismatch", "+ needs equal units"),

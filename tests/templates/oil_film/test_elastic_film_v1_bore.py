@@ -1,4 +1,4 @@
-"""`elastic_film` 2: version 1 but for level elastic, whose bore is a matrix of modes."""
+"""Level `elastic` of `elastic_film`, whose bore is a matrix of modes."""
 
 import numpy as np
 import pytest
@@ -6,8 +6,7 @@ import pytest
 from cad.analysis.kinds import KINDS, mode_names
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
-from templates.oil_film.elastic_film_v1 import ElasticFilm as First
-from templates.oil_film.elastic_film_v2 import ElasticFilm
+from templates.oil_film.elastic_film_v1 import ElasticFilm
 from templates.physics.elastic.bore_film import attitude, bore_balances
 from templates.physics.elastic.bore_journal import BoreSoftness
 from templates.physics.elastic.bore_modes import BENDING, HIGHEST, MODES, modes_along, modes_around
@@ -29,8 +28,8 @@ def rows(matrix):
     return {"compliance": {"value": np.asarray(matrix).tolist(), "unit": "um/GPa"}}
 
 
-def outputs(raw=None, cls=ElasticFilm, **options):
-    found = evaluate(cls, {**cls.example, **(raw or {})}, **options).outputs
+def outputs(raw=None, **options):
+    found = evaluate(ElasticFilm, {**ElasticFilm.example, **(raw or {})}, **options).outputs
     return {name: one.value for name, one in found.items()}
 
 
@@ -51,12 +50,6 @@ class TestModes:
 
 
 class TestLimits:
-    @pytest.mark.parametrize("level", ["rigid", "liner", "housing"])
-    def test_limit_levels_of_version_1_are_as_they_were(self, level):
-        before, after = outputs(cls=First, level=level), outputs(level=level)
-        for name, value in before.items():
-            assert after[name] == value, name
-
     def test_limit_a_stiff_bore_is_rigid(self):
         rigid = outputs({"liner_thickness": "0 mm"})
         found = outputs({**rows(np.zeros((38, 38))), "liner_thickness": "0 mm"}, level="elastic")

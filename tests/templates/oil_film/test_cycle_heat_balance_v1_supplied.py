@@ -1,4 +1,4 @@
-"""`cycle_heat_balance` 2: level supplied, the film of `oil_film_cycle` 3. For the rest see version 1."""
+"""`cycle_heat_balance` 1: level supplied, the film of `oil_film_cycle` 3."""
 
 import numpy as np
 import pytest
@@ -6,8 +6,7 @@ from scipy.integrate import trapezoid
 
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
-from templates.oil_film.cycle_heat_balance_v1 import CycleHeatBalance as FirstVersion
-from templates.oil_film.cycle_heat_balance_v2 import CycleHeatBalance
+from templates.oil_film.cycle_heat_balance_v1 import CycleHeatBalance
 from templates.oil_film.oil_film_cycle_v3 import OilFilmCycle
 from templates.physics.heat.marched_heat import following
 
@@ -16,14 +15,14 @@ PLAIN = {"groove_width": None, "supply_pressure": None}
 HOLE = {**PLAIN, "pin_hole_length": "4 mm", "supply_pressure": "4 bar"}
 
 
-def answer(raw=None, version=CycleHeatBalance, **options):
+def answer(raw=None, **options):
     merged = {**CycleHeatBalance.example, **(raw or {})}
     typed = {name: value for name, value in merged.items() if value is not None}
-    return evaluate(version, typed, **options)
+    return evaluate(CycleHeatBalance, typed, **options)
 
 
-def outputs(raw=None, version=CycleHeatBalance, **options):
-    return {name: one.value for name, one in answer(raw, version, **options).outputs.items()}
+def outputs(raw=None, **options):
+    return {name: one.value for name, one in answer(raw, **options).outputs.items()}
 
 
 def of_cycle(eta, level, raw=None):
@@ -69,12 +68,6 @@ def test_second_method_formulas_on_paper_give_the_answer():
 def test_property_viscosity_that_no_shear_leaves_names_input_unit_and_what_is_right():
     with pytest.raises(InvalidInputs, match=r"give an hths_viscosity in mPa\*s below that at low shear"):
         answer({"hths_viscosity": "30 mPa*s"})
-
-
-def test_analytic_bearing_without_a_groove_is_as_in_version_1():
-    two, one = outputs(PLAIN), outputs(PLAIN, FirstVersion)
-    for name in (ETA, FILM, "temperature_rise", "power_loss", "side_flow"):
-        assert two[name] == pytest.approx(one[name], rel=1e-8), name
 
 
 def test_analytic_no_heat_is_the_viscosity_of_the_supply():

@@ -1,11 +1,10 @@
-"""`crank_stiffness` 2: version 1 outside of its transition, and no jump of what it recommends within."""
+"""`crank_stiffness`: one formula outside of the transition, and no jump of what it recommends within."""
 
 import numpy as np
 import pytest
 
 from templates.core.language.evaluate import evaluate
-from templates.stiffness.crank_stiffness_v1 import CrankStiffness as First
-from templates.stiffness.crank_stiffness_v2 import CrankStiffness
+from templates.stiffness.crank_stiffness_v1 import CrankStiffness
 
 THROW = {
     "journal_length": "45 mm",
@@ -20,9 +19,9 @@ TOUCHING = 92.5  # mm of throw: half of the diameters together
 HALF_WIDTH = 18.5  # mm: a tenth of them
 
 
-def outputs(throws, template=CrankStiffness):
+def outputs(throws):
     raw = {**THROW, "throw": {"value": np.asarray(throws, float).tolist(), "unit": "mm"}}
-    return {name: answer.value for name, answer in evaluate(template, raw).outputs.items()}
+    return {name: answer.value for name, answer in evaluate(CrankStiffness, raw).outputs.items()}
 
 
 def relative_steps(values):
@@ -31,10 +30,12 @@ def relative_steps(values):
 
 class TestTransition:
     def test_property_no_jump_across_overlap_0(self):
-        """Steps of a micrometre change the stiffness by less than a millionth, version 1 by percents."""
+        """A step of a micrometre changes the stiffness by less than 2e-5; a choice by sign, by percents."""
         throws = TOUCHING + np.arange(-500, 501) * 1e-3
         assert relative_steps(outputs(throws)["recommended_stiffness"]).max() < 2e-5
-        assert relative_steps(outputs(throws, First)["recommended_stiffness"]).max() > 0.02
+        result = outputs(throws)
+        by_sign = np.where(throws > TOUCHING, result["stiffness_carter"], result["stiffness_wilson"])
+        assert relative_steps(by_sign).max() > 0.02
 
     def test_property_no_jump_and_no_kink_anywhere(self):
         throws = np.linspace(60, 130, 7001)
@@ -62,18 +63,16 @@ class TestTransition:
         assert (share[0], share[-1]) == (1, 0)
 
 
-class TestVersion1:
+class TestWord:
     @pytest.mark.parametrize(
         ("throw", "word"),
         [(40, "wilson"), (68.5, "wilson"), (TOUCHING - HALF_WIDTH - 1e-6, "wilson"),
          (TOUCHING + HALF_WIDTH + 1e-6, "carter"), (130, "carter")],
     )  # fmt: skip
-    def test_property_outside_it_answers_what_version_1_answers(self, throw, word):
-        ours, first = outputs([throw, throw]), outputs([throw, throw], First)
-        assert ours["recommended"][0] == first["recommended"][0] == word
-        for name, value in first.items():
-            if name != "reason":
-                np.testing.assert_array_equal(ours[name], value, err_msg=name)
+    def test_property_outside_it_one_formula_alone_is_recommended(self, throw, word):
+        result = outputs([throw, throw])
+        assert result["recommended"][0] == word
+        np.testing.assert_array_equal(result["recommended_stiffness"], result[f"stiffness_{word}"])
 
     @pytest.mark.parametrize(("throw", "word"), [(75, "between"), (92, "between"), (93, "between")])
     def test_property_within_it_says_so(self, throw, word):

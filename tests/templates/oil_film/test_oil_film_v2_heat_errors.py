@@ -1,4 +1,4 @@
-"""Errors of `oil_film` 3 under a heat balance: the stated one bounds that of other random bearings."""
+"""Errors of `oil_film` 2 under a heat balance: the stated one bounds that of other random bearings."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import pytest
 from benchmarks.heat_balance_accuracy import SEED, change, dependent, drawn, sizes, value_of
 from benchmarks.truths import FRICTION, converged
 from templates.core.language.evaluate import evaluate
-from templates.oil_film.oil_film_v3 import OilFilm
+from templates.oil_film.oil_film_v2 import OilFilm
 from templates.physics.films.reynolds import extrapolated_film
 from templates.physics.journals.shaped_journal import plain_film
 from templates.physics.journals.static_journal import JournalFilm

@@ -1,4 +1,4 @@
-"""`fatigue_life` 2: ASTM's counting, closed forms of the criteria, superposition, Miner, what is refused."""
+"""`fatigue_life` 1: ASTM's counting, closed forms of the criteria, superposition, Miner, what is refused."""
 
 from math import pi, sqrt
 
@@ -13,7 +13,7 @@ from templates.physics.fatigue.endurance import size_factor, surface_factor
 from templates.physics.fatigue.findley import critical_planes, findley_coefficient, uniaxial_equivalent
 from templates.physics.fatigue.smallest_circle import radii_of_smallest_circles
 from templates.physics.fatigue.tensors import as_matrices, leading_tensor, signed_von_mises, von_mises_1913
-from templates.stiffness.fatigue_life_v2 import FatigueLife
+from templates.stiffness.fatigue_life_v1 import FatigueLife
 
 STEEL = {"ultimate_strength": "900 MPa", "endurance_limit": "300 MPa", "strength_at_1000_cycles": "700 MPa"}
 TENSION, SHEAR = [0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 1, 0]

@@ -1,7 +1,6 @@
 """Thrust washer: a flat ring or half of one, with radial oil grooves, a hole for a pin, and a locating lug.
 
-What its words mean is said in the class below, which users read. There is no version 1 here: the
-documentation has had teams write that one as their first model.
+What its words mean is said in the class below, which users read.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`oil_film` 3 over the ranges of physics.md, section 5: finite, or without a value and with the reason."""
+"""`oil_film` 2 over the ranges of physics.md, section 5: finite, or without a value and with the reason."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from seeds import seeded
 
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
-from templates.oil_film.oil_film_v3 import OilFilm
+from templates.oil_film.oil_film_v2 import OilFilm
 
 REFUSED = {"relative_eccentricity", "hydrodynamic_speed", "load_speed"}
 """What refuses: nothing bears the load, nothing turns, or a lobed sleeve turns."""
