@@ -22,10 +22,14 @@ HTTP = ("app/*routes*.py", "app/*schemas*.py", "app/api/*.py", "app/http/*.py")
 WEB = ("app/*web/*.py", "app/*presentation/*.py", "app/web/*.js", "app/web/*.css", "app/web/*.html")
 ABOUT = {
     "tests/app/brought/test_freecad.py": (
-        *("app/imported_models/*.py", "cad/brought.py", "cad/freecad/*.py"),
+        *("app/imported_models/*.py", "cad/imported_models.py", "cad/freecad/*.py"),
         *("app/imported_models/routes.py", "app/*workers/*.py"),
     ),
-    "tests/app/brought/test_assemblies.py": ("app/imported_models/*.py", "cad/brought.py", "cad/assembl*.py"),
+    "tests/app/brought/test_assemblies.py": (
+        "app/imported_models/*.py",
+        "cad/imported_models.py",
+        "cad/assembl*.py",
+    ),
     "tests/app/brought/test_assembly_page.py": ("app/imported_models/*.py", *WEB),
     "tests/app/calculations/test_calculations_in_processes.py": (
         "app/*calculations/*.py",

@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 from itertools import chain
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from cad.brought import BroughtModel, Description, Parameter, attribute_of, parts_of_step
 from cad.catalogue import models
 from cad.errors import GeometryError, UnreadableStep
+from cad.imported_models import Description, ImportedModel, Parameter, attribute_of, parts_of_step
 from cad.model import BETWEEN, Box, CadModel, Dimension, Part, names_at
 from cad.shaft import STEEL_DENSITY
 from templates.core.errors import listed, plain
@@ -86,10 +86,10 @@ class AssemblyDescription(Description):
         )
 
 
-class AssemblyModel(BroughtModel):
+class AssemblyModel(ImportedModel):
     """Base of the assemblies that a team makes."""
 
-    brought: ClassVar[AssemblyDescription]
+    imported: ClassVar[AssemblyDescription]
 
     def build(self) -> tuple[Part, ...]:
         """The parts of its model, and its fixed parts where they stand."""
@@ -107,8 +107,8 @@ class AssemblyModel(BroughtModel):
 
         fixed = [part for part in self.build() if self.component_of(part.name)]
         boxes = [bounding_box(Body(one.name, one.solid, one.colour, one.places) for one in fixed)]
-        if self.brought.base:
-            boxes.append(super(BroughtModel, self).bounding_box())
+        if self.imported.base:
+            boxes.append(super(ImportedModel, self).bounding_box())
         low, high = ([box.low for box in boxes], [box.high for box in boxes])
         return Box(
             (min(p[0] for p in low), min(p[1] for p in low), min(p[2] for p in low)),
@@ -117,21 +117,21 @@ class AssemblyModel(BroughtModel):
 
     def dimensions(self, seen: Mapping[str, Any]) -> dict[str, Dimension]:
         """The parameters of its model, as its own parts show them."""
-        if not self.brought.base:
+        if not self.imported.base:
             return {}
         own = {name: part for name, part in seen.items() if not self.component_of(name)}
-        return dict(super(BroughtModel, self).dimensions(own))
+        return dict(super(ImportedModel, self).dimensions(own))
 
     def component_of(self, part: str) -> str | None:
         """The fixed part to which a solid of this name belongs; None of a solid of its model."""
         name = part.partition(_WITHIN)[0]
-        return name if any(name == one.name for one in self.brought.components) else None
+        return name if any(name == one.name for one in self.imported.components) else None
 
     @classmethod
     def further_measures(cls) -> Mapping[str, str]:
         """Clearance and overlap of each fixed part, unless a parameter has that name."""
         measures = {
-            f"{one.name}_{end}": unit for one in cls.brought.components for end, unit in BETWEEN.items()
+            f"{one.name}_{end}": unit for one in cls.imported.components for end, unit in BETWEEN.items()
         }
         return {name: unit for name, unit in measures.items() if name not in {*cls.inputs, *cls.formulas}}
 
@@ -155,7 +155,7 @@ class AssemblyModel(BroughtModel):
     def _allows(self, one: str, other: str) -> bool:
         """Return whether the fixed part of one solid may take space of the other, by part or by solid."""
         name = self.component_of(one)
-        component = next((c for c in self.brought.components if c.name == name), None)
+        component = next((c for c in self.imported.components if c.name == name), None)
         if component is None:
             return False
         parts = (part.name for part in self.build() if other in names_at(part.name, len(part.places)))
@@ -169,14 +169,14 @@ class AssemblyModel(BroughtModel):
         GeometryError
             `may_overlap`, with the nearest names and all that there are.
         """
-        wanted = {name: one.name for one in self.brought.components for name in one.may_overlap}
-        known = dict.fromkeys(one.name for one in self.brought.components)
+        wanted = {name: one.name for one in self.imported.components for name in one.may_overlap}
+        known = dict.fromkeys(one.name for one in self.imported.components)
         for part in parts:
             known |= dict.fromkeys((part.name, *names_at(part.name, len(part.places))))
         if not (unknown := wanted.keys() - known.keys()):
             return
-        if self.brought.base:
-            cls = base_of(self.brought.base)
+        if self.imported.base:
+            cls = base_of(self.imported.base)
             for part in cls.from_quantities(cls.example).build():
                 unknown -= {part.name, *names_at(part.name, len(part.places))}
         if not unknown:
@@ -195,12 +195,12 @@ class AssemblyModel(BroughtModel):
         if drawn is None:
             raise GeometryError("kernel", f"{self.id} has not been given its fixed parts", self.inputs)
         there = dict[str, Part]()
-        if self.brought.base:
-            for part in super(BroughtModel, self).build():
+        if self.imported.base:
+            for part in super(ImportedModel, self).build():
                 there[part.name] = part
                 yield part
         count = 0
-        for component in self.brought.components:
+        for component in self.imported.components:
             if component.name in there:
                 detail = f"{component.name} is the name of a part of {self._of_model()}: choose another"
                 raise GeometryError("name", detail)
@@ -229,7 +229,7 @@ class AssemblyModel(BroughtModel):
         return Place(**numbers)
 
     def _of_model(self) -> str:
-        return self.brought.base[0] if self.brought.base else self.id
+        return self.imported.base[0] if self.imported.base else self.id
 
 
 def _solids_of(component: Component, step: bytes) -> list[Part]:

@@ -32,10 +32,10 @@ from cad.errors import GeometryError
 from cad.fillets import Crank
 from cad.lists import LONGEST_TEXT, listed
 from cad.shaft import STEEL_DENSITY, Shaft
-from cad.toleranced import carried
+from cad.toleranced import TolerancedTemplate
 from templates.core.errors import Fault, InvalidInputs, excerpt
 from templates.core.language.spec import Curve
-from templates.core.language.template import Array, Template
+from templates.core.language.template import Array
 from templates.core.units.quantity import Typed
 
 if TYPE_CHECKING:
@@ -122,21 +122,14 @@ BETWEEN = {"clearance": "mm", "overlap": "mm**3"}
 """What is measured between a fixed part of an assembly and all other parts: the ends of names, and units."""
 
 
-class CadModel(Template):
+class CadModel(TolerancedTemplate):
     """Base of all models."""
 
     film_bore: ClassVar[str | None] = None
     """The parameter, by API name, that is the bore in which an oil film carries; of plain bearings."""
 
-    toleranced: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
-    """Which faces carry which parameter, in the words of `cad.toleranced`."""
-
     sections: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
     """Removed sections of its drawing, in the words of `cad.drafting.removed`."""
-
-    def __init_subclass__(cls) -> None:
-        super().__init_subclass__()
-        carried(cls)
 
     rounds_noise: ClassVar[bool] = False
     """Whether coordinates nearer to zero than 1e-12 mm are written as zero: the kernel leaves such noise on

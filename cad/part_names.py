@@ -1,4 +1,4 @@
-"""Names of the parts of brought models, which a STEP file keeps as they are."""
+"""Names of the parts of imported models, which a STEP file keeps as they are."""
 
 from __future__ import annotations
 

@@ -38,16 +38,16 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 from templates.core.errors import FaultyText
+from templates.core.language.template import Template
 from templates.core.units.quantity import Typed, read
 from templates.core.units.tolerance import Tolerance
 from templates.core.units.units import unit
 
 if TYPE_CHECKING:
     from cad.header import Header
-    from cad.model import CadModel
 
 Faces = Literal[
     "cylinders",
@@ -142,7 +142,18 @@ class Limits:
         return round(self.width * part, _DIGITS)
 
 
-def carried(cls: type[CadModel]) -> dict[str, Carried]:
+class TolerancedTemplate(Template):
+    """Base of models: a template of which faces carry parameters, so that these may have tolerances."""
+
+    toleranced: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
+    """Which faces carry which parameter, in the words of this module."""
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        carried(cls)
+
+
+def carried(cls: type[TolerancedTemplate]) -> dict[str, Carried]:
     """What a model declares, by parameter.
 
     Raises
@@ -162,7 +173,7 @@ def carried(cls: type[CadModel]) -> dict[str, Carried]:
     return read_
 
 
-def _carried(cls: type[CadModel], name: str, said: dict[str, Any]) -> Carried:
+def _carried(cls: type[TolerancedTemplate], name: str, said: dict[str, Any]) -> Carried:
     if name not in cls.inputs or unit(cls.inputs[name].meaning.unit).base != unit("m").base:
         raise _wrong(cls, name, "it is no parameter that is a length")
     kinds = [kind for kind in FACES if kind in said]
@@ -197,25 +208,25 @@ def _carried(cls: type[CadModel], name: str, said: dict[str, Any]) -> Carried:
     )
 
 
-def _parts(cls: type[CadModel], name: str, word: str, said: Any) -> list[str]:
+def _parts(cls: type[TolerancedTemplate], name: str, word: str, said: Any) -> list[str]:
     named = [said] if isinstance(said, str) else said
     if not (isinstance(named, (list, tuple)) and named and all(isinstance(one, str) for one in named)):
         raise _wrong(cls, name, f"{word} is the name of a part, or a list of names")
     return list(named)
 
 
-def _levels(cls: type[CadModel], name: str, said: Any) -> tuple[tuple[int, int], ...]:
+def _levels(cls: type[TolerancedTemplate], name: str, said: Any) -> tuple[tuple[int, int], ...]:
     pairs = [tuple(pair) if isinstance(pair, (list, tuple)) else () for pair in said]
     if not pairs or any([type(number) for number in pair] != [int, int] for pair in pairs):
         raise _wrong(cls, name, "levels are pairs of whole numbers, as in [[0, -1]]")
     return tuple((low, high) for low, high in pairs)
 
 
-def _wrong(cls: type[CadModel], name: str, detail: str) -> TypeError:
+def _wrong(cls: type[TolerancedTemplate], name: str, detail: str) -> TypeError:
     return TypeError(f"{cls.__name__}.toleranced, {name}: {detail}")
 
 
-def limits(model: CadModel) -> dict[str, Limits]:
+def limits(model: TolerancedTemplate) -> dict[str, Limits]:
     """The limits that a user gave to dimensions of a model which its faces carry, by parameter."""
     declared, given = type(model).toleranced, model.ledger.typed
     return dict(_single((name, typed) for name in declared if isinstance(typed := given.get(name), Typed)))

@@ -56,8 +56,10 @@ class Answering:
         if self._patience(request) > 0:  # else a job waits for its turn
             self.pool.admit(client)
 
-    async def answer(self, request: Request, question: Question) -> Response:
+    async def answer(self, request: Request, question: Question, within: float | None = None) -> Response:
         """The answer of a calculation process; 202 with a job once nobody waits for it any longer.
+
+        Waits `within` [s], by default as long as the request prefers.
 
         Who does not want to wait at all learns nevertheless what is wrong with the request. The process is
         ended if the client leaves.
@@ -71,7 +73,7 @@ class Answering:
         """
         cls = await to_try(self.jobs.catalogues, question.template, question.version)
         client = await get_client(request)
-        seconds = self._patience(request)
+        seconds = self._patience(request) if within is None else min(self.deadline, within)
         if seconds <= 0:
             await self._check(request, cls, client, question)
             return accepted(await run_in_threadpool(self.jobs.create, question, client))

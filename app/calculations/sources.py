@@ -8,8 +8,8 @@ from functools import lru_cache
 from pathlib import Path
 
 import templates
-from cad.brought import BroughtModel
-from cad.brought import class_of as class_of_description
+from cad.imported_models import ImportedModel
+from cad.model_classes import class_of as class_of_description
 from templates.core.catalogue.finding import declared_in, declared_in_file
 from templates.core.catalogue.loading import load, origin
 from templates.core.language.template import Template
@@ -55,8 +55,8 @@ Source = FileSource | SheetSource | BroughtSource
 
 def source_of(cls: type[Template]) -> Source:
     """The source of a template, with the code that this process calculates by."""
-    if issubclass(cls, BroughtModel):
-        return BroughtSource(cls.id, cls.version, cls.brought.text)
+    if issubclass(cls, ImportedModel):
+        return BroughtSource(cls.id, cls.version, cls.imported.text)
     if cls.sheet is not None:
         return SheetSource(cls.id, cls.version, cls.sheet.text, cls.withdrawn)
     module, path = inspect.getmodule(cls), inspect.getfile(cls)

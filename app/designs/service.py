@@ -187,6 +187,12 @@ class Designs:
         """Take a design from the lists; its revisions are kept. Raises DesignReleased."""
         self.database.write(lambda session: repository.delete(session, id))
 
+    def proposals(self, id: str) -> list[Proposal]:
+        """Return relations for the parameters of models that are not set."""
+        with self.database.read() as session:
+            document = repository.head(session, id).document
+        return proposals(self._graph(resolved(read_document(document), self.catalogues)))
+
     def auto_map(
         self, id: str, apply: bool, expected: str | None, once: Once
     ) -> tuple[list[Proposal], Saved | None]:

@@ -11,7 +11,7 @@ from typing import Annotated
 
 from fastapi import Depends, Request
 from starlette.datastructures import Headers
-from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import Scope
 
 from app.identity.principal import client_of
 from templates.core.errors import Fault, InvalidInputs
@@ -21,8 +21,6 @@ _NAME = re.compile(r"[!-~][ -~]{0,98}[!-~]|[!-~]")  # up to 100 printable ASCII 
 _SESSION = re.compile(r"[A-Za-z0-9_-]{16,64}")
 _IN_COOKIES = re.compile(rf"(?:^|;)[ ]*{COOKIE}=([A-Za-z0-9_-]{{16,64}})(?:;|$)")
 _MOST_COOKIES = 8192  # characters that are looked at
-_CALLER = "crankwright.caller"
-"""Key of an ASGI scope that only this process sets: for which client a page calls the interface."""
 PRINCIPAL = "crankwright.principal"
 """Key of an ASGI scope: the principal of the request, where keys are asked for."""
 
@@ -30,20 +28,6 @@ PRINCIPAL = "crankwright.principal"
 def is_session(text: str) -> bool:
     """Return whether a cookie's value can be a session of a page."""
     return _SESSION.fullmatch(text) is not None
-
-
-def from_inside(app: ASGIApp, client: str) -> ASGIApp:
-    """The app as the process itself calls it, for a client whose request has passed the guard."""
-
-    async def called(scope: Scope, receive: Receive, send: Send) -> None:
-        await app({**scope, _CALLER: client}, receive, send)
-
-    return called
-
-
-def is_inside(scope: Scope) -> bool:
-    """Return whether this process sent a request itself. No header can make it so."""
-    return _CALLER in scope
 
 
 async def get_client(request: Request) -> str:
@@ -54,8 +38,6 @@ async def get_client(request: Request) -> str:
     InvalidInputs
         If the header is not a name.
     """
-    if is_inside(request.scope):
-        return str(request.scope[_CALLER])
     if (who := request.scope.get(PRINCIPAL)) is not None:
         return client_of(who.id)
     if (named := request.headers.get(HEADER)) is not None:
@@ -71,8 +53,6 @@ async def get_client(request: Request) -> str:
 
 def from_whom(scope: Scope) -> str:
     """The client of a request as `get_client` has it; a name that is none counts as none."""
-    if is_inside(scope):
-        return str(scope[_CALLER])
     if (who := scope.get(PRINCIPAL)) is not None:
         return client_of(who.id)
     headers = Headers(scope=scope)

@@ -16,7 +16,6 @@ from collections.abc import Callable, Iterable
 from fastapi import FastAPI, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.http.clients import is_inside
 from app.http.strict_requests import HttpError
 from app.http.targets import is_mere_path
 from app.settings.hosts import LONGEST, SETTING, Authority, Hosts, parse
@@ -58,7 +57,7 @@ class CrossSite(HttpError):
 
 
 class Guard:
-    """ASGI middleware with the three rules; calls from within the process pass.
+    """ASGI middleware with the three rules.
 
     Parameters
     ----------
@@ -75,7 +74,7 @@ class Guard:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse, or pass on; add the headers to what is answered."""
-        if scope["type"] not in ("http", "websocket") or is_inside(scope):
+        if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
             return
         try:

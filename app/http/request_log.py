@@ -8,7 +8,7 @@ import time
 from fastapi import FastAPI
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.http.clients import from_whom, is_inside
+from app.http.clients import from_whom
 from app.observation import logs, metrics
 
 logger = logging.getLogger(__name__)
@@ -37,7 +37,7 @@ class Observed:
             await self.app(scope, receive, send)
             return
         start, status, is_gone = time.perf_counter(), 0, False
-        id_ = logs.REQUEST_ID.get() if is_inside(scope) else logs.request_id(scope["headers"])
+        id_ = logs.request_id(scope["headers"])
         header = (b"x-request-id", id_.encode())
         token = logs.REQUEST_ID.set(id_)
 

@@ -8,7 +8,6 @@ from fastapi import FastAPI
 from opentelemetry.trace import SpanKind
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.http.clients import is_inside
 from app.http.request_log import method_of, route_of
 from app.observation import logs
 from app.observation.traces import Traces
@@ -31,7 +30,7 @@ class Traced:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        token = logs.TRACE.set(logs.TRACE.get() if is_inside(scope) else _of_caller(scope))
+        token = logs.TRACE.set(_of_caller(scope))
         try:
             await self._within_span(scope, receive, send)
         finally:

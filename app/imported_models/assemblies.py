@@ -22,9 +22,10 @@ from app.storage.database import Database
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, NotFound
 from app.storage.tables import ArtifactRow, DesignRow, RevisionModelRow
 from cad.assemblies import AssemblyDescription, Component, base_of, described
-from cad.brought import Description, Drawn, description_of
 from cad.errors import GeometryError, UnreadableModel
+from cad.imported_models import Description, Drawn
 from cad.model import CadModel
+from cad.model_classes import description_of
 from templates.core.catalogue.loading import is_outside
 from templates.core.errors import UnknownTemplate
 

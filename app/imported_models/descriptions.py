@@ -16,9 +16,9 @@ from app.jobs.context import JobContext
 from app.storage.artifacts import Artifacts
 from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded
-from cad.brought import Description, Drawn, Parameter, Role, role_of, shows, trial_sizes
 from cad.errors import GeometryError, UnreadableModel
 from cad.freecad.admission import admitted
+from cad.imported_models import Description, Drawn, Parameter, Role, role_of, shows, trial_sizes
 
 READING = Limits(deadline=20.0, memory_mb=512)
 

@@ -26,9 +26,9 @@ from app.imported_models.freecad import FreeCad, missing
 from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded, JobCancelled, MemoryExceeded
 from app.workers.lifeline import Lifeline
-from cad.brought import Drawn, DrawnPart
 from cad.errors import GeometryError
 from cad.freecad import drawing_process
+from cad.imported_models import Drawn, DrawnPart
 
 STARTING = 60.0
 """Time in which FreeCAD has to start [s]; it takes 3 s."""

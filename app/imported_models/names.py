@@ -1,4 +1,4 @@
-"""Names of brought models and of their parameters."""
+"""Names of imported models and of their parameters."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 from app.catalogue.catalogues import Catalogues
 from app.imported_models.errors import ModelIdTaken
-from cad.brought import brought
+from cad.imported_models import imported_description
 from templates.core.errors import Fault, InvalidInputs
 
 RESERVED = frozenset({"import", "new"})
@@ -18,7 +18,7 @@ LONGEST = 60
 
 
 def require_free(id: str, catalogues: Catalogues) -> None:
-    """Return if a brought model may have this id.
+    """Return if an imported model may have this id.
 
     Raises
     ------
@@ -35,7 +35,10 @@ def require_free(id: str, catalogues: Catalogues) -> None:
         raise ModelIdTaken(f"{id} is the id of a file of the team")
     if id in snapshot.templates.ids:
         raise ModelIdTaken(f"{id} is the id of a template")
-    if any(name == id and brought(cls) is None for (name, _), cls in snapshot.models.versions.items()):
+    if any(
+        name == id and imported_description(cls) is None
+        for (name, _), cls in snapshot.models.versions.items()
+    ):
         raise ModelIdTaken(f"{id} is the id of a model in a Python file")
 
 

@@ -16,8 +16,8 @@ from app.jobs.context import JobContext
 from app.settings import Settings
 from app.storage.artifacts import Artifacts
 from app.workers.base import Limits, Runner
-from cad.brought import BroughtModel, Description, Drawn, Parameter, Program
 from cad.errors import GeometryError, ProgramMissing, UnreadableModel
+from cad.imported_models import Description, Drawn, ImportedModel, Parameter, Program
 
 Values = dict[str, float]
 """By API name, in the unit of each parameter; those that are as in the file may be left out."""
@@ -103,11 +103,13 @@ class Programs:
     freecad: FreeCadDrawing
     by_name: dict[Program, Drawing]
 
-    def draw(self, shape: BroughtModel, context: Runner) -> Drawn:
+    def draw(self, shape: ImportedModel, context: Runner) -> Drawn:
         """Return the drawing of a model for its parameters; raises as `Drawing.draw` does."""
         cancelled = context.cancelled if isinstance(context, JobContext) else threading.Event()
-        values = {} if shape.brought.program == "assembly" else values_of(shape)  # it has words and lists too
-        return self.drawn(shape.brought, values, cancelled)
+        values = (
+            {} if shape.imported.program == "assembly" else values_of(shape)
+        )  # it has words and lists too
+        return self.drawn(shape.imported, values, cancelled)
 
     def drawn(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
         """Return the drawing of a program for some values; raises as `Drawing.draw` does."""
@@ -121,7 +123,7 @@ class Programs:
         self.freecad.warm.close()
 
 
-def values_of(shape: BroughtModel) -> Values:
+def values_of(shape: ImportedModel) -> Values:
     """Return a model's parameters in their declared units, to the twelve digits that its key uses."""
     return {
         name: float(f"{shape.inputs[name].meaning.scale.from_si(float(si)):.12g}")

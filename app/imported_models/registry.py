@@ -11,7 +11,8 @@ from app.catalogue.sheets import Key
 from app.imported_models import repository
 from app.storage.database import Database
 from app.storage.tables import BroughtModelRow
-from cad.brought import BroughtModel, class_of
+from cad.imported_models import ImportedModel
+from cad.model_classes import class_of
 
 logger = logging.getLogger(__name__)
 
@@ -19,7 +20,7 @@ EVERY = 1.0
 """Time between two looks of a server for what another one on its database has imported [s]."""
 
 
-def _classes(rows: Iterable[BroughtModelRow]) -> Iterator[tuple[Key, type[BroughtModel]]]:
+def _classes(rows: Iterable[BroughtModelRow]) -> Iterator[tuple[Key, type[ImportedModel]]]:
     """Yield the classes of rows; one that this program cannot read harms no other."""
     for row in rows:
         try:

@@ -10,7 +10,7 @@ from app.storage.errors import NotFound
 from app.storage.identity import now
 from app.storage.tables import BroughtModelRow as Row
 from app.storage.upserts import insert_new
-from cad.brought import Description
+from cad.imported_models import Description
 
 
 def all_rows(session: Session) -> list[Row]:

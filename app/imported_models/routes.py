@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import PurePath
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query, Request, Response
@@ -81,8 +80,7 @@ async def import_model(
     has ended. A file under an id that is there becomes its next version.
     """
     body = await request.body()
-    name = PurePath(file.replace("\\", "/")).name or "model"
-    return accepted(await threads.run(imports.begin, body, id, name, once))
+    return accepted(await threads.run(imports.begin, body, id, file, once))
 
 
 @router.get("/{id}/versions/{number}/origin", responses=refusals(404))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import PurePath
 from typing import Literal
 
 from sqlalchemy.orm import Session
@@ -25,8 +26,9 @@ from app.storage.database import Database, after_commit
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.storage.idempotency import Once
 from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
-from cad.brought import Description, class_of
 from cad.errors import GeometryError, ProgramMissing, UnreadableModel, UnreadableStep
+from cad.imported_models import Description
+from cad.model_classes import class_of
 from templates.core.errors import TemplateError
 
 IMPORT = "model_import"
@@ -76,7 +78,14 @@ class ModelImports:
         if kind == "assembly":
             read_assembly(content)
         sha = self.store.put(content)
-        payload = {"file": sha, "id": id, "name": file, "kind": kind, "client": once.client}
+        name = PurePath(file.replace("\\", "/")).name or "model"
+        payload = {
+            "file": sha,
+            "id": id,
+            "name": name,
+            "kind": kind,
+            "client": once.client,
+        }
 
         def unit(session: Session) -> str:
             if before := once.begin(session):

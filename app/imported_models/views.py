@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.imported_models import repository
 from app.imported_models.schemas import BroughtParameter, ModelOrigin
 from app.storage.database import Database
-from cad.brought import description_of
+from cad.model_classes import description_of
 
 
 def origin(database: Database, id: str, number: int) -> ModelOrigin:

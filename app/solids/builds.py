@@ -21,9 +21,9 @@ from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild
 from app.workers.base import Runner, may_share
-from cad.brought import BroughtModel, Drawn, brought
 from cad.errors import ProgramMissing
 from cad.export import DRAWINGS, derive
+from cad.imported_models import Drawn, ImportedModel, imported_description
 from cad.model import CadModel
 from cad.regenerate import (
     Build,
@@ -72,9 +72,9 @@ class Builds:
             self.database.write(lambda session: self._record(session, shape, build, sha))
 
     def _built(self, shape: CadModel, context: Runner) -> Build:
-        """Return the build of a model; a brought one is drawn by its program first."""
+        """Return the build of a model; an imported one is drawn by its program first."""
         source, texts = source_of(type(shape)), as_text(shape)
-        if not isinstance(shape, BroughtModel):
+        if not isinstance(shape, ImportedModel):
             return context.run(build_in_worker, source, texts)
         if self.programs is None:
             raise ProgramMissing(
@@ -149,7 +149,7 @@ class Builds:
             "dimensions": dimensions,
             "materials": build.materials,
         }
-        if described := brought(type(shape)):
+        if described := imported_description(type(shape)):
             measured["trust"] = described.trust
         if build.clearances:
             measured["clearances"] = [measures.clearance(one).plain() for one in build.clearances]
@@ -190,7 +190,7 @@ def build_in_worker(source: Source, texts: Mapping[str, str]) -> Build:
 def build_drawn_in_worker(source: Source, texts: Mapping[str, str], drawn: Drawn) -> Build:
     """Return the build of what a program drew, checked like any other; runs in the worker's process."""
     shape = loaded(source).from_quantities(texts)
-    assert isinstance(shape, BroughtModel), "the source is that of a brought model"
+    assert isinstance(shape, ImportedModel), "the source is that of an imported model"
     shape.take(drawn)
     return regenerate_shape(shape, texts, report=report)
 

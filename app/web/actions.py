@@ -6,18 +6,18 @@ Without a script in the browser these are all actions there are; with one, `stat
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import JsonValue
 
-from app.designs.schemas.designs import Design, Proposals
+from app.designs.bodies import DesignIn
+from app.designs.routes.designs import document_of
+from app.designs.schemas.designs import Design
 from app.http.access import FORM_TOKEN
 from app.http.strict_requests import FORM_TYPES, NotForm, check_type
 from app.presentation.input_text import value_of
 from app.reference import Reference
-from app.web.api import Api, TheApi, read
 from app.web.blocks import Refusal
 from app.web.declaring import change_of
 from app.web.design_page import design_page
@@ -26,11 +26,9 @@ from app.web.gallery import GALLERY
 from app.web.new_step import NewStep, address, beside, new_step, step_page, versioned
 from app.web.rendering import go
 from app.web.routes import Id, Number
-from app.web.services import Refused
+from app.web.services import PageServices, Refused, ThePageServices
 from app.web.session import check_form_token
 
-AT_ONCE = {"Prefer": "wait=1"}  # the page shows how the rest goes on
-_NUMBER = re.compile(r"[0-9]{1,6}")
 STALE = 412
 ILL_NAMED = 422
 NOTHING: Mapping[str, str] = {}
@@ -47,7 +45,7 @@ router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 
 
 @router.post("/designs")
-async def create(request: Request, api: TheApi) -> Response:
+async def create(request: Request, services: ThePageServices) -> Response:
     """A design from the gallery, or one with a template and a model of one's choice.
 
     A template's inputs are asked for first: its example is never saved as if it were typed.
@@ -55,7 +53,7 @@ async def create(request: Request, api: TheApi) -> Response:
     typed = await fields(request)
     example = GALLERY.get(typed.get("example", ""))
     if example:
-        return await _created(api, example.document)
+        return await _created(services, example.document)
     document: dict[str, JsonValue] = {
         "name": typed.get("design_name", typed.get("name", "")).strip() or "new design"
     }
@@ -63,20 +61,20 @@ async def create(request: Request, api: TheApi) -> Response:
         id, version = versioned(typed["model"])
         document["model"] = {"id": id, "version": version}
     if not typed.get("template"):
-        return await _created(api, document)
-    return await _with_step(request, api, typed, document)
+        return await _created(services, document)
+    return await _with_step(request, services, typed, document)
 
 
 async def _with_step(
-    request: Request, api: Api, typed: Mapping[str, str], document: dict[str, JsonValue]
+    request: Request, services: PageServices, typed: Mapping[str, str], document: dict[str, JsonValue]
 ) -> Response:
     """A design with one step; its form, where that is not filled in, or refused."""
     if "design_name" not in typed:  # the form of the home page: its name is that of the design
-        await new_step(api, typed)  # a template that does not exist is refused here
+        await new_step(services, typed)  # a template that does not exist is refused here
         return go(address("/designs/new", {**typed, "design_name": str(document["name"]), "name": ""}))
-    step = await new_step(api, typed)
+    step = await new_step(services, typed)
     try:
-        return await _created(api, {**document, "steps": {step.name: step.plain()}})
+        return await _created(services, {**document, "steps": {step.name: step.plain()}})
     except Refused as refused:
         return _step_again(request, step, "/designs", beside(typed), refused)
 
@@ -91,60 +89,61 @@ def _step_again(
     return step_page(request, step, action, hidden, Refusal(step.typed, refused.faults), notice)
 
 
-async def _created(api: Api, document: Mapping[str, JsonValue]) -> Response:
-    design = read(await api.send("POST", "/designs", json=document, headers=AT_ONCE), Design)
-    return go(f"/designs/{design.id}")
+async def _created(services: PageServices, document: Mapping[str, JsonValue]) -> Response:
+    raw, note = document_of(services.read(DesignIn, document))
+    saved = await services.save(services.designs.create, raw, note, services.once)
+    return go(f"/designs/{saved.design}")
 
 
 @router.post("/designs/{id}")
-async def save(id: Id, request: Request, api: TheApi) -> Response:
+async def save(id: Id, request: Request, services: ThePageServices) -> Response:
     """A new revision; where it is refused, the form again with what was typed and what is wrong."""
     typed = await fields(request)
-    design = await api.run(api.designs.show, id)
+    design = await services.run(services.designs.show, id)
     based = typed.get("revision", "")
     patch = patch_of(design, typed)
     try:
         if based != str(design.revision):
             raise Refused.because(STALE, f"revision {design.revision} was saved since")
-        await _change(api, id, based, patch, typed.get("note", ""))
+        await services.change(id, based, patch, typed.get("note", ""))
     except Refused as refused:
-        return await _again(request, api, id, typed, refused)
+        return await _again(request, services, id, typed, refused)
     return go(f"/designs/{id}")
 
 
 @router.post("/designs/{id}/blocks")
-async def add(id: Id, request: Request, api: TheApi) -> Response:
+async def add(id: Id, request: Request, services: ThePageServices) -> Response:
     """A parameter, a template, a model, an analysis or an iteration more, changed, or one less.
 
     The inputs of a template are asked for first.
     """
     typed = await fields(request)
     if typed.get("add") == "template":
-        return await _add_step(id, request, api, typed)
-    design = await api.run(api.designs.show, id)
+        return await _add_step(id, request, services, typed)
+    design = await services.run(services.designs.show, id)
     declared = change_of(design, typed)
     patch = _block(typed)
     try:
         if declared is None:
             _refuse_taken(design, patch)
-        await _change(api, id, typed.get("revision", ""), patch if declared is None else declared, "")
+        await services.change(id, typed.get("revision", ""), patch if declared is None else declared)
     except Refused as refused:
-        return await _again(request, api, id, {}, refused, part=typed)
+        return await _again(request, services, id, {}, refused, part=typed)
     return go(f"/designs/{id}")
 
 
-async def _add_step(id: str, request: Request, api: Api, typed: Mapping[str, str]) -> Response:
+async def _add_step(id: str, request: Request, services: PageServices, typed: Mapping[str, str]) -> Response:
     """Add a step; show its form where that is not filled in, or was refused."""
-    step, design = await new_step(api, typed), await api.run(api.designs.show, id)
+    step, design = await new_step(services, typed), await services.run(services.designs.show, id)
     patch: Patch = {"steps": {step.name: step.plain()}}
     try:
         _refuse_taken(design, patch)
     except Refused as refused:
-        return await _again(request, api, id, {}, refused)
+        return await _again(request, services, id, {}, refused)
     if not step.is_filled:
         return go(address(f"/designs/{id}/steps/new", typed))
     try:
-        await _change(api, id, typed.get("revision", ""), patch, "")
+        await services.change(id, typed.get("revision", ""), patch)
     except Refused as refused:
         hidden = {**beside(typed), "add": "template", "revision": typed.get("revision", "")}
         return _step_again(request, step, f"/designs/{id}/blocks", hidden, refused)
@@ -152,10 +151,10 @@ async def _add_step(id: str, request: Request, api: Api, typed: Mapping[str, str
 
 
 @router.post("/designs/{id}/auto-map")
-async def auto_map(id: Id, request: Request, api: TheApi) -> Response:
+async def auto_map(id: Id, request: Request, services: ThePageServices) -> Response:
     """Save those proposals that the user chose."""
     typed = await fields(request)
-    proposed = (await api.post(f"/designs/{id}/auto-map", Proposals)).proposals
+    proposed = await services.calculate(None, services.designs.proposals, id)
     chosen = [item for item in proposed if typed.get(f"map.{item.target}")]
     patch: Patch = {"models": {}}
     for item in chosen:
@@ -163,56 +162,41 @@ async def auto_map(id: Id, request: Request, api: TheApi) -> Response:
         within = inner(inner(patch["models"], target.block), "parameters")
         within[target.member] = item.relation
     if chosen:
-        await _change(api, id, typed.get("revision", ""), patch, "mapped as proposed")
+        await services.change(id, typed.get("revision", ""), patch, "mapped as proposed")
     return go(f"/designs/{id}")
 
 
 @router.post("/designs/{id}/copy")
-async def copy(id: Id, api: TheApi) -> Response:
+async def copy(id: Id, services: ThePageServices) -> Response:
     """A copy, shown at once."""
-    design = read(await api.send("POST", f"/designs/{id}/copy", headers=AT_ONCE), Design)
-    return go(f"/designs/{design.id}")
+    saved = await services.save(services.designs.copy, id, None, services.once)
+    return go(f"/designs/{saved.design}")
 
 
 @router.post("/designs/{id}/delete")
-async def delete(id: Id, api: TheApi) -> Response:
+async def delete(id: Id, services: ThePageServices) -> Response:
     """Take a design from the lists."""
-    await api.send("DELETE", f"/designs/{id}")
+    await services.run(services.designs.delete, id)
     return go("/#designs")
 
 
 @router.post("/designs/{id}/revisions/{number}/restore")
-async def restore(id: Id, number: Number, api: TheApi) -> Response:
+async def restore(id: Id, number: Number, services: ThePageServices) -> Response:
     """A new revision equal to an old one."""
-    await api.send("POST", f"/designs/{id}/revisions/{number}/restore", headers=AT_ONCE)
+    await services.save(services.designs.restore, id, number, None, None, services.once)
     return go(f"/designs/{id}")
 
 
 @router.post("/designs/{id}/jobs/{job}/cancel")
-async def cancel(id: Id, job: Id, api: TheApi) -> Response:
+async def cancel(id: Id, job: Id, services: ThePageServices) -> Response:
     """Stop the regeneration; a job that has ended meanwhile is left as it is."""
-    try:
-        await api.send("DELETE", f"/jobs/{job}")
-    except Refused as refused:
-        if refused.status != 409:
-            raise
+    await services.cancel(job)
     return go(f"/designs/{id}")
-
-
-async def _change(api: Api, id: str, revision: str, patch: Mapping[str, JsonValue], note: str) -> None:
-    noted = {**patch, "note": note} if note.strip() else patch
-    headers = {**AT_ONCE, "If-Match": tag_of(revision)}
-    await api.send("PATCH", f"/designs/{id}", json=noted, headers=headers)
-
-
-def tag_of(revision: str) -> str:
-    """The ETag of a revision as a form names it; of what is not a number, one that matches nothing."""
-    return f'"{revision if _NUMBER.fullmatch(revision) else 0}"'
 
 
 async def _again(
     request: Request,
-    api: Api,
+    services: PageServices,
     id: str,
     typed: Mapping[str, str],
     refused: Refused,
@@ -230,7 +214,7 @@ async def _again(
     if not notice and not refused.faults:
         notice = f"Nothing was saved: {refused.problem.detail}"
     refusal = Refusal(kept(typed), refused.faults, part)
-    return await design_page(request, api, id, refusal=refusal, notice=notice, status=refused.status)
+    return await design_page(request, services, id, refusal=refusal, notice=notice, status=refused.status)
 
 
 def _refuse_taken(design: Design, patch: Patch) -> None:

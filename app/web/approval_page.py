@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Awaitable
 from typing import NamedTuple
 
 from fastapi import APIRouter, Depends, Request, Response
 
+from app.approvals.schemas import ApprovalIn, CommentIn
 from app.web.actions import forms_only
-from app.web.api import Api, TheApi
 from app.web.design_page import design_page
 from app.web.forms import fields
 from app.web.rendering import go
 from app.web.revision_page import revision_page
 from app.web.routes import Id, Number
-from app.web.services import Refused
+from app.web.services import PageServices, Refused, ThePageServices
 
 router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 
@@ -35,33 +36,42 @@ class Place(NamedTuple):
 
 
 @router.post("/designs/{id}/revisions/{number}/approvals")
-async def sign(id: Id, number: Number, request: Request, api: TheApi) -> Response:
+async def sign(id: Id, number: Number, request: Request, services: ThePageServices) -> Response:
     """Take a step of the approval."""
     typed = await fields(request)
-    body = {"step": typed.get("step", "")}
+    said = {"step": typed.get("step", "")}
     if typed.get("reason", "").strip():
-        body["reason"] = typed["reason"]
-    headers = {"If-Match": f'"{typed.get("seen", "")}"'}
-    path = f"/designs/{id}/revisions/{number}/approvals"
-    return await _sent(request, api, _place(id, number, typed), path, "Not signed", body, headers)
+        said["reason"] = typed["reason"]
+    seen = f'"{typed.get("seen", "")}"'
+
+    async def signed() -> None:
+        body = services.read(ApprovalIn, said)
+        await services.run(services.approving.sign, id, number, body, seen, services.once)
+
+    return await _sent(request, services, _place(id, number, typed), signed(), "Not signed", "approval")
 
 
 @router.post("/designs/{id}/revisions/{number}/comments")
-async def comment(id: Id, number: Number, request: Request, api: TheApi) -> Response:
+async def comment(id: Id, number: Number, request: Request, services: ThePageServices) -> Response:
     """Write a comment."""
     typed = await fields(request)
     body = {"text": typed.get("text", "").replace("\r\n", "\n"), "subject": typed.get("subject", "").strip()}
-    path = f"/designs/{id}/revisions/{number}/comments"
     said = {name: text for name, text in body.items() if text}
-    return await _sent(request, api, _place(id, number, typed), path, "Not commented", said)
+
+    async def commented() -> None:
+        await services.run(services.comments.add, id, number, services.read(CommentIn, said), services.once)
+
+    return await _sent(request, services, _place(id, number, typed), commented(), "Not commented", "comments")
 
 
 @router.post("/designs/{id}/revisions/{number}/comments/{comment}/resolve")
-async def resolve(id: Id, number: Number, comment: Id, request: Request, api: TheApi) -> Response:
+async def resolve(
+    id: Id, number: Number, comment: Id, request: Request, services: ThePageServices
+) -> Response:
     """Say that a comment is dealt with."""
     place = _place(id, number, await fields(request))
-    path = f"/designs/{id}/revisions/{number}/comments/{comment}/resolve"
-    return await _sent(request, api, place, path, "Not resolved", {})
+    resolved = services.run(services.comments.resolve, id, number, comment)
+    return await _sent(request, services, place, resolved, "Not resolved", "comments")
 
 
 def _place(id: str, number: int, typed: dict[str, str]) -> Place:
@@ -70,23 +80,22 @@ def _place(id: str, number: int, typed: dict[str, str]) -> Place:
 
 async def _sent(
     request: Request,
-    api: Api,
+    services: PageServices,
     place: Place,
-    path: str,
+    action: Awaitable[object],
     failure: str,
-    body: dict[str, str],
-    headers: dict[str, str] | None = None,
+    part: str,
 ) -> Response:
-    """Send what a form says; then its page, which says why if it was refused."""
+    """Carry out what a form says; then show a part of its page, which says why if it was refused."""
     try:
-        await api.send("POST", path, json=body, headers=headers)
+        await action
     except Refused as refused:
         if refused.status not in SHOWN:
             raise
         notice = f"{failure}: {refused.problem.detail}"
         if place.is_design:
-            return await design_page(request, api, place.id, notice=notice, status=refused.status)
+            return await design_page(request, services, place.id, notice=notice, status=refused.status)
         return await revision_page(
-            request, api, place.id, place.number, None, notice=notice, status=refused.status
+            request, services, place.id, place.number, None, notice=notice, status=refused.status
         )
-    return go(f"{place.path}#{'comments' if 'comments' in path else 'approval'}")
+    return go(f"{place.path}#{part}")

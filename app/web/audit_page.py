@@ -8,10 +8,9 @@ from urllib.parse import urlencode
 from fastapi import APIRouter, Query, Request, Response
 
 from app.http.roles import needs
-from app.identity.routes.audit import show_head
-from app.identity.schemas.audit import AuditList
-from app.web.api import TheApi
+from app.identity.routes.audit import list_audit, show_head
 from app.web.rendering import show
+from app.web.services import ThePageServices
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("admin")])
 
@@ -21,7 +20,7 @@ Text = Annotated[str, Query(max_length=200)]
 @router.get("/audit", dependencies=[needs("admin")])
 async def audit(
     request: Request,
-    api: TheApi,
+    services: ThePageServices,
     cursor: Text = "",
     object: Text = "",
     principal: Text = "",
@@ -30,13 +29,12 @@ async def audit(
     """Changes, page by page: all, or those that fit what was typed into the filter."""
     typed = {"object": object.strip(), "principal": principal.strip(), "action": action.strip()}
     wanted = {name: text for name, text in typed.items() if text}  # a form sends empty fields too
-    place = {"cursor": cursor} if cursor else {}
-    page = await api.get("/audit", AuditList, limit=50, **wanted, **place)
+    page = await services.run(list_audit, services.database, 50, cursor or None, **wanted)
     return show(
         request,
         "audit.html",
         entries=page.items,
-        head=await api.run(show_head, api.database),
+        head=await services.run(show_head, services.database),
         wanted=wanted,
         older=urlencode({**wanted, "cursor": page.next}) if page.next else None,
     )

@@ -16,14 +16,13 @@ from pydantic import JsonValue, TypeAdapter
 from app.catalogue.schemas.templates import TemplateSummary
 from app.designs.schemas.designs import Design, DesignModel
 from app.solids.routes.models import list_models, show_model
-from app.web.actions import AT_ONCE, forms_only
-from app.web.api import Api, TheApi
+from app.web.actions import forms_only
 from app.web.design_answers import job_of
 from app.web.forms import fields
-from app.web.model_import_page import BINARY, MISSED
+from app.web.model_import_page import MISSED, begun_import
 from app.web.rendering import go, show
 from app.web.routes import Id
-from app.web.services import Refused
+from app.web.services import PageServices, Refused, ThePageServices
 
 PATIENCE = 15.0
 """Time that the page waits for the import, which draws nothing [s]."""
@@ -40,27 +39,26 @@ forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 
 
 @router.get("/designs/{id}/models/{name}/beside")
-async def beside_form(request: Request, api: TheApi, id: Id, name: Id) -> Response:
+async def beside_form(request: Request, services: ThePageServices, id: Id, name: Id) -> Response:
     """Show the form: which part, and where it stands."""
-    design = await api.run(api.designs.show, id)
-    return await _form(request, api, design, name, {})
+    design = await services.run(services.designs.show, id)
+    return await _form(request, services, design, name, {})
 
 
 @forms.post("/designs/{id}/models/{name}/beside")
-async def put_beside(request: Request, api: TheApi, id: Id, name: Id) -> Response:
+async def put_beside(request: Request, services: ThePageServices, id: Id, name: Id) -> Response:
     """Make the assembly and let the design take it; where that is refused, the form again with the reason."""
     typed = {key: text.strip() for key, text in (await fields(request)).items() if key in FIELDS}
-    design = await api.run(api.designs.show, id)
+    design = await services.run(services.designs.show, id)
     try:
-        version = await _brought(api, typed, await _manifest(api, _model(design, name), typed))
-        patch = {"models": {name: version}, "note": f"{typed.get('component', '')[:40]} beside {name}"}
-        headers = {**AT_ONCE, "If-Match": f'"{design.revision}"'}
-        await api.send("PATCH", f"/designs/{id}", json=patch, headers=headers)
+        version = await _brought(services, typed, await _manifest(services, _model(design, name), typed))
+        note = f"{typed.get('component', '')[:40]} beside {name}"
+        await services.change(id, str(design.revision), {"models": {name: version}}, note)
     except Refused as refused:
         if refused.status not in (*MISSED, _STALE):
             raise
         said = "; ".join(refused.faults.values()) or refused.problem.detail
-        return await _form(request, api, design, name, typed, said, refused.status)
+        return await _form(request, services, design, name, typed, said, refused.status)
     return go(f"/designs/{id}")
 
 
@@ -70,12 +68,15 @@ def _model(design: Design, name: str) -> DesignModel:
     return design.models[name]
 
 
-async def _manifest(api: Api, model: DesignModel, typed: Mapping[str, str]) -> dict[str, JsonValue]:
+async def _manifest(
+    services: PageServices, model: DesignModel, typed: Mapping[str, str]
+) -> dict[str, JsonValue]:
     """The manifest of the model's assembly with the part that was typed; a new one if it is no assembly."""
-    described = await api.run(show_model, model.id, model.version, api.catalogues, api.database)
+    described = await services.run(
+        show_model, model.id, model.version, services.catalogues, services.database
+    )
     if described.origin is not None and described.origin.program == "assembly":
-        original = await api.send("GET", f"/models/{model.id}/versions/{model.version}/original")
-        manifest = _MANIFEST.validate_json(original.content)
+        manifest = _MANIFEST.validate_json(await services.run(services.store.read, described.origin.sha256))
     else:
         base: JsonValue = {"model": model.id, "version": model.version}
         manifest = {"program": "assembly", "title": f"Assembly {typed.get('id', '')}", "base": base}
@@ -96,7 +97,7 @@ def _component(typed: Mapping[str, str]) -> dict[str, JsonValue]:
 
 
 async def _brought(
-    api: Api, typed: Mapping[str, str], manifest: Mapping[str, JsonValue]
+    services: PageServices, typed: Mapping[str, str], manifest: Mapping[str, JsonValue]
 ) -> dict[str, JsonValue]:
     """The version of the model that a manifest becomes, as a design names it.
 
@@ -106,12 +107,10 @@ async def _brought(
         With the reason, if it is not taken, or not in time.
     """
     id = typed.get("id", "")
-    query = {"id": id, "file": f"{id[:64] or 'assembly'}.json"}
     content = json.dumps(manifest, ensure_ascii=False, indent=1).encode()
-    answer = await api.send("POST", "/models/import", content=content, params=query, headers=BINARY)
-    job = answer.headers["Location"].rpartition("/")[2]
+    job = await begun_import(services, content, id, f"{id[:64] or 'assembly'}.json")
     for _ in range(round(PATIENCE / GLANCE)):
-        work = await job_of(api, job)
+        work = await job_of(services, job)
         if work.problem is not None:
             raise Refused(work.problem)
         if work.state == "done" and (version := _VERSION.fullmatch(work.result or "")):
@@ -122,7 +121,7 @@ async def _brought(
 
 async def _form(
     request: Request,
-    api: Api,
+    services: PageServices,
     design: Design,
     name: str,
     typed: Mapping[str, str],
@@ -130,7 +129,9 @@ async def _form(
     status: int = 200,
 ) -> Response:
     model = _model(design, name)
-    described = await api.run(show_model, model.id, model.version, api.catalogues, api.database)
+    described = await services.run(
+        show_model, model.id, model.version, services.catalogues, services.database
+    )
     is_assembly = described.origin is not None and described.origin.program == "assembly"
     usual = {"datum": "origin", "id": model.id if is_assembly else f"{model.id[:50]}_with_parts"}
     return show(
@@ -142,11 +143,11 @@ async def _form(
         model=described,
         typed={**dict.fromkeys(FIELDS, ""), **usual, **typed},
         notice=notice,
-        bought=await _bought(api),
+        bought=await _bought(services),
     )
 
 
-async def _bought(api: Api) -> list[TemplateSummary]:
+async def _bought(services: PageServices) -> list[TemplateSummary]:
     """The STEP files that were brought, the newest of each."""
-    items = (await api.run(list_models, api.catalogues, limit=500)).items
+    items = (await services.run(list_models, services.catalogues, limit=500)).items
     return [item for item in items if item.latest and item.title.startswith(_FIXED)]

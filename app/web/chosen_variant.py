@@ -5,21 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
-from urllib.parse import quote
 
 from fastapi import Request
 
 from app.designs.schemas.designs import Design
 from app.designs.schemas.variants import VariantDetail
+from app.designs.variants.detail import WantedVariant
 from app.presentation.criteria import Line, line
 from app.reports.content import Plot
 from app.reports.plots import drawn
-from app.schemas.answers import Accepted
-from app.web.api import Api, read
+from app.web.answers import Answered, stored
 from app.web.blocks import StepBlock
 from app.web.rendering import units_of
-from app.web.services import Refused
-from app.web.solution import ACCEPTED, PATIENT
+from app.web.services import PageServices, Refused
+from app.web.solution import PATIENCE
 
 WITHOUT_ANSWER = (404, 422)
 
@@ -41,25 +40,33 @@ class ChosenVariant:
 ChosenVariant.NONE = ChosenVariant("")
 
 
-async def chosen_variant(request: Request, api: Api, design: Design, steps: list[StepBlock]) -> ChosenVariant:
+async def chosen_variant(
+    request: Request, services: PageServices, design: Design, steps: list[StepBlock]
+) -> ChosenVariant:
     """The variant that the address names; none if it names none."""
     name, job = (request.query_params.get(key, "")[:64] for key in ("variant", "job"))
     if not name:
         return ChosenVariant.NONE
-    path = (
-        f"/evaluations/{quote(job, safe='')}"
-        if job
-        else f"/designs/{design.id}/variants/{quote(name, safe='')}"
-    )
     try:
-        response = await api.send("GET", path, params={"units": units_of(request)}, headers=PATIENT)
+        reply = (
+            await stored(services, job, VariantDetail)
+            if job
+            else await _calculated(request, services, design, name)
+        )
     except Refused as refused:
         if refused.status not in WITHOUT_ANSWER:
             raise
         return ChosenVariant(name, problem=refused.problem.detail)
-    if response.status_code == ACCEPTED:
-        return ChosenVariant(name, job=job or read(response, Accepted).job.rpartition("/")[2])
-    return _shown(read(response, VariantDetail), steps)
+    return ChosenVariant(name, job=reply.job) if reply.answer is None else _shown(reply.answer, steps)
+
+
+async def _calculated(
+    request: Request, services: PageServices, design: Design, name: str
+) -> Answered[VariantDetail]:
+    """The variant, or the job that calculates it where the page does not wait so long."""
+    wanted = WantedVariant(design.id, name, system=units_of(request))
+    answer, job = await services.calculate(PATIENCE, services.variant_details.answer, wanted, services.client)
+    return Answered(answer, job or "")
 
 
 def _shown(detail: VariantDetail, steps: list[StepBlock]) -> ChosenVariant:

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 from fastapi import Request, Response
 
+from app.designs.routes.comparison import compare_revisions
 from app.designs.routes.designs import list_designs
-from app.designs.schemas.comparison import Comparison
 from app.designs.schemas.designs import Design
-from app.web.api import Api, Scalar
 from app.web.rendering import show, units_of
-from app.web.services import Refused
+from app.web.services import PageServices, Refused
 
 MOST_NUMBERS = 100  # of revisions in a picker
 GROUPS = ("inputs", "outputs", "model_parameters", "measurements")
@@ -33,29 +32,30 @@ class Asked:
     design: str
     of: str
 
-    def query(self, id: str) -> dict[str, Scalar]:
-        """The query of the interface."""
-        typed = {"revision": self.revision, "with": self.number if self._is_meant(id) else ""}
-        numbers: dict[str, Scalar] = {name: int(text) for name, text in typed.items() if _is_number(text)}
-        return {**numbers, **({"design": self.design} if self.design else {})}
+    def numbers(self, id: str) -> tuple[int | None, int | None]:
+        """The revisions to compare; None where no number was chosen."""
+        return _number(self.revision), _number(self.number) if self._is_meant(id) else None
 
     def _is_meant(self, id: str) -> bool:
         return not self.of or self.of == (self.design or id)
 
 
-def _is_number(text: str) -> bool:
-    return text.isascii() and text.isdecimal() and 0 < len(text) <= 9 and int(text) > 0
+def _number(text: str) -> int | None:
+    is_number = text.isascii() and text.isdecimal() and 0 < len(text) <= 9 and int(text) > 0
+    return int(text) if is_number else None
 
 
-async def compare_page(request: Request, api: Api, id: str, asked: Asked) -> Response:
+async def compare_page(request: Request, services: PageServices, id: str, asked: Asked) -> Response:
     """Show the differences, and the forms to choose two other revisions."""
-    design = await api.run(api.designs.show, id)
-    other = await _other(api, design, asked.design)
+    design = await services.run(services.designs.show, id)
+    other = await _other(services, design, asked.design)
     if other is None:
         raise Refused.because(MISSING, "the design to compare with does not exist; choose another one")
-    query = {**asked.query(id), "units": units_of(request)}
-    comparison = await api.get(f"/designs/{id}/compare", Comparison, **query)
-    listed = (await api.run(list_designs, api.database, limit=200)).items
+    numbers = asked.numbers(id)
+    comparison = await services.run(
+        compare_revisions, id, services.database, *numbers, asked.design or None, units_of(request)
+    )
+    listed = (await services.run(list_designs, services.database, limit=200)).items
     others = {item.id: item.name for item in listed} | {design.id: design.name, other.id: other.name}
     groups = [(name, getattr(comparison, name)) for name in GROUPS]
     texts = [(name, getattr(comparison, name)) for name in TEXTS]
@@ -74,11 +74,11 @@ async def compare_page(request: Request, api: Api, id: str, asked: Asked) -> Res
     )
 
 
-async def _other(api: Api, design: Design, id: str) -> Design | None:
+async def _other(services: PageServices, design: Design, id: str) -> Design | None:
     """The design on the other side; None if there is none of this id."""
     if not id:
         return design
-    return await api.find(api.designs.show, id) if _ID.fullmatch(id) else None
+    return await services.find(services.designs.show, id) if _ID.fullmatch(id) else None
 
 
 def _numbers(newest: int, chosen: int) -> list[int]:

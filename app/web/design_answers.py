@@ -10,15 +10,15 @@ from app.catalogue.routes.templates import show_template
 from app.catalogue.schemas.templates import Template
 from app.designs.schemas.designs import Design, RevisionWorksheet
 from app.jobs.schemas import Job
+from app.solids.bodies.models import CadModel
 from app.solids.routes.models import show_model
-from app.solids.schemas.models import CadModel
-from app.web.api import Api
 from app.web.rendering import units_of
+from app.web.services import PageServices
 
 
 async def revision_of(
     request: Request,
-    api: Api,
+    services: PageServices,
     id: str,
     number: int,
     *,
@@ -28,12 +28,12 @@ async def revision_of(
 ) -> RevisionWorksheet:
     """A revision as a worksheet, in the units that the page shows; with `only`, that step alone."""
     units = units_of(request)
-    return await api.calculate(within, api.reports.worksheet, id, number, units, only, has_formulas)
+    return await services.calculate(within, services.reports.worksheet, id, number, units, only, has_formulas)
 
 
-async def job_of(api: Api, id: str) -> Job:
+async def job_of(services: PageServices, id: str) -> Job:
     """Return a job."""
-    return Job.model_validate(await api.run(api.jobs.get, id))
+    return Job.model_validate(await services.run(services.jobs.get, id))
 
 
 def steps_of_design(design: Design) -> dict[str, tuple[str, int]]:
@@ -41,20 +41,20 @@ def steps_of_design(design: Design) -> dict[str, tuple[str, int]]:
     return {name: (step.template, step.version) for name, step in design.steps.items()}
 
 
-async def templates_of(api: Api, steps: Mapping[str, tuple[str, int]]) -> dict[str, Template]:
+async def templates_of(services: PageServices, steps: Mapping[str, tuple[str, int]]) -> dict[str, Template]:
     """The template of every step; steps of one version share it."""
     versions = {
-        (id, version): await api.run(show_template, id, version, api.catalogues)
+        (id, version): await services.run(show_template, id, version, services.catalogues)
         for id, version in dict.fromkeys(steps.values())
     }
     return {name: versions[place] for name, place in steps.items()}
 
 
-async def described_models(api: Api, design: Design | RevisionWorksheet) -> dict[str, CadModel]:
+async def described_models(services: PageServices, design: Design | RevisionWorksheet) -> dict[str, CadModel]:
     """The description of every model; models of one version share it."""
     places = {name: (model.id, model.version) for name, model in design.models.items()}
     versions = {
-        (id, version): await api.run(show_model, id, version, api.catalogues, api.database)
+        (id, version): await services.run(show_model, id, version, services.catalogues, services.database)
         for id, version in dict.fromkeys(places.values())
     }
     return {name: versions[place] for name, place in places.items()}

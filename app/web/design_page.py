@@ -33,7 +33,6 @@ from app.solids.routes.models import list_models
 from app.solids.schemas.analyses import Analysis
 from app.solids.schemas.models import CadModel as Model
 from app.web import sheet
-from app.web.api import Api
 from app.web.approvals import ON_DESIGN, approval_of, comments_of
 from app.web.blocks import (
     ModelBlock,
@@ -64,6 +63,7 @@ from app.web.sections import (
     steps_in_full,
     variants_start,
 )
+from app.web.services import PageServices
 from app.web.study_page import studies_of
 from app.web.tolerances_page import toleranced
 from app.web.upgrades import upgrades_of
@@ -82,7 +82,7 @@ DECIDE = "/api/v1/designs/{id}/decide"
 
 async def design_page(
     request: Request,
-    api: Api,
+    services: PageServices,
     id: str,
     *,
     refusal: Refusal = NO_REFUSAL,
@@ -91,15 +91,15 @@ async def design_page(
     status: int = 200,
 ) -> Response:
     """The newest revision in a form; or a form that was refused, with what was typed and what is wrong."""
-    design = await api.run(api.designs.show, id)
+    design = await services.run(services.designs.show, id)
     revision, preview, parameters, steps, folded, parts, models, verdict, in_full = await _form(
-        request, api, design, refusal
+        request, services, design, refusal
     )
     faults, wrong = refusal.faults, errors_of(refusal.part, refusal.faults)
-    measured = await api.run(show_measurements, id, api.database, units_of(request))
-    network = await api.run(api.designs.network, id)
+    measured = await services.run(show_measurements, id, services.database, units_of(request))
+    network = await services.run(services.designs.network, id)
     places = places_of(network, design)
-    variants = variants_table(design, await _variants(request, api, id), places, table)
+    variants = variants_table(design, await _variants(request, services, id), places, table)
     return show(
         request,
         "design.html",
@@ -118,12 +118,12 @@ async def design_page(
         ),
         models=parts,
         measured=measured,
-        analyses=await _analyses(request, api, measured, models),
-        painted_fields=await _fields_of_solids(api, id, measured),
-        revisions=await api.run(list_revisions, id, api.database, limit=20, steps=False),
-        proposals=await _proposals(api, design),
-        job=await _job(api, design),
-        studies=await studies_of(api, id),
+        analyses=await _analyses(request, services, measured, models),
+        painted_fields=await _fields_of_solids(services, id, measured),
+        revisions=await services.run(list_revisions, id, services.database, limit=20, steps=False),
+        proposals=await _proposals(services, design),
+        job=await _job(services, design),
+        studies=await studies_of(services, id),
         kinds=list(MEDIA_TYPES),
         loose=_loose([*parameters, *_fields(steps, parts)], faults, wrong),
         refused=bool(faults) or table is not None,
@@ -135,7 +135,7 @@ async def design_page(
         base=f"/api/v1/designs/{id}",
         painted=painted(steps, parts),
         was=_as_typed(design),
-        choices=await _choices(api),
+        choices=await _choices(services),
         analysis_lines=analysis_lines(design, parts, refusal),
         iteration_lines=iteration_lines(design, refusal),
         part={**NO_PART, **refusal.part},
@@ -143,12 +143,12 @@ async def design_page(
         measures=list(measures(design, parts)),
         network=network,
         picture=drawing(network),
-        upgrades=await upgrades_of(api, {step.name: step.template for step in steps}),
+        upgrades=await upgrades_of(services, {step.name: step.template for step in steps}),
         variants=variants,
         variants_start="" if variants.count or variants.is_refused else variants_start(design, variants),
-        approval=await approval_of(api, id, design.revision),
-        comments=await comments_of(api, id, None, ON_DESIGN),
-        chosen=await chosen_variant(request, api, design, steps),
+        approval=await approval_of(services, id, design.revision),
+        comments=await comments_of(services, id, None, ON_DESIGN),
+        chosen=await chosen_variant(request, services, design, steps),
         names="" if in_full is not None else names_json(network, values_of(revision, preview, measured)),
     )
 
@@ -171,24 +171,30 @@ class Form(NamedTuple):
     in_full: set[str] | None
 
 
-async def _form(request: Request, api: Api, design: Design, refusal: Refusal) -> Form:
+async def _form(request: Request, services: PageServices, design: Design, refusal: Refusal) -> Form:
     id = design.id
     within = 0 if design.state == "regenerating" else QUICK
     is_long = len(design.steps) > MOST_IN_FULL
-    revision = await revision_of(request, api, id, design.revision, within=within, has_formulas=not is_long)
-    templates, models = await templates_of(api, steps_of_design(design)), await described_models(api, design)
+    revision = await revision_of(
+        request, services, id, design.revision, within=within, has_formulas=not is_long
+    )
+    templates, models = (
+        await templates_of(services, steps_of_design(design)),
+        await described_models(services, design),
+    )
     has_parameters = bool(design.parameters)  # only with the worksheet a preview has their values
     change = Change(id, {}, worksheet=has_parameters, system=units_of(request))
     has_values = has_parameters or bool(design.models)  # the page shows nothing else of a preview
-    preview = await api.calculate(within, api.previews.quick, change) if has_values else None
-    before = await _before(request, api, design)
-    tables = await library(api) if templates else []
+    preview = await services.calculate(within, services.previews.quick, change) if has_values else None
+    before = await _before(request, services, design)
+    tables = await library(services) if templates else []
     verdict = _verdict(revision, design, templates)
     bare = blocks = _blocks(revision, design, templates)
     in_full = steps_in_full(request, design.steps, refusal, verdict) if is_long else None
     if in_full is not None:
         written = [
-            await revision_of(request, api, id, design.revision, within=within, only=name) for name in in_full
+            await revision_of(request, services, id, design.revision, within=within, only=name)
+            for name in in_full
         ]
         whole = {name: step for one in written for name, step in one.steps.items()}
         revision = revision.model_copy(update={"steps": {**revision.steps, **whole}})
@@ -225,14 +231,14 @@ def _blocks(
     return with_keys(steps_of(revision, templates, computed), revision, design)
 
 
-async def _before(request: Request, api: Api, design: Design) -> RevisionWorksheet | None:
+async def _before(request: Request, services: PageServices, design: Design) -> RevisionWorksheet | None:
     """The revision before the newest; of it the page shows parameters of models alone."""
     if design.revision == 1 or not design.models:
         return None
-    return await revision_of(request, api, design.id, design.revision - 1, within=0, has_formulas=False)
+    return await revision_of(request, services, design.id, design.revision - 1, within=0, has_formulas=False)
 
 
-async def step_section(request: Request, api: Api, id: str, name: str) -> Response:
+async def step_section(request: Request, services: PageServices, id: str, name: str) -> Response:
     """The section of one step, unfolded, for the page of a long design; its script fetches it.
 
     Raises
@@ -240,11 +246,11 @@ async def step_section(request: Request, api: Api, id: str, name: str) -> Respon
     Refused
         If there is no such design, or no such step in it.
     """
-    design = await api.run(api.designs.show, id)
-    revision = await revision_of(request, api, id, design.revision, within=QUICK, only=name)
-    templates = await templates_of(api, {name: steps_of_design(design)[name]})
+    design = await services.run(services.designs.show, id)
+    revision = await revision_of(request, services, id, design.revision, within=QUICK, only=name)
+    templates = await templates_of(services, {name: steps_of_design(design)[name]})
     blocks = steps_of(revision, templates, {name: design.steps[name].outputs})
-    tables = await library(api)
+    tables = await library(services)
     steps = with_keys([with_fields(block, design, NO_REFUSAL, tables) for block in blocks], revision, design)
     (section,) = sections(steps, banner(revision), name, in_full={name})
     return show(request, "section.html", section=section)
@@ -256,33 +262,37 @@ def _has_route(request: Request, path: str) -> bool:
 
 
 async def _analyses(
-    request: Request, api: Api, measured: Mapping[str, ModelMeasurements], models: Mapping[str, Model]
+    request: Request,
+    services: PageServices,
+    measured: Mapping[str, ModelMeasurements],
+    models: Mapping[str, Model],
 ) -> dict[str, list[Analysis]]:
     """The finished analyses of every model's solid."""
     return {
-        name: await finished_analyses(request, api, part.build, models[name], part.analyses)
+        name: await finished_analyses(request, services, part.build, models[name], part.analyses)
         for name, part in measured.items()
     }
 
 
 async def _fields_of_solids(
-    api: Api, id: str, measured: Mapping[str, ModelMeasurements]
+    services: PageServices, id: str, measured: Mapping[str, ModelMeasurements]
 ) -> dict[str, list[SolidField]]:
     """The fields that can be painted on each model; none on a model without analyses."""
     fields: dict[str, list[SolidField]] = {name: [] for name in measured}
     for name, part in measured.items():
         if part.analyses:
-            listed = await api.run(list_solid_fields, id, part.revision, name, api.database, api.catalogues)
+            listed = await services.run(
+                list_solid_fields, id, part.revision, name, services.database, services.catalogues
+            )
             fields[name] = listed.items
     return fields
 
 
-async def _proposals(api: Api, design: Design) -> list[Proposal]:
+async def _proposals(services: PageServices, design: Design) -> list[Proposal]:
     """Relations for parameters of models that are not set; none for whoever may not save them."""
     if not (design.models and acting().may("author")):
         return []
-    proposals, _ = await api.calculate(None, api.designs.auto_map, design.id, False, None, api.once)
-    return proposals
+    return await services.calculate(None, services.designs.proposals, design.id)
 
 
 def _loose(
@@ -300,22 +310,24 @@ def _fields(steps: list[StepBlock], models: list[ModelBlock]) -> list[sheet.Fiel
     return of_models + [field for block in steps for field in (*block.fields, *block.options, *block.limits)]
 
 
-async def _variants(request: Request, api: Api, id: str) -> VariantsOut:
-    return await api.run(variants_of, id, None, api.database, api.catalogues, (), units_of(request))
+async def _variants(request: Request, services: PageServices, id: str) -> VariantsOut:
+    return await services.run(
+        variants_of, id, None, services.database, services.catalogues, (), units_of(request)
+    )
 
 
-async def _job(api: Api, design: Design) -> Job | None:
+async def _job(services: PageServices, design: Design) -> Job | None:
     """The job that regenerates the design, if one does."""
     if design.state != "regenerating":
         return None
-    jobs = (await api.run(list_jobs, api.jobs, limit=200)).items
+    jobs = (await services.run(list_jobs, services.jobs, limit=200)).items
     return next((job for job in jobs if job.design == design.id and job.state in UNFINISHED), None)
 
 
-async def _choices(api: Api) -> dict[str, list[TemplateSummary]]:
+async def _choices(services: PageServices) -> dict[str, list[TemplateSummary]]:
     """The templates and models that a design may take in."""
     groups = {
-        "templates": (await api.run(list_templates, api.catalogues, limit=500)).items,
-        "models": (await api.run(list_models, api.catalogues, limit=500)).items,
+        "templates": (await services.run(list_templates, services.catalogues, limit=500)).items,
+        "models": (await services.run(list_models, services.catalogues, limit=500)).items,
     }
     return {group: [item for item in items if item.latest] for group, items in groups.items()}

@@ -4,26 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from urllib.parse import quote, urlencode
+from urllib.parse import urlencode
 
 from fastapi import APIRouter, Depends, Request, Response
 
 from app.catalogue.routes.templates import show_template
+from app.impact.bodies import ImpactIn
 from app.impact.schemas import DesignImpact, Impact
+from app.impact.survey import Asked
 from app.presentation import numbers
 from app.schemas.answers import Quantity
 from app.web.actions import forms_only
-from app.web.api import Api, TheApi, read
+from app.web.answers import stored
 from app.web.forms import fields
 from app.web.rendering import go, show, units_of
 from app.web.routes import Id, Number, Text
-from app.web.services import Refused
+from app.web.services import PageServices, Refused, ThePageServices
 
 router = APIRouter(include_in_schema=False)
 forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 
-AT_ONCE = {"Prefer": "respond-async"}  # the page shows how it goes on
-ACCEPTED, ENDED, ILL_NAMED = 202, 409, 422
+ILL_NAMED = 422
 MOST_LISTED = 200
 EFFECTS = {"moved": "moves", "refused": "refuses it", "needs_solids": "needs a solid"}
 
@@ -78,49 +79,49 @@ def _placed(name: str, variant: str | None) -> str:
 
 @router.get("/templates/{id}/{version}/impact")
 async def impact_page(
-    id: Id, version: Number, request: Request, api: TheApi, job: Text = "", name: Text = "", tag: Text = ""
+    id: Id,
+    version: Number,
+    request: Request,
+    services: ThePageServices,
+    job: Text = "",
+    name: Text = "",
+    tag: Text = "",
 ) -> Response:
     """The form; with a job, how far that is, or what it found."""
     impact, refusal = None, None
     if job:
         try:
-            response = await api.send("GET", f"/evaluations/{quote(job, safe='')}")
+            impact = (await stored(services, job, Impact)).answer
         except Refused as refused:
             refusal = refused
-        else:
-            impact = None if response.status_code == ACCEPTED else read(response, Impact)
-    return await _page(request, api, id, version, {"job": job, "name": name, "tag": tag}, impact, refusal)
+    return await _page(
+        request, services, id, version, {"job": job, "name": name, "tag": tag}, impact, refusal
+    )
 
 
 @forms.post("/templates/{id}/{version}/impact")
-async def ask(id: Id, version: Number, request: Request, api: TheApi) -> Response:
+async def ask(id: Id, version: Number, request: Request, services: ThePageServices) -> Response:
     """Begin a calculation, and show it."""
     typed = await fields(request)
     asked = {name: typed.get(name, "").strip()[:200] for name in ("name", "tag")}
-    path = f"/templates/{id}/versions/{version}/impact"
-    query = {"units": units_of(request)}
     try:
-        response = await api.send("POST", path, json=_body(asked), params=query, headers=AT_ONCE)
+        body = services.read(ImpactIn, _body(asked))
+        job = await services.run(
+            services.impacts.requested, Asked(id, version, body, units_of(request)), services.client
+        )
     except Refused as refused:
         if refused.status != ILL_NAMED:
             raise
-        return await _page(request, api, id, version, asked, None, refused, ILL_NAMED)
-    if response.status_code != ACCEPTED:
-        return await _page(request, api, id, version, asked, read(response, Impact), None)
+        return await _page(request, services, id, version, asked, None, refused, ILL_NAMED)
     given = {name: text for name, text in asked.items() if text}
-    job = response.headers["Location"].rpartition("/")[2]
     return go(f"/templates/{id}/{version}/impact?{urlencode({**given, 'job': job})}")
 
 
 @forms.post("/templates/{id}/{version}/impact/cancel")
-async def cancel(id: Id, version: Number, request: Request, api: TheApi) -> Response:
+async def cancel(id: Id, version: Number, request: Request, services: ThePageServices) -> Response:
     """Stop a calculation; one that has ended meanwhile stays as it is."""
     job = (await fields(request)).get("job", "")[:64]
-    try:
-        await api.send("DELETE", f"/jobs/{quote(job, safe='')}")
-    except Refused as refused:
-        if refused.status != ENDED:
-            raise
+    await services.cancel(job)
     return go(f"/templates/{id}/{version}/impact?{urlencode({'job': job})}")
 
 
@@ -132,7 +133,7 @@ def _body(asked: Mapping[str, str]) -> dict[str, object]:
 
 async def _page(
     request: Request,
-    api: Api,
+    services: PageServices,
     id: str,
     version: int,
     typed: Mapping[str, str],
@@ -140,7 +141,7 @@ async def _page(
     refusal: Refused | None,
     status: int = 200,
 ) -> Response:
-    template = await api.find(show_template, id, version, api.catalogues)  # not of a draft
+    template = await services.find(show_template, id, version, services.catalogues)  # not of a draft
     job = typed.get("job", "")
     return show(
         request,

@@ -5,21 +5,26 @@ from __future__ import annotations
 import re
 
 from fastapi import APIRouter, Depends, Request, Response
+from pydantic import BaseModel
 
-from app.web.api import Api, TheApi
 from app.web.design_answers import job_of
 from app.web.multipart import forms_with_files, parts_of
 from app.web.rendering import go, show
 from app.web.routes import Id, Text
-from app.web.services import Refused
-from app.worksheets.routes.imports import read_import
+from app.web.services import PageServices, Refused, ThePageServices
+from app.worksheets.routes.imports import FileName, NewId, read_import
 from app.worksheets.schemas.imports import ImportedRegion
-from app.worksheets.schemas.worksheets import Sheet
 
 MISSED = (409, 415, 422, 429)
 """Errors that the form explains, because the user can correct them."""
-BINARY = {"Content-Type": "application/octet-stream"}
 _JOB = re.compile(r"[A-Za-z0-9-]{1,64}")
+
+
+class NewSheet(BaseModel):
+    """The id of a worksheet to be imported, and the name of its file."""
+
+    id: NewId
+    file: FileName = "sheet.mcdx"
 
 
 router = APIRouter(include_in_schema=False)
@@ -27,11 +32,11 @@ forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_with_file
 
 
 @router.get("/worksheets/import")
-async def import_form(request: Request, api: TheApi, job: Text = "", id: Text = "") -> Response:
+async def import_form(request: Request, services: ThePageServices, job: Text = "", id: Text = "") -> Response:
     """Show the form for a file; while its job runs, the wait; then the regions or the refusal."""
     if not _JOB.fullmatch(job):
         return _form(request, id)
-    work = await job_of(api, job)
+    work = await job_of(services, job)
     if work.state == "done" and work.result:
         return go(f"{work.result.removeprefix('/api/v1')}/import")
     if work.problem is not None:
@@ -42,7 +47,7 @@ async def import_form(request: Request, api: TheApi, job: Text = "", id: Text = 
 
 
 @forms.post("/worksheets/import")
-async def import_file(request: Request, api: TheApi) -> Response:
+async def import_file(request: Request, services: ThePageServices) -> Response:
     """Send the chosen file; where it is refused at once, the form again with the reason."""
     parts = await parts_of(request)
     id = parts["id"].text.strip() if "id" in parts else ""
@@ -52,28 +57,39 @@ async def import_file(request: Request, api: TheApi) -> Response:
             request, id, "choose a file: a .mcdx of Mathcad Prime or a .xmcd of Mathcad 11 to 15", 422
         )
     name = "".join(sign for sign in (chosen.file or "") if sign.isprintable())[-200:].strip()
-    query = {"id": id, **({"file": name} if name else {})}
     try:
-        answer = await api.send(
-            "POST", "/worksheets/import", content=chosen.content, params=query, headers=BINARY
-        )
+        job = await begun_import(services, chosen.content, id, name)
     except Refused as refused:
         if refused.status not in MISSED:
             raise
         said = "; ".join(refused.faults.values()) or refused.problem.detail
         return _form(request, id, said, refused.status)
-    return go(f"/worksheets/import?job={answer.headers['Location'].rpartition('/')[2]}&id={id}")
+    return go(f"/worksheets/import?job={job}&id={id}")
+
+
+async def begun_import(services: PageServices, content: bytes, id: str, name: str) -> str:
+    """Begin the import of a file, and return its job.
+
+    Raises
+    ------
+    Refused
+        If the file is refused at once.
+    """
+    given = services.read(NewSheet, {"id": id, **({"file": name} if name else {})})
+    return await services.ask(
+        services.threads.run(services.imports.begin, content, given.id, given.file, services.once)
+    )
 
 
 @router.get("/worksheets/{id}/import")
-async def import_report(id: Id, request: Request, api: TheApi) -> Response:
+async def import_report(id: Id, request: Request, services: ThePageServices) -> Response:
     """Every region of the sheet, and what became of it."""
-    return await _report(request, api, id)
+    return await _report(request, services, id)
 
 
-async def _report(request: Request, api: Api, id: str) -> Response:
-    sheet = await api.get(f"/worksheets/{id}", Sheet)
-    report = await api.run(read_import, id, api.worksheets)
+async def _report(request: Request, services: PageServices, id: str) -> Response:
+    sheet = await services.run(services.worksheets.sheet, id)
+    report = await services.run(read_import, id, services.worksheets)
     counts = [(state, count) for state, count in report.regions if count]
     rows = [(region, _values(region)) for region in report.items if region.kind != "text"]
     return show(request, "import_report.html", sheet=sheet, report=report, counts=counts, rows=rows)

@@ -14,8 +14,8 @@ from app.catalogue.schemas.templates import Template
 from app.presentation.input_text import text_of, value_of
 from app.reference import Reference
 from app.schemas.values import Given
-from app.web.api import Api
 from app.web.forms import LIMITS
+from app.web.services import PageServices
 from app.web.sheet import Field
 
 
@@ -29,10 +29,10 @@ def is_limit(control: str) -> bool:
     return control.startswith(LIMITS)
 
 
-async def library(api: Api) -> list[LibraryTable]:
+async def library(services: PageServices) -> list[LibraryTable]:
     """Every table of the library."""
-    listed = await api.run(list_library_tables)
-    return [await api.run(show_library_table, table.id) for table in listed.items]
+    listed = await services.run(list_library_tables)
+    return [await services.run(show_library_table, table.id) for table in listed.items]
 
 
 def limit_fields(

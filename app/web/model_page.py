@@ -6,29 +6,34 @@ from collections.abc import Mapping
 
 from fastapi import Request, Response
 
+from app.api.waiting import finished
+from app.catalogue.catalogues import Catalogues
+from app.http.roles import AUTHOR
 from app.presentation.input_text import text_of, value_of
+from app.schemas.problems import Problem
 from app.schemas.values import Given
+from app.solids.bodies.models import CadModel as Model
 from app.solids.routes.analyses import list_analyses_of_build, show_analysis
+from app.solids.routes.models import BuildIn, show_model
 from app.solids.schemas.analyses import Analysis, ModelAnalysis
 from app.solids.schemas.models import Build
-from app.solids.schemas.models import CadModel as Model
 from app.web import sheet
-from app.web.api import Api
 from app.web.rendering import show, units_of
-from app.web.services import Refused
+from app.web.services import PageServices, Refused, refusals
 from cad.export import MEDIA_TYPES
+from cad.model import CadModel
+from cad.regenerate import build_key
 
-SHOWN = ["step", "glb"]  # made at once; other kinds when they are asked for
+SHOWN = ("step", "glb")  # made at once; other kinds when they are asked for
 ABOUT = {"units"}
 
 
-async def model_page(request: Request, api: Api, id: str, version: int) -> Response:
+async def model_page(request: Request, services: PageServices, id: str, version: int) -> Response:
     """The page, with the build of what the address asks for; of the example, where it asks for nothing."""
-    path = f"/models/{id}/versions/{version}"
-    model = await api.get(path, Model)
+    model = await services.run(show_model, id, version, services.catalogues, services.database)
     typed = {n: text for n, text in request.query_params.items() if n not in ABOUT and text.strip()}
     cells = {name: value_of(text) for name, text in typed.items()} if typed else model.example
-    built, faults = await _built(api, path, cells)
+    built, faults = await _built(services, model, cells)
     return show(
         request,
         "model.html",
@@ -39,16 +44,16 @@ async def model_page(request: Request, api: Api, id: str, version: int) -> Respo
         ),
         built=built,
         origin=model.origin,
-        analyses=await finished_analyses(request, api, built.build if built else None, model),
+        analyses=await finished_analyses(request, services, built.build if built else None, model),
         faults=faults,
         kinds=list(MEDIA_TYPES),
-        path_of_api=f"/api/v1{path}",
+        path_of_api=f"/api/v1/models/{id}/versions/{version}",
     )
 
 
 async def finished_analyses(
     request: Request,
-    api: Api,
+    services: PageServices,
     build: str | None,
     model: Model,
     declared: Mapping[str, ModelAnalysis] | None = None,
@@ -57,25 +62,51 @@ async def finished_analyses(
     if not model.analyses or build is None:
         return []
     units = units_of(request)
-    analyses = await api.find(list_analyses_of_build, build, api.analyses, units)
+    analyses = await services.find(list_analyses_of_build, build, services.analyses, units)
     loads = {analysis.id: text_of(analysis.load.plain()) for analysis in (declared or {}).values()}
     return [
-        await api.run(show_analysis, analysis.id, api.analyses, loads[analysis.id], units)
+        await services.run(show_analysis, analysis.id, services.analyses, loads[analysis.id], units)
         if analysis.id in loads
         else analysis
         for analysis in (analyses.items if analyses else [])
     ]
 
 
-async def _built(api: Api, path: str, cells: Mapping[str, Given]) -> tuple[Build | None, dict[str, str]]:
+async def _built(
+    services: PageServices, model: Model, cells: Mapping[str, Given]
+) -> tuple[Build | None, dict[str, str]]:
     """The build with its files, or what is wrong; while it is being built, neither its files nor measures."""
     try:
-        begun = await api.post(f"{path}/build", Build, {"parameters": cells, "artifacts": SHOWN})
+        key = await _begun(services, model, cells)
     except Refused as refused:
         if refused.status != 422:
             raise
         return None, refused.faults or {"model": refused.problem.detail}
-    build = await api.get_or_none(f"/builds/{begun.build}", Build)
+    build = await services.find(services.models.show, key)
     if build and build.artifacts.keys() >= {*SHOWN}:
         return build, {}
-    return begun.model_copy(update={"artifacts": {}}), {}
+    return Build(build=key, artifacts={}, measurements=None), {}
+
+
+async def _begun(services: PageServices, model: Model, cells: Mapping[str, Given]) -> str:
+    """Begin the build, as whoever may build, and return its key; it is waited for a moment.
+
+    Raises
+    ------
+    Refused
+        If the parameters are wrong, or give no sound solid.
+    """
+    with refusals():
+        AUTHOR.check()
+    body = services.read(BuildIn, {"parameters": cells})
+    shape = await services.run(_shape, services.catalogues, model.id, model.version, body.parameters)
+    job = await services.run(services.models.request, shape, SHOWN, services.client)
+    if job and await finished(services.jobs, job, None):
+        failed = await services.run(services.jobs.problem, job)
+        if failed:
+            raise Refused(Problem.model_validate(failed))
+    return build_key(shape)
+
+
+def _shape(catalogues: Catalogues, id: str, version: int, parameters: Mapping[str, Given]) -> CadModel:
+    return catalogues.models.get(id, version).from_quantities(parameters)

@@ -8,20 +8,21 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from urllib.parse import quote, urlencode
+from urllib.parse import urlencode
 
 from fastapi import Request, Response
 from pydantic import JsonValue
 
+from app.catalogue.routes.templates import Number, show_template
 from app.catalogue.schemas.library import LibraryTable
 from app.catalogue.schemas.templates import Template
 from app.presentation.input_text import value_of
 from app.web import sheet
-from app.web.api import Api
 from app.web.blocks import Refusal
 from app.web.forms import LIMITS, OPTIONS, option_of
 from app.web.limits import library, limit_fields, with_rows
 from app.web.rendering import show
+from app.web.services import PageServices
 
 _NUMBER = re.compile(r"[0-9]{1,6}")
 FIELDS = ("design_name", "name", "template", "model")
@@ -78,11 +79,12 @@ class NewStep:
         }
 
 
-async def new_step(api: Api, typed: Mapping[str, str]) -> NewStep:
+async def new_step(services: PageServices, typed: Mapping[str, str]) -> NewStep:
     """The step that a form asks for; named as its template, if it has no name."""
     id, version = versioned(typed.get("template", ""))
-    template = await api.get(f"/templates/{quote(id, safe='')}/versions/{version}", Template)
-    return NewStep(typed.get("name", "").strip() or template.id, template, typed, await library(api))
+    number = services.read(Number, version)
+    template = await services.run(show_template, id, number, services.catalogues)
+    return NewStep(typed.get("name", "").strip() or template.id, template, typed, await library(services))
 
 
 def versioned(chosen: str) -> tuple[str, int | str]:

@@ -13,11 +13,12 @@ from starlette.datastructures import URL
 from starlette.exceptions import HTTPException
 
 from app.identity.errors import NotSignedIn, RoleNeeded
-from app.schemas.problems import MEDIA_TYPE
-from app.web.api import BASE
+from app.schemas.problems import MEDIA_TYPE, Problem
 from app.web.rendering import go, show
 from app.web.services import Refused
 
+BASE = "/api/v1"
+"""Where the paths of the interface begin."""
 _LONGEST = 2000  # characters of an address
 Handler = Callable[[Request, Exception], Awaitable[Response]]
 
@@ -25,7 +26,7 @@ Handler = Callable[[Request, Exception], Awaitable[Response]]
 def install(app: FastAPI) -> None:
     """Answer what goes wrong under a page with a page; call it after `problems.install`."""
     app.add_exception_handler(Refused, _refused)
-    for cls in (HTTPException, RequestValidationError, RoleNeeded, NotSignedIn):
+    for cls in (HTTPException, RequestValidationError, RoleNeeded, NotSignedIn, Exception):
         app.add_exception_handler(cls, _page_or(cast(Handler, app.exception_handlers[cls])))
 
 
@@ -41,7 +42,10 @@ def _page_or(others: Handler) -> Handler:
             return _page(request, 403, str(error), "Your roles do not allow this")
         if isinstance(error, NotSignedIn):
             return go(f"/sign-in?{urlencode({'back': _place(request)})}")
-        return _page(request, 404, "there is no such page")
+        if isinstance(error, RequestValidationError):
+            return _page(request, 404, "there is no such page")
+        problem = Problem.model_validate_json(bytes((await others(request, error)).body))
+        return _page(request, problem.status, problem.detail, problem.title)
 
     return handle
 
@@ -59,7 +63,7 @@ def _place(request: Request) -> str:
 
 
 async def _refused(request: Request, error: Exception) -> Response:
-    """The page of an error that the interface answered."""
+    """The page of what a service refused."""
     assert isinstance(error, Refused)
     if not _is_page(request):
         return JSONResponse(

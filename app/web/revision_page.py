@@ -7,18 +7,18 @@ import asyncio
 from fastapi import Request, Response
 
 from app.designs.schemas.designs import RevisionWorksheet
-from app.web.api import Api
 from app.web.approvals import approval_of, comments_of
 from app.web.blocks import models_of, steps_of
 from app.web.design_answers import described_models, revision_of, templates_of
 from app.web.differences import differences
 from app.web.rendering import show
+from app.web.services import PageServices
 from cad.export import MEDIA_TYPES
 
 
 async def revision_page(
     request: Request,
-    api: Api,
+    services: PageServices,
     id: str,
     number: int,
     other: int | None,
@@ -29,22 +29,22 @@ async def revision_page(
 ) -> Response:
     """Show a stored revision, and how it differs from another: the one before, if none is named."""
     design, revision = await asyncio.gather(
-        api.run(api.designs.show, id), revision_of(request, api, id, number)
+        services.run(services.designs.show, id), revision_of(request, services, id, number)
     )
     compared = other or (number - 1 if number > 1 else None)
-    against = await revision_of(request, api, id, compared) if compared else None
-    templates = await templates_of(api, _steps_of_revision(revision))
+    against = await revision_of(request, services, id, compared) if compared else None
+    templates = await templates_of(services, _steps_of_revision(revision))
     return show(
         request,
         "revision.html",
         status=status,
         notice=notice,
-        approval=await approval_of(api, id, number),
-        comments=await comments_of(api, id, number, 50, cursor),
+        approval=await approval_of(services, id, number),
+        comments=await comments_of(services, id, number, 50, cursor),
         design=design,
         revision=revision,
         steps=steps_of(revision, templates),
-        models=models_of(revision, await described_models(api, revision)),
+        models=models_of(revision, await described_models(services, revision)),
         against=against,
         differences=differences(against, revision) if against else [],
         kinds=list(MEDIA_TYPES),

@@ -26,7 +26,6 @@ from app.designs.schemas.designs import State
 from app.presentation.criteria import line
 from app.solids.routes.models import list_model_versions, list_models
 from app.web import plotly
-from app.web.api import Api, TheApi
 from app.web.compare_page import Asked, compare_page
 from app.web.design_page import design_page, step_section
 from app.web.gallery import offered
@@ -35,7 +34,7 @@ from app.web.new_step import beside, new_step, step_page
 from app.web.rendering import go, show, units_of
 from app.web.revision_page import revision_page
 from app.web.sensitivities import sensitivity_lines
-from app.web.services import Refused
+from app.web.services import PageServices, Refused, ThePageServices
 from app.web.stored_page import is_unusable, stored_page
 from app.web.template_page import template_page
 from app.web.template_solve_page import template_solve_page
@@ -61,14 +60,14 @@ class Filter(BaseModel):
 
 
 @router.get("/")
-async def home(request: Request, api: TheApi) -> Response:
+async def home(request: Request, services: ThePageServices) -> Response:
     """Designs, templates, models, and where to start."""
     designs, tags, templates, models, faulty = await asyncio.gather(
-        api.run(list_designs, api.database, limit=ON_HOME),
-        api.run(list_tags, api.database),
-        api.run(list_templates, api.catalogues, limit=500),
-        api.run(list_models, api.catalogues, limit=500),
-        api.run(list_catalogue_faults, api.catalogues, limit=500),
+        services.run(list_designs, services.database, limit=ON_HOME),
+        services.run(list_tags, services.database),
+        services.run(list_templates, services.catalogues, limit=500),
+        services.run(list_models, services.catalogues, limit=500),
+        services.run(list_catalogue_faults, services.catalogues, limit=500),
     )
     latest = [item for item in templates.items if item.latest]
     return show(
@@ -77,7 +76,7 @@ async def home(request: Request, api: TheApi) -> Response:
         designs=designs,
         tags=tags.items[:TAGS_ON_HOME],
         back="/",
-        pictures=dict(await asyncio.gather(*(_picture(api, item.id) for item in designs.items))),
+        pictures=dict(await asyncio.gather(*(_picture(services, item.id) for item in designs.items))),
         templates=templates.items,
         latest=latest,
         models=[item for item in models.items if item.latest],
@@ -89,7 +88,7 @@ async def home(request: Request, api: TheApi) -> Response:
 @router.get("/designs")
 async def designs(
     request: Request,
-    api: TheApi,
+    services: ThePageServices,
     cursor: Text = "",
     name: Text = "",
     state: Text = "",
@@ -106,10 +105,10 @@ async def designs(
         "archived": archived,
     }
     wanted = {key: text for key, text in typed.items() if text}  # a form sends empty fields too
-    filtered = api.read(Filter, {**wanted, **({"tag": [wanted["tag"]]} if tag.strip() else {})})
+    filtered = services.read(Filter, {**wanted, **({"tag": [wanted["tag"]]} if tag.strip() else {})})
     page, tags = await asyncio.gather(
-        api.run(list_designs, api.database, 50, cursor or None, **vars(filtered)),
-        api.run(list_tags, api.database),
+        services.run(list_designs, services.database, 50, cursor or None, **vars(filtered)),
+        services.run(list_tags, services.database),
     )
     return show(
         request,
@@ -124,70 +123,70 @@ async def designs(
 
 
 @router.get("/templates/faults")
-async def faults(request: Request, api: TheApi, cursor: Text = "") -> Response:
+async def faults(request: Request, services: ThePageServices, cursor: Text = "") -> Response:
     """The files of a team that have faults."""
-    faulty = await api.run(list_catalogue_faults, api.catalogues, cursor=cursor or None)
+    faulty = await services.run(list_catalogue_faults, services.catalogues, cursor=cursor or None)
     return show(request, "faults.html", faulty=faulty)
 
 
 @router.get("/templates/{id}")
-async def newest_template(id: Id, api: TheApi) -> Response:
+async def newest_template(id: Id, services: ThePageServices) -> Response:
     """The latest version."""
-    return go(await _newest(api, "templates", id))
+    return go(await _newest(services, "templates", id))
 
 
 @router.get("/templates/{id}/{version}")
-async def template(id: Id, version: Number, request: Request, api: TheApi) -> Response:
+async def template(id: Id, version: Number, request: Request, services: ThePageServices) -> Response:
     """A template, with a form to try it; what is typed stands in the address."""
-    return await template_page(request, api, id, version)
+    return await template_page(request, services, id, version)
 
 
 @router.get("/templates/{id}/{version}/solve")
-async def solve_template(id: Id, version: Number, request: Request, api: TheApi) -> Response:
+async def solve_template(id: Id, version: Number, request: Request, services: ThePageServices) -> Response:
     """Show which values of one input give a wanted output; question and inputs stand in the address."""
-    return await template_solve_page(request, api, id, version)
+    return await template_solve_page(request, services, id, version)
 
 
 @router.get("/models/{id}")
-async def newest_model(id: Id, api: TheApi) -> Response:
+async def newest_model(id: Id, services: ThePageServices) -> Response:
     """The latest version."""
-    return go(await _newest(api, "models", id))
+    return go(await _newest(services, "models", id))
 
 
 @router.get("/models/{id}/{version}")
-async def model(id: Id, version: Number, request: Request, api: TheApi) -> Response:
+async def model(id: Id, version: Number, request: Request, services: ThePageServices) -> Response:
     """A CAD model, with a form to build it; what is typed stands in the address."""
-    return await model_page(request, api, id, version)
+    return await model_page(request, services, id, version)
 
 
 @router.get("/designs/new")
-async def new_design(request: Request, api: TheApi) -> Response:
+async def new_design(request: Request, services: ThePageServices) -> Response:
     """The empty form of a new design's first step."""
     typed = dict(request.query_params)
-    step = await new_step(api, typed)
+    step = await new_step(services, typed)
     hidden = {"design_name": "new design", **beside(typed)}
     return step_page(request, step, "/designs", hidden)
 
 
 @router.get("/designs/{id}/steps/new")
-async def another_step(id: Id, request: Request, api: TheApi) -> Response:
+async def another_step(id: Id, request: Request, services: ThePageServices) -> Response:
     """The empty form of one more step of a design."""
     typed = dict(request.query_params)
-    step, design = await new_step(api, typed), await api.run(api.designs.show, id)
+    step, design = await new_step(services, typed), await services.run(services.designs.show, id)
     hidden = {**beside(typed), "add": "template", "revision": str(design.revision)}
     return step_page(request, step, f"/designs/{id}/blocks", hidden)
 
 
 @router.get("/designs/{id}")
-async def design(id: Id, request: Request, api: TheApi) -> Response:
+async def design(id: Id, request: Request, services: ThePageServices) -> Response:
     """A design at its newest revision, to be changed; only to be read while its template is quarantined."""
-    return await _or_stored(request, api, id, None, design_page(request, api, id))
+    return await _or_stored(request, services, id, None, design_page(request, services, id))
 
 
 @router.get("/designs/{id}/step")
-async def step(id: Id, request: Request, api: TheApi, name: Text = "") -> Response:
+async def step(id: Id, request: Request, services: ThePageServices, name: Text = "") -> Response:
     """One step of the newest revision of a design; the page of a long design fetches it when it is opened."""
-    return await step_section(request, api, id, name)
+    return await step_section(request, services, id, name)
 
 
 @router.get("/designs/{id}/revisions/{number}")
@@ -195,49 +194,49 @@ async def revision(
     id: Id,
     number: Number,
     request: Request,
-    api: TheApi,
+    services: ThePageServices,
     other: Annotated[int | None, Query(alias="with", ge=1, le=10**9)] = None,
     comments: Text = "",
 ) -> Response:
     """A revision, and what differs from another; `comments` is where a page of comments begins."""
-    page = revision_page(request, api, id, number, other, cursor=comments)
-    return await _or_stored(request, api, id, number, page)
+    page = revision_page(request, services, id, number, other, cursor=comments)
+    return await _or_stored(request, services, id, number, page)
 
 
 @router.get("/designs/{id}/compare")
 async def compared(
     id: Id,
     request: Request,
-    api: TheApi,
+    services: ThePageServices,
     revision: Text = "",
     number: Annotated[str, Query(alias="with", max_length=200)] = "",
     design: Text = "",
     of: Text = "",
 ) -> Response:
     """Two revisions, of this design or of this and another one."""
-    return await compare_page(request, api, id, Asked(revision, number, design, of))
+    return await compare_page(request, services, id, Asked(revision, number, design, of))
 
 
 @router.get("/designs/{id}/tolerances")
 async def tolerances(
     id: Id,
     request: Request,
-    api: TheApi,
+    services: ThePageServices,
     job: Annotated[str | None, Query(max_length=64, pattern=r"^[A-Za-z0-9_-]+$")] = None,
     part: Annotated[str, Query(max_length=1)] = "",
 ) -> Response:
     """Show the effects of a design's tolerances; `part` is the part that the design page takes in."""
-    return await tolerances_page(request, api, id, job, is_part=bool(part))
+    return await tolerances_page(request, services, id, job, is_part=bool(part))
 
 
 @router.get("/designs/{id}/explain/{name}")
 async def explanation(
-    id: Id, name: Annotated[str, Path(max_length=140)], request: Request, api: TheApi
+    id: Id, name: Annotated[str, Path(max_length=140)], request: Request, services: ThePageServices
 ) -> Response:
     """Show where a model parameter, or the verdict of a criterion, comes from."""
     design, chain = await asyncio.gather(
-        api.run(api.designs.show, id),
-        api.calculate(None, api.designs.explanation, id, name, units_of(request)),
+        services.run(services.designs.show, id),
+        services.calculate(None, services.designs.explanation, id, name, units_of(request)),
     )
     judged = line(chain.criterion) if chain.criterion else None
     slopes = sensitivity_lines(chain.sensitivities or [])
@@ -277,7 +276,7 @@ async def plotly_script(request: Request) -> Response:
 
 
 async def _or_stored(
-    request: Request, api: Api, id: str, number: int | None, page: Awaitable[Response]
+    request: Request, services: PageServices, id: str, number: int | None, page: Awaitable[Response]
 ) -> Response:
     """A page of a design; what is stored of it, if one of its templates is quarantined."""
     try:
@@ -285,16 +284,16 @@ async def _or_stored(
     except Refused as refused:
         if not is_unusable(refused):
             raise
-        return await stored_page(request, api, id, number, refused.problem.detail)
+        return await stored_page(request, services, id, number, refused.problem.detail)
 
 
-async def _picture(api: Api, id: str) -> tuple[str, str | None]:
+async def _picture(services: PageServices, id: str) -> tuple[str, str | None]:
     """A design's id, and the picture of the first of its parts, if it has one by now."""
-    parts = await api.run(show_measurements, id, api.database)
+    parts = await services.run(show_measurements, id, services.database)
     return id, next((f"/api/v1/designs/{id}/models/{name}/model.png" for name in parts), None)
 
 
-async def _newest(api: TheApi, group: str, id: str) -> str:
+async def _newest(services: ThePageServices, group: str, id: str) -> str:
     list_versions = {"templates": list_template_versions, "models": list_model_versions}[group]
-    versions = await api.run(list_versions, id, api.catalogues)
+    versions = await services.run(list_versions, id, services.catalogues)
     return f"/{group}/{id}/{next(item.version for item in versions.items if item.latest)}"

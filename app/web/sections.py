@@ -23,9 +23,6 @@ from app.web.verdict import Banner, opened
 KEPT = 16 * 2**20  # characters of sections
 _kept: LRUCache[bytes, Markup] = LRUCache(KEPT, getsizeof=len)
 """Sections by all that they show. Pages are written in the event loop alone, so nothing locks."""
-_kept_beside: LRUCache[bytes, Markup] = LRUCache(KEPT // 4, getsizeof=len)
-"""Other large parts of the page of a design."""
-
 
 MOST_IN_FULL = 12
 """Steps of a design whose page has the inputs and results of each; of a longer one, those of a few."""
@@ -70,38 +67,39 @@ def fold_lines(steps: Sequence[StepBlock], verdict: Banner, base: str) -> dict[s
 
 def banner_of(verdict: Banner, design: str) -> Markup:
     """The verdict on top of the page of a design: a long one has hundreds of criteria."""
-    return _written(_kept_beside, "verdict.html", "banner", (verdict, design), verdict, design)
+    return _macro("verdict.html", "banner", verdict, design)
 
 
 def variants_start(design: Design, variants: VariantsTable) -> Markup:
     """The table in which the first variants of a design are typed: it has a column for each input."""
-    shown = (design.id, design.revision, variants)
-    return _written(_kept_beside, "variants.html", "start", shown, design, variants)
+    return _macro("variants.html", "start", design, variants)
 
 
 def _fold_line(step: StepBlock, worst: Line | None, base: str) -> Markup:
     template, outputs = step.template, step.result.outputs
     keys = [outputs[name].model_dump_json() for name in step.keys]
     shown = (base, step.name, template.id, template.version, template.digest, step.keys, keys, worst)
-    return _written(_kept, "step.html", "fold_line", shown, step, worst, base)
+    return _written("fold_line", shown, step, worst, base)
 
 
 def _section(step: StepBlock, worst: Line | None, is_open: bool, is_only: bool) -> Markup:
     shown = _shown(step, worst, is_open, is_only)
-    return _written(_kept, "step.html", "section", shown, step, worst, is_open, is_only)
+    return _written("section", shown, step, worst, is_open, is_only)
 
 
-def _written(
-    kept: LRUCache[bytes, Markup], page: str, macro: str, shown: object, *arguments: object
-) -> Markup:
-    """The output of a macro, kept by its name and all that it shows."""
+def _written(macro: str, shown: object, *arguments: object) -> Markup:
+    """The output of a macro of steps, kept by its name and all that it shows."""
     key = sha256(repr((macro, shown)).encode("utf-8", "surrogatepass")).digest()
-    html = kept.get(key)
+    html = _kept.get(key)
     if html is None:
-        html = Markup(getattr(jinja.get_template(page).module, macro)(*arguments))
-        if len(html) <= kept.maxsize:
-            kept[key] = html
+        html = _macro("step.html", macro, *arguments)
+        if len(html) <= KEPT:
+            _kept[key] = html
     return html
+
+
+def _macro(page: str, name: str, *arguments: object) -> Markup:
+    return Markup(getattr(jinja.get_template(page).module, name)(*arguments))
 
 
 def _shown(step: StepBlock, worst: Line | None, is_open: bool, is_only: bool) -> tuple[object, ...]:

@@ -7,19 +7,22 @@ the interface would answer, `Refused`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import re
+from collections.abc import Awaitable, Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from http import HTTPStatus
 from typing import Annotated, ParamSpec, TypeVar
 
 from fastapi import Depends, Request
-from pydantic import TypeAdapter, ValidationError
+from pydantic import JsonValue, TypeAdapter, ValidationError
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import expensive_steps, services_of
 from app.api.services import Services
 from app.calculations.errors import InvalidBody
+from app.designs.routes.designs import noted
+from app.designs.service import Saved
 from app.http import nul
 from app.http.clients import TheClient
 from app.http.problem_kinds import TABLE
@@ -30,6 +33,10 @@ from app.storage.idempotency import Once
 Kind = TypeVar("Kind")
 Result = TypeVar("Result")
 Arguments = ParamSpec("Arguments")
+
+MOMENT = 1.0
+"""Time for which a form waits for the job of a change [s]."""
+_NUMBER = re.compile(r"[0-9]{1,6}")
 
 ERRORS = tuple(TABLE)
 """The errors that are problems."""
@@ -62,6 +69,11 @@ class Refused(Exception):
     def faults(self) -> dict[str, str]:
         """The faults by the name of the input, with the other inputs that they concern."""
         return {fault.name: with_related(fault.detail, fault.also) for fault in self.problem.errors}
+
+
+def tag_of(revision: str) -> str:
+    """Return the ETag of a revision as a form names it; of what is not a number, one that matches nothing."""
+    return f'"{revision if _NUMBER.fullmatch(revision) else 0}"'
 
 
 @contextmanager
@@ -106,6 +118,62 @@ class PageServices(Services):
         """
         with refusals():
             return await run_in_threadpool(function, *arguments, **options)
+
+    async def ask(self, answer: Awaitable[Result]) -> Result:
+        """Return what a service answers that runs in the event loop.
+
+        Raises
+        ------
+        Refused
+            If it refuses.
+        """
+        with refusals():
+            return await answer
+
+    async def save(
+        self,
+        change: Callable[Arguments, Saved],
+        *arguments: Arguments.args,
+        **options: Arguments.kwargs,
+    ) -> Saved:
+        """Return what a change has saved; its job is waited for a moment: the page shows how it goes on.
+
+        Raises
+        ------
+        Refused
+            If nothing was saved.
+        """
+        saved = await self.calculate(MOMENT, change, *arguments, **options)
+        if saved.job and not saved.is_deferred:
+            await self.jobs.wait(saved.job, MOMENT)
+        return saved
+
+    async def change(self, id: str, revision: str, patch: Mapping[str, JsonValue], note: str = "") -> Saved:
+        """Save a merge patch of a design as read at a revision, which is a text as a form names it.
+
+        Raises
+        ------
+        Refused
+            If nothing was saved.
+        """
+        with refusals():
+            nul.refuse_in({**patch, "note": note})
+            change, noted_as = noted({**patch, **({"note": note} if note.strip() else {})})
+        return await self.save(self.labelling.change, id, change, noted_as, tag_of(revision), self.once)
+
+    async def cancel(self, job: str) -> None:
+        """Cancel a job; one that has ended meanwhile is left as it is.
+
+        Raises
+        ------
+        Refused
+            If there is no such job, or it is another's.
+        """
+        try:
+            await self.run(self.jobs.cancel, job, self.client)
+        except Refused as refused:
+            if refused.status != HTTPStatus.CONFLICT:
+                raise
 
     async def find(
         self,

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 from pydantic import JsonValue
 
+from app.designs.previewing import Change
 from app.designs.routes.designs import list_designs
 from app.designs.schemas.designs import Design, DesignSummary, Preview
 from app.presentation import numbers
-from app.web.api import Api, read
-from app.web.services import Refused
+from app.web.services import PageServices, Refused
 from app.worksheets.schemas.worksheets import Sheet, SheetCheck
 
 OFFERED = 50  # designs, newest first
-AT_ONCE = {"Prefer": "wait=5"}
+PATIENCE = 5.0  # for steps of the design that take long [s]
 REFUSED = (404, 409, 413, 422, 429)
 
 
@@ -39,28 +39,28 @@ class Tried:
     reason: str = ""
 
 
-async def offered(api: Api, sheet: Sheet) -> list[DesignSummary]:
+async def offered(services: PageServices, sheet: Sheet) -> list[DesignSummary]:
     """Designs in which a draft may be tried: those that use the worksheet before all others."""
-    using = await api.run(list_designs, api.database, limit=OFFERED, template=sheet.id)
-    rest = await api.run(list_designs, api.database, limit=OFFERED)
+    using = await services.run(list_designs, services.database, limit=OFFERED, template=sheet.id)
+    rest = await services.run(list_designs, services.database, limit=OFFERED)
     return list({item.id: item for item in (*using.items, *rest.items)}.values())[:OFFERED]
 
 
-async def tried_in(api: Api, id: str, sheet: Sheet, checked: SheetCheck) -> Tried:
+async def tried_in(services: PageServices, id: str, sheet: Sheet, checked: SheetCheck) -> Tried:
     """The draft in place of the version that a design uses; as one more step, where it uses none."""
     name, is_added, step = sheet.id, True, dict[str, JsonValue]()
     try:
-        design = await api.run(api.designs.show, id)
+        design = await services.run(services.designs.show, id)
         name, is_added = _place(design, sheet)
         step = _step(sheet, checked, is_added=is_added)
-        path = f"/designs/{id}/preview"
-        response = await api.send("POST", path, json={"steps": {name: step}}, headers=AT_ONCE)
+        change = Change(id, {"steps": {name: step}}, worksheet=False, system="si")
+        preview, _ = await services.calculate(PATIENCE, services.previews.answer, change, services.client)
     except Refused as refused:
         if refused.status not in REFUSED:
             raise
         reason = "; ".join(refused.faults.values()) or refused.problem.detail
         return Tried(id, name, is_added, [], reason)
-    return Tried(design.name, name, is_added, list(_changes(read(response, Preview))))
+    return Tried(design.name, name, is_added, list(_changes(preview)))
 
 
 def _place(design: Design, sheet: Sheet) -> tuple[str, bool]:

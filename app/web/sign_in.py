@@ -17,11 +17,12 @@ from app.http.access import SIGN_IN
 from app.http.roles import needs, public
 from app.identity.errors import NotSignedIn
 from app.identity.keys import key_prefix
-from app.identity.schemas.principals import Key, KeyList, Me, NewKey
+from app.identity.routes import principals as routes
+from app.identity.schemas.principals import Key, KeyIn, NewKey
 from app.web.actions import forms_only
-from app.web.api import Api, TheApi
 from app.web.forms import fields
 from app.web.rendering import go, show
+from app.web.services import PageServices, ThePageServices
 from app.web.session import keep_signed_in
 
 _BACK = re.compile(r"/(?![/\\])[!-~]*")
@@ -68,35 +69,35 @@ async def sign_out(request: Request, identity: TheIdentity) -> Response:
 
 
 @router.get("/account", dependencies=[needs()])
-async def account(request: Request, api: TheApi) -> Response:
+async def account(request: Request, services: ThePageServices) -> Response:
     """Show the principal: name, roles, usage, and keys."""
-    return await _account(request, api)
+    return await _account(request, services)
 
 
 @forms.post("/account/keys", dependencies=[needs()])
-async def add_key(request: Request, api: TheApi) -> Response:
+async def add_key(request: Request, services: ThePageServices) -> Response:
     """A new key, which this page shows and no other."""
     typed = await fields(request)
-    me = await api.get("/me", Me)
+    me = await services.run(routes.show_me, services.identity)
     days = typed.get("days", "").strip()
-    body = {"name": typed.get("name", "").strip(), "expires_days": days or None}
-    key = await api.post(f"/principals/{me.id}/keys", NewKey, body)
-    return await _account(request, api, key)
+    body = services.read(KeyIn, {"name": typed.get("name", "").strip(), "expires_days": days or None})
+    key = await services.run(routes.add_key, me.id, body, services.identity)
+    return await _account(request, services, key)
 
 
 @forms.post("/account/keys/{prefix}/revoke", dependencies=[needs()])
-async def revoke_key(prefix: Prefix, api: TheApi) -> Response:
+async def revoke_key(prefix: Prefix, services: ThePageServices) -> Response:
     """End the life of a key."""
-    me = await api.get("/me", Me)
-    await api.send("DELETE", f"/principals/{me.id}/keys/{prefix}")
+    me = await services.run(routes.show_me, services.identity)
+    await services.run(routes.revoke_key, me.id, prefix, services.identity)
     return go("/account")
 
 
-async def _account(request: Request, api: Api, new_key: NewKey | None = None) -> Response:
-    me = await api.get("/me", Me)
+async def _account(request: Request, services: PageServices, new_key: NewKey | None = None) -> Response:
+    me = await services.run(routes.show_me, services.identity)
     keys: list[Key] = []
     if me.usage.limits is not None:
-        keys = (await api.get(f"/principals/{me.id}/keys", KeyList, limit=500)).items
+        keys = (await services.run(routes.list_keys, me.id, services.identity, limit=500)).items
     return show(request, "account.html", me=me, keys=keys, new_key=new_key)
 
 

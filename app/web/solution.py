@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Awaitable, Sequence
 from dataclasses import dataclass
-from urllib.parse import quote
-
-import httpx
+from typing import Generic, TypeVar
 
 from app.calculations.schemas.evaluations import Jump, Root, TracedCurve
 from app.presentation import numbers
-from app.presentation.units import System
 from app.reference import Reference
 from app.reports.charts import Chart, Series, svg
-from app.web.api import Api
+from app.web.answers import Answered
 from app.web.services import Refused
 
-PATIENT = {"Prefer": "wait=5"}  # the page shows how a longer calculation goes on
-ANSWERED, ACCEPTED = 422, 202
-"""Status of a question that is wrong, which its page shows beside the form; and of one that takes longer."""
+PATIENCE = 5.0
+"""Time that a page waits for an answer [s]; it shows how a longer calculation goes on."""
+WRONG = 422
+"""Status of a question that is wrong, which its page shows beside the form."""
+Kind = TypeVar("Kind")
 
 
 @dataclass(frozen=True)
@@ -93,30 +92,21 @@ def _list(value: object) -> list[float | None]:
 
 
 @dataclass(frozen=True)
-class Reply:
-    """The interface's reply to a question: an answer, a job that makes it, or faults."""
+class Reply(Generic[Kind]):
+    """The reply to a question: an answer, a job that makes it, or faults."""
 
-    response: httpx.Response | None
+    answer: Kind | None = None
+    job: str = ""  # that still makes the answer
     refusal: Refused | None = None
-
-    @property
-    def goes_on(self) -> bool:
-        """Whether a job still makes the answer."""
-        return self.response is not None and self.response.status_code == ACCEPTED
 
     @property
     def is_out_of_reach(self) -> bool:
         """Whether no value between the bounds gives the target."""
         return self.refusal is not None and (self.refusal.problem.type or "").endswith("/unreachable")
 
-    @property
-    def answer(self) -> httpx.Response | None:
-        """The answer, once it is there."""
-        return None if self.goes_on else self.response
 
-
-async def asked(api: Api, path: str, body: Mapping[str, object], units: System | None, job: str) -> Reply:
-    """Send a question, or look for the answer of the job that it became.
+async def replied(answer: Awaitable[Answered[Kind]]) -> Reply[Kind]:
+    """Return the reply to a question.
 
     Raises
     ------
@@ -124,11 +114,9 @@ async def asked(api: Api, path: str, body: Mapping[str, object], units: System |
         For anything but a question that is wrong.
     """
     try:
-        if job:
-            return Reply(await api.send("GET", f"/evaluations/{quote(job, safe='')}"))
-        params = {"units": units} if units else {}
-        return Reply(await api.send("POST", path, json=body, params=params, headers=PATIENT))
+        answered = await answer
     except Refused as refused:
-        if refused.status != ANSWERED:
+        if refused.status != WRONG:
             raise
-        return Reply(None, refused)
+        return Reply(refusal=refused)
+    return Reply(answered.answer, answered.job)

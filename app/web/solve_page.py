@@ -9,15 +9,17 @@ from urllib.parse import urlencode
 
 from fastapi import Request, Response
 
+from app.designs import asking
 from app.designs.schemas.designs import Design
 from app.designs.schemas.solution import DesignRoot, DesignSolution
+from app.designs.solved import SolveDesignIn
 from app.presentation import numbers
 from app.presentation.input_text import value_of
-from app.schemas.answers import Accepted
-from app.web.api import Api, read
+from app.web.answers import Answered, stored
 from app.web.places import PlaceOption, outputs, related, suggested, times, varied
 from app.web.rendering import go, show, units_of
-from app.web.solution import Drawing, Reply, ShownRoot, asked
+from app.web.services import PageServices
+from app.web.solution import PATIENCE, Drawing, Reply, ShownRoot, replied
 
 FIELDS = ("unknown", "low", "high", "output", "value", "tolerance", "other", "other_value")
 OPTIONAL = ("tolerance", "other", "other_value")
@@ -76,19 +78,20 @@ class Asked:
         return (_control(self.typed["other"]), self.typed["other_value"]) if self.typed["other"] else None
 
 
-async def solve_page(request: Request, api: Api, id: str) -> Response:
+async def solve_page(request: Request, services: PageServices, id: str) -> Response:
     """The form, and the answer once the form is filled in."""
-    design = await api.run(api.designs.show, id)
-    network = await api.run(api.designs.network, id)
+    design = await services.run(services.designs.show, id)
+    network = await services.run(services.designs.network, id)
     places = varied(design, network)
     question, job = _with_bounds(Asked.of(request), places), request.query_params.get("job", "")
-    reply = Reply(None)
+    reply = Reply[DesignSolution]()
     if question.is_whole:
-        reply = await asked(api, f"/designs/{id}/solve", question.body(), units_of(request), job)
-    if reply.response and reply.goes_on and not job:
-        job = read(reply.response, Accepted).job.rpartition("/")[2]
-        return go(f"?{urlencode({**question.typed, 'job': job})}")
-    solution = read(reply.answer, DesignSolution) if reply.answer else None
+        reply = await replied(
+            stored(services, job, DesignSolution) if job else _solved(request, services, id, question)
+        )
+    if reply.job and not job:
+        return go(f"?{urlencode({**question.typed, 'job': reply.job})}")
+    solution = reply.answer
     return show(
         request,
         "solve.html",
@@ -103,8 +106,20 @@ async def solve_page(request: Request, api: Api, id: str) -> Response:
         roots=_saved(design, solution) if solution else [],
         refusal=reply.refusal,
         wider=question.wider() if reply.is_out_of_reach else None,
-        job=job if reply.goes_on else "",
+        job=reply.job,
     )
+
+
+async def _solved(
+    request: Request, services: PageServices, id: str, question: Asked
+) -> Answered[DesignSolution]:
+    """The solution, or the job that calculates it where the page does not wait so long."""
+    body = services.read(SolveDesignIn, question.body())
+    wanted = asking.Asked(
+        id, body.model_dump_json(exclude_unset=True, by_alias=True), units=units_of(request)
+    )
+    answer, job = await services.calculate(PATIENCE, services.solving.answer, wanted, services.client)
+    return Answered(answer, job or "")
 
 
 def _drawing(solution: DesignSolution) -> Drawing:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from fastapi import Request, Response
 
 from app.designs.routes.revisions import show_revision
-from app.web.api import Api
 from app.web.rendering import show
-from app.web.services import Refused
+from app.web.services import PageServices, Refused
 from cad.export import MEDIA_TYPES
 
 REASONS = ("/problems/quarantined", "/problems/unknown-template")
@@ -18,11 +17,13 @@ def is_unusable(refused: Refused) -> bool:
     return refused.problem.type in REASONS
 
 
-async def stored_page(request: Request, api: Api, id: str, number: int | None, reason: str) -> Response:
+async def stored_page(
+    request: Request, services: PageServices, id: str, number: int | None, reason: str
+) -> Response:
     """One revision, the newest if none is named, as it is stored."""
-    design = await api.run(api.designs.show, id)
+    design = await services.run(services.designs.show, id)
     shown = number or design.revision
-    revision = await api.run(show_revision, id, shown, api.database)
+    revision = await services.run(show_revision, id, shown, services.database)
     return show(
         request,
         "stored.html",

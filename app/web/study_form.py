@@ -4,22 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from math import inf
 
 from fastapi import Request, Response
 from pydantic import JsonValue
 
-from app.designs.schemas.designs import Design, Preview, RevisionWorksheet
+from app.designs.previewing import Change
+from app.designs.routes.variants import variants_of
+from app.designs.schemas.designs import Design, RevisionWorksheet
 from app.designs.schemas.network import NetworkName
-from app.designs.schemas.variants import VariantsOut
 from app.designs.variants.names import BASE, natural
 from app.presentation.input_text import text_of, value_of
 from app.reference import Reference
 from app.schemas.criteria import Criterion
 from app.studies.schemas import StudyEstimate
-from app.web.api import Api
 from app.web.places import outputs, present, set_aside, suggested, varied
 from app.web.rendering import show
-from app.web.services import Refused
+from app.web.services import PageServices, Refused
 
 LINES = 4
 """Places that the form can vary; the interface takes more."""
@@ -144,18 +145,20 @@ def _whole(text: str) -> JsonValue:
 
 async def study_form(
     request: Request,
-    api: Api,
+    services: PageServices,
     id: str,
     typed: Typed,
     status: int = 200,
     estimate: StudyEstimate | None = None,
 ) -> Response:
     """The form, with what was typed, and with what it would take, if that was asked for."""
-    design = await api.run(api.designs.show, id)
-    governing = await _governing(api, design)
-    network = await api.run(api.designs.network, id)
-    revision = await api.get(f"/designs/{id}/revisions/{design.revision}/worksheet", RevisionWorksheet)
-    preview = await api.post(f"/designs/{id}/preview", Preview, {})
+    design = await services.run(services.designs.show, id)
+    governing = await _governing(services, design)
+    network = await services.run(services.designs.network, id)
+    revision = await services.calculate(None, services.reports.worksheet, id, design.revision, "si")
+    preview = (
+        await services.calculate(inf, services.previews.answer, Change(id, {}, False, "si"), services.client)
+    )[0]
     places, named = varied(design, network), outputs(network)
     aside = set_aside(design, network, places, present(revision, preview))
     bounds = {place.name: suggested(place) for place in (*places, *aside)}
@@ -181,11 +184,13 @@ async def study_form(
     )
 
 
-async def _governing(api: Api, design: Design) -> str:
+async def _governing(services: PageServices, design: Design) -> str:
     """The variant that governs a design, which a study of the design does not calculate; empty for itself."""
     if not design.variants:
         return ""
-    worst = (await api.get(f"/designs/{design.id}/variants", VariantsOut)).governing
+    worst = (
+        await services.run(variants_of, design.id, None, services.database, services.catalogues)
+    ).governing
     return worst.variant if worst and worst.variant != BASE else ""
 
 

@@ -5,30 +5,44 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fastapi import Request, Response
+from pydantic import BaseModel
 
-from app.designs.schemas.designs import RevisionWorksheet
+from app.http.pages import Cursor
 from app.presentation import numbers
+from app.presentation.units import System
 from app.reference import Reference
 from app.schemas.criteria import Criterion
-from app.studies.routes.studies import list_studies
-from app.studies.schemas import Best, Index, Study, StudyRows
-from app.web.api import Api, Scalar
+from app.studies.routes.studies import Fits, Sort, list_rows, list_studies, show_study
+from app.studies.schemas import Best, Index, Study
 from app.web.rendering import show, units_of
+from app.web.services import PageServices, Refused
 
 SHOWN = 20  # rows in the table
 UNFINISHED = ("queued", "running")
 
 
-async def study_page(request: Request, api: Api, id: str, notice: str | None = None) -> Response:
+class Rows(BaseModel):
+    """The rows of a study that are wanted, as the interface takes it."""
+
+    where: Fits = None
+    sort: Sort = None
+    cursor: Cursor = None
+
+
+async def study_page(
+    request: Request, services: PageServices, id: str, notice: str | None = None
+) -> Response:
     """A study, and the first of its rows."""
     units = units_of(request)
-    study = await api.get(f"/studies/{id}", Study, units=units)
-    design = await api.run(api.designs.show, study.design)
+    study = await services.run(show_study, id, services.studies, units)
+    design = await services.run(services.designs.show, study.design)
     cursor, sort, where = (request.query_params.get(name, "") for name in ("cursor", "sort", "where"))
-    query: dict[str, Scalar] = {"limit": SHOWN, "units": units}
-    query |= {name: text for name, text in (("cursor", cursor), ("sort", sort), ("where", where)) if text}
-    rows = await api.get(f"/studies/{id}/rows", StudyRows, **query)
-    criteria = await _criteria(api, study, units)
+    asked = {"where": where, "sort": sort, "cursor": cursor}
+    wanted = services.read(Rows, {name: text for name, text in asked.items() if text})
+    rows = await services.run(
+        list_rows, id, services.studies, None, wanted.where, wanted.sort, SHOWN, wanted.cursor, units
+    )
+    criteria = await _criteria(services, study, units)
     return show(
         request,
         "study.html",
@@ -47,13 +61,19 @@ async def study_page(request: Request, api: Api, id: str, notice: str | None = N
     )
 
 
-async def _criteria(api: Api, study: Study, units: str) -> list[Criterion]:
+async def _criteria(services: PageServices, study: Study, units: System) -> list[Criterion]:
     """The criteria of a study as its revision states them; none where that is not kept."""
     if not study.criteria:
         return []
-    path = f"/designs/{study.design}/revisions/{study.revision}/worksheet"
-    sheet = await api.get_or_none(path, RevisionWorksheet, units=units)
-    return [one for one in (sheet.criteria if sheet else None) or () if one.name in study.criteria]
+    try:
+        sheet = await services.calculate(
+            None, services.reports.worksheet, study.design, study.revision, units
+        )
+    except Refused as refused:
+        if refused.status != 404:
+            raise
+        return []
+    return [one for one in sheet.criteria or () if one.name in study.criteria]
 
 
 def _limits(study: Study, criteria: list[Criterion]) -> dict[str, list[float]]:
@@ -82,9 +102,9 @@ def _limit_of(study: Study, one: Criterion) -> tuple[str, float] | None:
     return (name, float(limit)) if is_same_unit else None
 
 
-async def studies_of(api: Api, design: str) -> list[Study]:
+async def studies_of(services: PageServices, design: str) -> list[Study]:
     """The newest studies of a design."""
-    return (await api.run(list_studies, api.studies, design=design, limit=10)).items
+    return (await services.run(list_studies, services.studies, design=design, limit=10)).items
 
 
 @dataclass(frozen=True)

@@ -7,39 +7,39 @@ from collections.abc import Mapping
 from fastapi import Request, Response
 from pydantic import JsonValue
 
+from app.calculations.bodies import EvaluateIn
+from app.calculations.cost import estimated_seconds, writing_seconds
 from app.calculations.schemas.evaluations import CalculatedBy, Output, Worksheet
-from app.catalogue.routes.templates import list_template_versions
+from app.catalogue.routes.templates import list_template_versions, show_accuracy, show_template
 from app.catalogue.schemas.declarations import properties
-from app.catalogue.schemas.templates import Accuracy, Template
+from app.catalogue.schemas.templates import Template
 from app.presentation.criteria import line
 from app.presentation.input_text import value_of
+from app.presentation.units import System
 from app.reports.pictures import pictures
 from app.web import sheet
 from app.web.accuracy import table
-from app.web.api import Api, read
+from app.web.answers import TemplateQuestion, calculated
 from app.web.forms import OPTIONS, option_of
 from app.web.limits import is_limit, library, limit_fields, limits_of, with_rows
 from app.web.rendering import show, units_of
-from app.web.services import Refused
-from app.worksheets.schemas.worksheets import Sheet
+from app.web.services import PageServices, Refused
+from templates.core.language import template as language
 
 ABOUT = {"units"}  # of the address, beside the inputs
-AT_ONCE = {"Prefer": "wait=2"}  # the page shows how the rest goes on
+PATIENCE = 2.0  # time that the page waits for an answer [s]; it shows how the rest goes on
 
 
-async def template_page(request: Request, api: Api, id: str, version: int) -> Response:
+async def template_page(request: Request, services: PageServices, id: str, version: int) -> Response:
     """The page, with the answer to what the address asks; to the example, where it asks nothing."""
-    path = f"/templates/{id}/versions/{version}"
-    template = await api.get(path, Template)
+    template = await services.run(show_template, id, version, services.catalogues)
     typed = typed_in(request)
     inputs, chosen, limits = inputs_of(template, typed)
-    tables = await library(api)
-    measured = await api.get_or_none(f"{path}/accuracy", Accuracy)
-    written = (
-        await api.get_or_none(f"/worksheets/{id}/versions/{version}", Sheet) if template.worksheet else None
-    )
+    tables = await library(services)
+    measured = await services.find(show_accuracy, id, version, services.catalogues)
+    written = await services.find(services.worksheets.sheet, id, version) if template.worksheet else None
     body = {"inputs": inputs, **chosen, **({"limits": limits} if limits else {})}
-    answer, job, faults = await _tried(api, path, body, units_of(request))
+    answer, job, faults = await _tried(services, template, body, units_of(request))
     used = answer.inputs if answer else {}
     fields = with_rows(sheet.of_block(template.inputs, "", inputs, used, typed, faults), tables)
     given = limit_fields(template, "", limits, typed, faults, tables)
@@ -49,7 +49,7 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
         "template.html",
         status=422 if faults else 200,
         template=template,
-        versions=(await api.run(list_template_versions, id, api.catalogues)).items,
+        versions=(await services.run(list_template_versions, id, services.catalogues)).items,
         written=written,
         accuracy=measured,
         levels=table(measured) if measured else None,
@@ -61,7 +61,7 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
         answer=answer or (_empty(template) if job else None),
         job=job,
         pictures=pictures(template, answer) if answer else [],
-        path_of_api=f"/api/v1{path}",
+        path_of_api=f"/api/v1/templates/{id}/versions/{version}",
     )
 
 
@@ -85,20 +85,24 @@ def inputs_of(template: Template, typed: Mapping[str, str]) -> tuple[Values, Val
 
 
 async def _tried(
-    api: Api, path: str, body: Mapping[str, JsonValue], units: str
+    services: PageServices, template: Template, body: Mapping[str, JsonValue], units: System
 ) -> tuple[Worksheet | None, str, dict[str, str]]:
     """The answer, or the address of the job that calculates it, or what is wrong."""
     try:
-        response = await api.send(
-            "POST", f"{path}/worksheet", json=body, params={"units": units}, headers=AT_ONCE
-        )
+        given = services.read(EvaluateIn, body)
+        asked = TemplateQuestion(template.id, template.version, "worksheet", given, units)
+        reply = await calculated(services, asked, _seconds, Worksheet, PATIENCE)
     except Refused as refused:
         if refused.status not in (413, 422, 429):
             raise
         return None, "", refused.faults or {"inputs": refused.problem.detail}
-    if response.status_code == 202:
-        return None, response.headers["Location"], {}
-    return read(response, Worksheet), "", {}
+    return reply.answer, f"/api/v1/jobs/{reply.job}" if reply.job else "", {}
+
+
+def _seconds(cls: type[language.Template], body: EvaluateIn) -> float:
+    """The estimated time of a worksheet [s]."""
+    seconds = estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs)
+    return seconds + writing_seconds(cls, body.outputs)
 
 
 def _empty(template: Template) -> Worksheet:

@@ -10,16 +10,20 @@ import numpy as np
 from fastapi import Request, Response
 from pydantic import JsonValue
 
+from app.calculations.bodies import SolveIn
+from app.calculations.cost import solving_seconds
 from app.calculations.schemas.evaluations import Solution
+from app.catalogue.routes.templates import show_template
 from app.catalogue.schemas.declarations import Declared, properties
 from app.catalogue.schemas.templates import Template
 from app.presentation.input_text import text_of, value_of
-from app.schemas.answers import Accepted
-from app.web.api import Api, read
+from app.web.answers import Answered, TemplateQuestion, calculated, stored
 from app.web.places import PlaceOption, suggested
 from app.web.rendering import go, show, units_of
-from app.web.solution import Drawing, Reply, ShownRoot, asked
+from app.web.services import PageServices
+from app.web.solution import PATIENCE, Drawing, Reply, ShownRoot, replied
 from app.web.template_page import inputs_of, typed_in
+from templates.core.language import template as language
 from templates.core.units.quantity import read as read_quantity
 from templates.core.units.units import unit
 
@@ -86,20 +90,20 @@ class Question:
         return urlencode({**inputs, self.typed["unknown"]: value})
 
 
-async def template_solve_page(request: Request, api: Api, id: str, version: int) -> Response:
+async def template_solve_page(request: Request, services: PageServices, id: str, version: int) -> Response:
     """The form, and the answer once the form is filled in."""
-    path = f"/templates/{id}/versions/{version}"
-    template = await api.get(path, Template)
+    template = await services.run(show_template, id, version, services.catalogues)
     question, job = Question.of(request), request.query_params.get(JOB, "")
     places = list(_varied(template, question.present(template)))
     question = question.with_bounds(places)
-    reply = Reply(None)
+    reply = Reply[Solution]()
     if question.is_whole:
-        reply = await asked(api, f"{path}/solve", question.body(template), None, job)
-    if reply.response and reply.goes_on and not job:
-        accepted = read(reply.response, Accepted).job.rpartition("/")[2]
-        return go(f"?{question.address(**{JOB: accepted})}")
-    solution = read(reply.answer, Solution).in_units(units_of(request)) if reply.answer else None
+        reply = await replied(
+            stored(services, job, Solution) if job else _solved(services, template, question)
+        )
+    if reply.job and not job:
+        return go(f"?{question.address(**{JOB: reply.job})}")
+    solution = reply.answer.in_units(units_of(request)) if reply.answer else None
     drawing = _drawing(question, solution) if solution else None
     return show(
         request,
@@ -113,8 +117,20 @@ async def template_solve_page(request: Request, api: Api, id: str, version: int)
         drawing=drawing,
         roots=[ShownRoot.of(root) for root in drawing.roots] if drawing else [],
         refusal=reply.refusal,
-        job=job if reply.goes_on else "",
+        job=reply.job,
     )
+
+
+async def _solved(services: PageServices, template: Template, question: Question) -> Answered[Solution]:
+    """The solution, or the job that calculates it where the page does not wait so long."""
+    body = services.read(SolveIn, question.body(template))
+    asked = TemplateQuestion(template.id, template.version, "solve", body)
+    return await calculated(services, asked, _seconds, Solution, PATIENCE)
+
+
+def _seconds(cls: type[language.Template], body: SolveIn) -> float:
+    """The estimated time of a solution [s]."""
+    return solving_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs, body.target)
 
 
 def _varied(template: Template, present: Mapping[str, str]) -> Iterator[PlaceOption]:

@@ -7,16 +7,18 @@ from dataclasses import dataclass
 
 from fastapi import Request, Response
 
+from app.designs.asking import Asked
 from app.designs.schemas.designs import Design
 from app.presentation import bars
 from app.schemas.answers import Quantity
+from app.tolerances.bodies import ToleranceIn
 from app.tolerances.schemas import OutputScatter, ToleranceAnalysis, Yield
-from app.web.api import Api, read
+from app.web.answers import stored
 from app.web.rendering import show, units_of
-from app.web.services import Refused
+from app.web.services import PageServices, Refused
 from templates.core.units.tolerance import is_toleranced
 
-PATIENT = {"Prefer": "wait=60"}
+PATIENCE = 60.0  # time that the page waits for the analysis [s]
 LOW, HIGH = "0.00135", "0.99865"
 
 
@@ -51,12 +53,14 @@ def toleranced(design: Design) -> bool:
     return any(is_toleranced(raw) for group in groups for raw in group.values())
 
 
-async def tolerances_page(request: Request, api: Api, id: str, job: str | None, *, is_part: bool) -> Response:
+async def tolerances_page(
+    request: Request, services: PageServices, id: str, job: str | None, *, is_part: bool
+) -> Response:
     """The analysis of the newest revision, or that of a finished job; alone, or as a part of the page."""
-    design = await api.run(api.designs.show, id)
+    design = await services.run(services.designs.show, id)
     template = "tolerances_part.html" if is_part else "tolerances_page.html"
     try:
-        analysis, later = await _analysis(request, api, id, job)
+        analysis, later = await _analysis(request, services, id, job)
     except Refused as refused:
         wrong = [fault.detail for fault in refused.problem.errors] or [refused.problem.detail]
         return show(request, template, refused.status, design=design, analysis=None, wrong=wrong, later=None)
@@ -65,16 +69,15 @@ async def tolerances_page(request: Request, api: Api, id: str, job: str | None, 
 
 
 async def _analysis(
-    request: Request, api: Api, id: str, job: str | None
+    request: Request, services: PageServices, id: str, job: str | None
 ) -> tuple[ToleranceAnalysis | None, str | None]:
     """The analysis, or the job that still makes it."""
     if job is not None:
-        return await api.get(f"/evaluations/{job}", ToleranceAnalysis), None
-    query = {"units": units_of(request)}
-    response = await api.send("POST", f"/designs/{id}/tolerance", json={}, params=query, headers=PATIENT)
-    if response.status_code == 202:
-        return None, response.headers["Location"].rpartition("/")[2]
-    return read(response, ToleranceAnalysis), None
+        reply = await stored(services, job, ToleranceAnalysis)
+        return reply.answer, reply.job or None
+    body = ToleranceIn().model_dump_json(exclude_unset=True)
+    asked = Asked(id, body, units=units_of(request))
+    return await services.calculate(PATIENCE, services.tolerances.answer, asked, services.client)
 
 
 def _line(name: str, output: OutputScatter) -> Line:

@@ -9,18 +9,18 @@ from fastapi import APIRouter, Depends, Request, Response
 
 from app.calculations.schemas.evaluations import Output
 from app.catalogue.routes.templates import show_template
+from app.designs.previewing import Change
 from app.designs.routes.revisions import show_revision
 from app.designs.schemas.designs import Design, Preview
 from app.presentation import numbers
 from app.presentation.criteria import line
 from app.schemas.answers import Quantity
 from app.solids.schemas.analyses import AnalysisOutput
-from app.web.actions import AT_ONCE, forms_only, tag_of
-from app.web.api import Api, TheApi
+from app.web.actions import forms_only
 from app.web.forms import Patch, fields
 from app.web.rendering import go, show, units_of
 from app.web.routes import Id, Text
-from app.web.services import Refused
+from app.web.services import PageServices, Refused, ThePageServices
 from templates.core.units.units import compatible, unit
 
 router = APIRouter(include_in_schema=False)
@@ -42,27 +42,25 @@ class Moved(NamedTuple):
 
 @router.get("/designs/{id}/upgrade")
 async def upgrade_page(
-    id: Id, request: Request, api: TheApi, template: Text = "", version: Text = ""
+    id: Id, request: Request, services: ThePageServices, template: Text = "", version: Text = ""
 ) -> Response:
     """Show the effects of the upgrade; nothing is saved."""
-    return await _page(request, api, id, template, version)
+    return await _page(request, services, id, template, version)
 
 
 @forms.post("/designs/{id}/upgrade")
-async def upgrade(id: Id, request: Request, api: TheApi) -> Response:
+async def upgrade(id: Id, request: Request, services: ThePageServices) -> Response:
     """A new revision with the version; where it is refused, the preview with the reason."""
     typed = await fields(request)
     template, version = typed.get("template", ""), typed.get("version", "")
-    design = await api.run(api.designs.show, id)
+    design = await services.run(services.designs.show, id)
     patch = _patch(design, template, _number(template, version))
-    headers = {**AT_ONCE, "If-Match": tag_of(typed.get("revision", ""))}
-    noted = {**patch, "note": f"{template} version {version}"}
     try:
-        await api.send("PATCH", f"/designs/{id}", json=noted, headers=headers)
+        await services.change(id, typed.get("revision", ""), patch, f"{template} version {version}")
     except Refused as refused:
         if refused.status not in (ILL_NAMED, STALE):
             raise
-        return await _page(request, api, id, template, version, refused)
+        return await _page(request, services, id, template, version, refused)
     return go(f"/designs/{id}")
 
 
@@ -88,25 +86,30 @@ def _patch(design: Design, template: str, version: int) -> Patch:
 
 
 async def _page(
-    request: Request, api: Api, id: str, template: str, version: str, refused: Refused | None = None
+    request: Request,
+    services: PageServices,
+    id: str,
+    template: str,
+    version: str,
+    refused: Refused | None = None,
 ) -> Response:
     number = _number(template, version)
-    design = await api.run(api.designs.show, id)
-    newer = await api.find(show_template, template, number, api.catalogues)  # not of a draft
+    design = await services.run(services.designs.show, id)
+    newer = await services.find(show_template, template, number, services.catalogues)  # not of a draft
     used = {name: step.version for name, step in design.steps.items() if step.template == template}
     if not used:
         raise Refused.because(MISSING, f"no step of the design uses {template}")
     preview = None
     try:
-        query = {"units": units_of(request), "within": PATIENCE}
-        preview = await api.post(f"/designs/{id}/preview", Preview, _patch(design, template, number), **query)
+        change = Change(id, _patch(design, template, number), worksheet=False, system=units_of(request))
+        preview = await services.calculate(PATIENCE, services.previews.quick, change)
     except Refused as wrong:
         if wrong.status != ILL_NAMED:
             raise
         if newer is None:  # no version at all, or a draft with faults: its own answer says which
-            await api.run(show_template, template, number, api.catalogues)
+            await services.run(show_template, template, number, services.catalogues)
         refused = refused or wrong
-    revision = await api.run(show_revision, id, design.revision, api.database)
+    revision = await services.run(show_revision, id, design.revision, services.database)
     before = {criterion.name: criterion.verdict for criterion in revision.criteria or ()}
     return show(
         request,

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from app.catalogue.routes.templates import list_template_versions
 from app.catalogue.schemas.templates import Template
-from app.web.api import Api
+from app.web.services import PageServices
 
 
 class Upgrade(NamedTuple):
@@ -20,16 +20,16 @@ class Upgrade(NamedTuple):
     withdrawn: str
 
 
-async def upgrades_of(api: Api, templates: Mapping[str, Template]) -> list[Upgrade]:
+async def upgrades_of(services: PageServices, templates: Mapping[str, Template]) -> list[Upgrade]:
     """The steps of a design, by name with their templates, that do not use the latest version."""
     old = {name: template for name, template in templates.items() if not template.latest}
-    newest = {id: await _newest(api, id) for id in {template.id for template in old.values()}}
+    newest = {id: await _newest(services, id) for id in {template.id for template in old.values()}}
     return [
         Upgrade(name, template.id, template.version, newest[template.id], template.withdrawn or "")
         for name, template in old.items()
     ]
 
 
-async def _newest(api: Api, id: str) -> int:
-    versions = (await api.run(list_template_versions, id, api.catalogues)).items
+async def _newest(services: PageServices, id: str) -> int:
+    versions = (await services.run(list_template_versions, id, services.catalogues)).items
     return next(item.version for item in versions if item.latest)

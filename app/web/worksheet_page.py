@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from fastapi import Request, Response
 
 from app.solids.routes.models import list_models
-from app.web.api import Api, read
 from app.web.rendering import show
+from app.web.services import PageServices
 from app.web.sheet_preview import offered, tried_in
 from app.web.stages import begins_next, newest_released, stages
-from app.worksheets.schemas.worksheets import (
-    Sheet,
-    SheetCheck,
-    SheetFault,
-    SheetLine,
-    SheetList,
-    SheetSummary,
-)
+from app.worksheets import check
+from app.worksheets.bodies import SheetCheckIn
+from app.worksheets.routes.worksheets import list_worksheets
+from app.worksheets.schemas.worksheets import SheetCheck, SheetFault, SheetLine, SheetSummary
 from templates.examples.listing import examples
 
 EQUALS = "<mo>&#x0003D;</mo>"  # in MathML
@@ -37,27 +32,27 @@ class Unsaved:
     is_conflict: bool = False
 
 
-async def list_page(request: Request, api: Api, wanted: str) -> Response:
+async def list_page(request: Request, services: PageServices, wanted: str) -> Response:
     """All worksheets, or those whose id or title holds a text."""
     sought = wanted.casefold()
-    sheets = [item for item in await _all(api) if sought in f"{item.id} {item.title}".casefold()]
+    sheets = [item for item in await _all(services) if sought in f"{item.id} {item.title}".casefold()]
     return show(request, "worksheets.html", sheets=sheets, wanted=wanted)
 
 
-async def _all(api: Api) -> list[SheetSummary]:
+async def _all(services: PageServices) -> list[SheetSummary]:
     """Every worksheet, as far as the pages show them."""
-    page = await api.get("/worksheets", SheetList, limit=PAGE)
+    page = await services.run(list_worksheets, services.worksheets, PAGE)
     sheets = page.items
     for _ in range(MOST_PAGES - 1):
         if page.next is None:
             break
-        page = await api.get("/worksheets", SheetList, limit=PAGE, cursor=page.next)
+        page = await services.run(list_worksheets, services.worksheets, PAGE, page.next)
         sheets = [*sheets, *page.items]
     return sheets
 
 
 async def start_page(
-    request: Request, api: Api, typed: Mapping[str, str], notice: str = "", status: int = 200
+    request: Request, services: PageServices, typed: Mapping[str, str], notice: str = "", status: int = 200
 ) -> Response:
     """The form of a new worksheet: empty, from an example, or from a copy."""
     return show(
@@ -65,7 +60,7 @@ async def start_page(
         "new_worksheet.html",
         status,
         examples=examples(),
-        sheets=await _all(api),
+        sheets=await _all(services),
         typed=typed,
         notice=notice,
     )
@@ -73,7 +68,7 @@ async def start_page(
 
 async def editor_page(
     request: Request,
-    api: Api,
+    services: PageServices,
     id: str,
     unsaved: Unsaved | None = None,
     notice: str = "",
@@ -84,19 +79,18 @@ async def editor_page(
 
     A version that is not released is previewed in `design`, if one is named.
     """
-    answer, models = await asyncio.gather(
-        api.send("GET", f"/worksheets/{id}"), api.run(list_models, api.catalogues, limit=500)
-    )
-    sheet = read(answer, Sheet)
+    row = await services.run(services.worksheets.newest, id)
+    sheet = await services.run(services.worksheets.show, row)
+    models = await services.run(list_models, services.catalogues, limit=500)
     text = unsaved.text if unsaved else sheet.text
-    checked = await api.post("/worksheets/check", SheetCheck, {"text": text, "id": id})
+    checked = await _checked(services, text, id)
     is_open = not begins_next(sheet) and not sheet.faults
     return show(
         request,
         "worksheet.html",
         unsaved.status if unsaved else status,
         sheet=sheet,
-        tag=answer.headers.get("ETag", ""),
+        tag=f'"{row.edit}"',
         text=text,
         theirs=sheet.text if unsaved and unsaved.is_conflict else None,
         notice=unsaved.notice if unsaved else notice,
@@ -106,12 +100,21 @@ async def editor_page(
         listing=listing(text, checked.faults),
         stages=stages(sheet),
         begins_next=begins_next(sheet),
-        offered=await offered(api, sheet) if is_open else [],
-        tried=await tried_in(api, design, sheet, checked) if is_open and design else None,
+        offered=await offered(services, sheet) if is_open else [],
+        tried=await tried_in(services, design, sheet, checked) if is_open and design else None,
         chosen=design,
         usable=newest_released(sheet),
         models=[item for item in models.items if item.latest],
     )
+
+
+async def _checked(services: PageServices, text: str, id: str) -> SheetCheck:
+    """Every fault of a text under its line, or every line on paper with the numbers of the example."""
+    asked = services.read(SheetCheckIn, {"text": text, "id": id})
+    calculated = services.threads.run(
+        services.worksheets.calculated, services.client, check.checked, asked.text, asked.id
+    )
+    return SheetCheck.model_validate_json(await services.ask(calculated))
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from app.storage.idempotency import Once
 from app.storage.identity import now
 from app.storage.tables import WorksheetVersionRow as Row
 from app.workers.errors import DeadlineExceeded
-from app.worksheets import repository
+from app.worksheets import repository, views
 from app.worksheets.bodies import ReviewIn, SheetIn, SheetPatch, WithdrawIn
 from app.worksheets.errors import IdTaken, OtherText, OutOfOrder, OwnReview, StaleWorksheet, TestsFailed
 from app.worksheets.examination import Examined, Tried, examined, tried
@@ -29,6 +29,7 @@ from app.worksheets.importing.record import ImportRecord, require_resolved
 from app.worksheets.names import is_same_person, require_free, signed
 from app.worksheets.publication import Published
 from app.worksheets.repository import RELEASED
+from app.worksheets.schemas.worksheets import Sheet
 
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
@@ -223,6 +224,22 @@ class Worksheets:
             row = repository.newest(session, id)
         _require_match(expected, row)
         return row
+
+    def show(self, row: Row) -> Sheet:
+        """Return a version of a worksheet as the interface answers it."""
+        with self.database.read() as session:
+            versions = repository.versions(session, row.id)
+        return views.sheet(row, versions, self.published.broken)
+
+    def sheet(self, id: str, number: int | None = None) -> Sheet:
+        """Return a version of a worksheet, by default the newest, as the interface answers it.
+
+        Raises
+        ------
+        NotFound
+            If there is none.
+        """
+        return self.show(self.newest(id) if number is None else self.version(id, number))
 
     def version(self, id: str, number: int) -> Row:
         """Return one version of a worksheet.

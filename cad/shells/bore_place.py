@@ -6,7 +6,7 @@ small end.
 
 from __future__ import annotations
 
-from cad.brought import BroughtModel
+from cad.imported_models import ImportedModel
 from cad.model import CadModel
 from cad.shaft import CAST_IRON_MATERIAL, STEEL_MATERIAL, BorePlace
 from cad.shells.housing import Housing
@@ -18,7 +18,7 @@ def has_split_bore(cls: type[CadModel]) -> bool:
 
     An assembly on one of them is not: parts that stand beside it are none of its bore.
     """
-    if issubclass(cls, BroughtModel):
+    if issubclass(cls, ImportedModel):
         return False
     declared = getattr(getattr(cls, "drawn", None), "__annotations__", {})
     return declared.get("return") in (Housing, Rod, Housing.__name__, Rod.__name__)

@@ -9,13 +9,14 @@ from cadquery import Location, Solid, Vector, Workplane
 
 from cad import overlaps
 from cad.assemblies import Component, described
-from cad.brought import Drawn, class_of, description_of
 from cad.catalogue import models
 from cad.checks import MOST_NAMED
 from cad.errors import GeometryError
 from cad.export import DERIVED, derive
 from cad.header import Header
+from cad.imported_models import Drawn
 from cad.model import Part
+from cad.model_classes import class_of, description_of
 from cad.overlaps import clearances
 from cad.regenerate import as_text, regenerate_shape
 from cad.step import Body, read_step, write_step
@@ -52,8 +53,8 @@ def bolted():
 
 def test_a_description_is_read_as_it_was_written():
     cls, _ = assembly(may_overlap=("cap", "block"), density=1200.0, material="PTFE")
-    assert description_of(cls.brought.text) == cls.brought
-    assert class_of(cls.brought.text, "with_bolt", 1) is cls
+    assert description_of(cls.imported.text) == cls.imported
+    assert class_of(cls.imported.text, "with_bolt", 1) is cls
 
 
 def test_equal_parameters_give_equal_bytes_and_the_clearance_is_in_closed_form(bolted):

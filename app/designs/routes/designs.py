@@ -112,9 +112,7 @@ async def create_design(
     idempotency_key: IdempotencyKey = None,
 ) -> Response:
     """A new design; its models are built. 201 when they are ready, 202 while they are being built."""
-    raw = body.model_dump()  # not in JSON's mode, which hides a NaN as null
-    note = raw.pop("note")
-    raw.pop("model")
+    raw, note = document_of(body)
     create = services_of(request).designs.create
     return await _saved(request, prefer, idempotency_key, partial(create, raw, note))
 
@@ -164,7 +162,7 @@ async def change_design(
 
     A new name alone keeps all results: nothing is calculated.
     """
-    patch, note = _noted(body)
+    patch, note = noted(body)
     change = services_of(request).labelling.change
     return await _saved(request, prefer, idempotency_key, partial(change, id, patch, note, if_match))
 
@@ -206,7 +204,7 @@ async def preview_design(
     prefer: Prefer = None,
 ) -> Response:
     """Preview the effect of a change on outputs and model parameters; nothing is saved."""
-    change = Change(id, _noted(body)[0], worksheet, units)
+    change = Change(id, noted(body)[0], worksheet, units)
     if within is not None:
         return written(await threads.run_within(within, request, previews.quick, change))
     answer, job = await threads.run_within(seconds_waited(prefer), request, previews.answer, change, client)
@@ -282,7 +280,15 @@ async def explain_name(
     return await threads.run_for(request, designs.explanation, id, name, units)
 
 
-def _noted(body: JsonObject) -> tuple[JsonObject, str | None]:
+def document_of(body: DesignIn) -> tuple[JsonObject, str | None]:
+    """Return the document of a new design, and its note."""
+    raw = body.model_dump()  # not in JSON's mode, which hides a NaN as null
+    note = raw.pop("note")
+    raw.pop("model")
+    return raw, note
+
+
+def noted(body: JsonObject) -> tuple[JsonObject, str | None]:
     """A patch and its note."""
     patch = {key: value for key, value in body.items() if key != "note"}
     note = body.get("note")

@@ -113,8 +113,8 @@ def variants_of(
     number: int | None,
     database: Database,
     catalogues: Catalogues,
-    outputs: Sequence[str],
-    units: System,
+    outputs: Sequence[str] = (),
+    units: System = "si",
 ) -> VariantsOut:
     """Return the variants of a revision, the newest if none is named, with some outputs of steps."""
     with database.read() as session:

@@ -7,8 +7,8 @@ from typing import Literal, Self
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from app.schemas.bounds import Bounded
-from cad.brought import Description, Parameter
 from cad.errors import UnreadableModel
+from cad.imported_models import Description, Parameter
 
 LONGEST = 2**18
 """Largest size of a manifest [bytes]."""

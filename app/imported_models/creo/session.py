@@ -24,8 +24,8 @@ import httpx
 
 from app.imported_models.creo.manifest import MM, Manifest
 from app.workers.errors import DeadlineExceeded, JobCancelled
-from cad.brought import Description, Drawn
 from cad.errors import GeometryError, ProgramMissing
+from cad.imported_models import Description, Drawn
 
 Fields = Mapping[str, object]
 """An object of JSON, whose values are checked where they are used."""

@@ -31,9 +31,9 @@ from app.solids.schemas.models import Build, Verification
 from app.solids.schemas.models import CadModel as ModelAnswer
 from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, NotFound
-from cad.brought import brought
 from cad.deflection import plain_kind
 from cad.export import DRAWINGS, MEDIA_TYPES
+from cad.imported_models import imported_description
 from cad.inspect import MEASURES
 from cad.regenerate import build_key
 from templates.core.errors import Fault, InvalidInputs
@@ -95,7 +95,7 @@ def show_model(id: Id, number: Number, catalogues: TheCatalogues, database: TheD
             "analyses": what_can_be_asked(cls),
             "film_bore": cls.film_bore,
             "picture": f"/api/v1/models/{id}/versions/{number}/picture",
-            **({"origin": origin(database, id, number)} if brought(cls) else {}),
+            **({"origin": origin(database, id, number)} if imported_description(cls) else {}),
         }
     )
 

@@ -13,7 +13,7 @@ class BroughtModelRow(Base):
     id: Mapped[str] = mapped_column(primary_key=True)
     number: Mapped[int] = mapped_column(primary_key=True)
     program: Mapped[str]
-    description: Mapped[str]  # the text of `cad.brought.Description`
+    description: Mapped[str]  # the text of `cad.imported_models.Description`
     file_sha256: Mapped[str]  # the artifact that the program opens
     sent_sha256: Mapped[str]  # the artifact as it was sent
     author: Mapped[str | None]

@@ -87,13 +87,19 @@ async def answer_begun(
     request: Request, client: str, studies: Studies, body: StudyIn, once: Once
 ) -> Response:
     """The study that a request begins, or has begun before."""
+    id = await begun(request, client, studies, body, once)
+    shown = await run_in_threadpool(_shown, studies, id)
+    return written(shown, 202, {"Location": f"/api/v1/studies/{id}"})
+
+
+async def begun(request: Request, client: str, studies: Studies, body: StudyIn, once: Once) -> str:
+    """Return the id of the study that a request begins, or has begun before."""
     id = await run_in_threadpool(studies.begun_before, once)
     if id is None:
         draft = await run_in_threadpool(studies.draft, body)
         plan, given = await _planned(request, client, draft)
         id = await run_in_threadpool(studies.begin, draft, plan, given, once)
-    shown = await run_in_threadpool(_shown, studies, id)
-    return written(shown, 202, {"Location": f"/api/v1/studies/{id}"})
+    return id
 
 
 @router.post("/estimate", responses=refusals(404, 429))

@@ -10,7 +10,7 @@ export class Refused extends Error {
   }
 }
 
-// What is wrong, and the other inputs that it is about, as app/web/api.py writes it.
+// What is wrong, and the other inputs that it is about, as app/web/services.py writes it.
 const withRelated = (detail, also = []) => (also.length ? `${detail}. See also ${also.join(", ")}` : detail);
 
 export async function call(method, path, body, { headers = {}, signal } = {}) {

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import PurePath
+
 from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
@@ -61,7 +63,13 @@ class Imports:
                 "too_large" if content else "no_sheet", f"{what}: send one .mcdx or .xmcd file"
             )
         require_free(id, self.catalogues)
-        payload = {"file": self.store.put(content), "id": id, "name": file, "client": once.client}
+        name = PurePath(file.replace("\\", "/")).name
+        payload = {
+            "file": self.store.put(content),
+            "id": id,
+            "name": name,
+            "client": once.client,
+        }
 
         def unit(session: Session) -> str:
             if before := once.begin(session):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import PurePath
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query, Request, Response
@@ -49,8 +48,7 @@ async def import_worksheet(
     `GET /worksheets/{id}/import`.
     """
     body = await request.body()
-    name = PurePath(file.replace("\\", "/")).name
-    return accepted(await threads.run(imports.begin, body, id, name, once))
+    return accepted(await threads.run(imports.begin, body, id, file, once))
 
 
 @router.get("/{id}/import", responses=refusals(404))

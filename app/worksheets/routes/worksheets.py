@@ -150,8 +150,6 @@ def withdraw_worksheet(
 
 
 def _shown(worksheets: Worksheets, row: WorksheetVersionRow, status: int = 200) -> Response:
-    with worksheets.database.read() as session:
-        versions = repository.versions(session, row.id)
-    answer = views.sheet(row, versions, worksheets.published.broken)
+    answer = worksheets.show(row)
     place = {"Location": f"/api/v1/worksheets/{row.id}"} if status == 201 else {}
     return written(answer, status, {"ETag": f'"{row.edit}"', **place})

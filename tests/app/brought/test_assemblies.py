@@ -283,7 +283,7 @@ def test_its_package_is_kept_and_a_lost_one_is_named(http, served, assembly):
     services = served.app.state.services
     cls = services.catalogues.models.get("bolted_bearing", 1)
     with services.database.read() as session:
-        assert cls.brought.file in referenced_files(session)
+        assert cls.imported.file in referenced_files(session)
     assert any(table == "brought_model" for table, _, _ in SENT)
 
     class Lost:
@@ -291,7 +291,7 @@ def test_its_package_is_kept_and_a_lost_one_is_named(http, served, assembly):
             raise ArtifactMissing(sha)
 
     with pytest.raises(GeometryError, match="restore file") as lost:
-        AssemblyFiles(Lost()).draw(cls.brought, {}, None)
+        AssemblyFiles(Lost()).draw(cls.imported, {}, None)
     assert lost.value.code == "component_lost"
 
 

@@ -140,7 +140,7 @@ def test_a_macro_beside_the_document_is_left_out(http, served):
         package.writestr("more.py", "raise SystemExit")
     model = imported(http, "beside", content.getvalue())
     services = served.app.state.services
-    described = services.catalogues.models.get("beside", 1).brought
+    described = services.catalogues.models.get("beside", 1).imported
     with zipfile.ZipFile(io.BytesIO(services.store.read(described.file))) as package:
         assert not [name for name in package.namelist() if name.endswith((".FCMacro", ".py"))]
     assert built(http, model, bore="51 mm").status_code == 200

@@ -10,7 +10,7 @@ from app.imported_models.descriptions import described_freecad
 from app.imported_models.freecad_process import Answered
 from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded
-from cad.brought import Drawn
+from cad.imported_models import Drawn
 
 LENGTHS = [[f"Sheet{n}", "cell", f"length{n}", 10.0 + n, "mm", "Sheet"] for n in range(30)]
 

@@ -1,4 +1,4 @@
-"""Models that a team brings: drawn by another program, or the fixed shape of a STEP file.
+"""Models that a team imports: drawn by another program, or the fixed shape of a STEP file.
 
 Such a model is a description: which program draws it from which file, and its parameters. The description
 makes a class that stands beside the built-in models. What the program draws is handed to a model by `take`;
@@ -13,13 +13,11 @@ This module imports the kernel only where it draws: a calculation reads descript
 
 from __future__ import annotations
 
-import copyreg
 import hashlib
 import io
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
-from functools import lru_cache
 from itertools import combinations
 from math import isclose
 from typing import Any, ClassVar, Literal
@@ -27,9 +25,6 @@ from typing import Any, ClassVar, Literal
 from cad.errors import GeometryError
 from cad.model import STEEL, Box, CadModel, Colour, Dimension, Part
 from cad.part_names import PartNames
-from templates.core.catalogue.loading import BROUGHT
-from templates.core.language.declare import given
-from templates.core.paper.mathml import named_symbol
 
 Program = Literal["freecad", "creo", "step", "assembly"]
 Role = Literal["", "diameter", "radius", "distance"]
@@ -53,7 +48,7 @@ _DRAWN, _PARTS = "as drawn", "parts as drawn"  # no names that a declaration can
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a brought model; numbers are in its unit."""
+    """A parameter of an imported model; numbers are in its unit."""
 
     name: str
     words: str
@@ -67,7 +62,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Description:
-    """The whole of a brought model, from which its class is made."""
+    """The whole of an imported model, from which its class is made."""
 
     program: Program
     file: str  # SHA-256 of the file that the program opens, or of the manifest
@@ -87,7 +82,7 @@ class Description:
 
     def bases(self) -> tuple[type[CadModel], ...]:
         """The classes of which its own is made."""
-        return (BroughtModel,)
+        return (ImportedModel,)
 
     def example(self) -> Mapping[str, Any]:
         """A valid set of parameters: as in the file."""
@@ -112,17 +107,6 @@ class Description:
         )
 
 
-def description_of(text: str) -> Description:
-    """The description that `Description.text` wrote."""
-    read = json.loads(text)
-    read["parameters"] = tuple(Parameter(**one) for one in read["parameters"])
-    if read["program"] == "assembly":
-        from cad.assemblies import assembly_of  # which stands on this module
-
-        return assembly_of(read)
-    return Description(**read)
-
-
 @dataclass(frozen=True)
 class DrawnPart:
     """One solid as a program drew it: in the kernel's own format, with the volume that the program states."""
@@ -142,10 +126,10 @@ class Drawn:
     fixed: Mapping[str, bytes] = field(default_factory=dict, repr=False)  # of an assembly: STEP files by hash
 
 
-class BroughtModel(CadModel):
-    """Base of the models that a team brings."""
+class ImportedModel(CadModel):
+    """Base of the models that a team imports."""
 
-    brought: ClassVar[Description]
+    imported: ClassVar[Description]
 
     def take(self, drawn: Drawn) -> None:
         """Be what a program drew for these parameters."""
@@ -176,7 +160,7 @@ class BroughtModel(CadModel):
         """The parameters that show, each as the measure of its kind that comes closest to it."""
         sizes = sizes_of(seen.values())
         read: dict[str, Dimension] = {}
-        for one in self.brought.parameters:
+        for one in self.imported.parameters:
             if not one.role:
                 continue
             wanted = float(self.inputs[one.name].meaning.scale.from_si(getattr(self, attribute_of(one.name))))
@@ -188,49 +172,9 @@ class BroughtModel(CadModel):
         return read
 
 
-class BroughtClass(type):
-    """The type of classes made from descriptions, by which pickle recognises them."""
-
-
-@lru_cache(maxsize=256)
-def class_of(text: str, id: str, version: int) -> type[BroughtModel]:
-    """The class of a description in this process, one for each text, id and version."""
-    description = description_of(text)
-    declared = {
-        attribute_of(one.name): given(
-            one.unit,
-            one.words,
-            name=one.name,
-            symbol=named_symbol(one.name),
-            default={"value": one.value, "unit": one.unit},
-            ge=one.low,
-            le=one.high,
-        )
-        for one in description.parameters
-    }
-    space = {
-        **declared,
-        "__module__": f"{BROUGHT}.{id}_v{version}",
-        "__doc__": f"{description.title}.",
-        "brought": description,
-        "sheet": description,
-        "example": description.example(),
-    }
-    cls = BroughtClass("".join(word.capitalize() for word in id.split("_")), description.bases(), space)
-    assert issubclass(cls, BroughtModel)
-    return cls
-
-
-def _reduced(cls: Any) -> tuple[Callable[..., Any], tuple[str, str, int]]:
-    return class_of, (cls.brought.text, cls.id, cls.version)
-
-
-copyreg.pickle(BroughtClass, _reduced)
-
-
-def brought(cls: type[CadModel]) -> Description | None:
-    """The description of a model that a team brought; None of others."""
-    return cls.brought if issubclass(cls, BroughtModel) else None
+def imported_description(cls: type[CadModel]) -> Description | None:
+    """Return the description of a model that a team imported; None of others."""
+    return cls.imported if issubclass(cls, ImportedModel) else None
 
 
 def sizes_of(seen: Iterable[Any]) -> dict[str, list[float]]:

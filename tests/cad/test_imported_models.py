@@ -1,4 +1,4 @@
-"""Descriptions of brought models as classes, and how a parameter shows on a solid."""
+"""Descriptions of imported models as classes, and how a parameter shows on a solid."""
 
 import io
 import pickle
@@ -7,20 +7,11 @@ from dataclasses import replace
 import pytest
 from cadquery import Solid, Workplane, exporters
 
-from cad.brought import (
-    Description,
-    Drawn,
-    DrawnPart,
-    Parameter,
-    class_of,
-    description_of,
-    parts_of,
-    role_of,
-    trial_sizes,
-)
 from cad.errors import GeometryError
 from cad.header import Header
+from cad.imported_models import Description, Drawn, DrawnPart, Parameter, parts_of, role_of, trial_sizes
 from cad.model import Part
+from cad.model_classes import class_of, description_of
 from cad.regenerate import as_text, build_key, regenerate_shape
 from cad.step import read_step, write_step
 from templates.core.catalogue.digests import digest

@@ -1,56 +1,13 @@
-"""Models of equal answers are shared, and what follows from them is made once; no page shows old values."""
+"""No page of a design shows old values, whatever is kept between two looks."""
 
 import re
 
 import pytest
-from pydantic import BaseModel
 from serving import API, created, patched
 
 from app.calculations.bodies import OIL_FILM
 from app.designs import drives, stored_results
-from app.web import same_answers, sections
-from app.web.same_answers import KEPT, same
-
-
-class Length(BaseModel):
-    value: float = 0.0
-    note: str = ""
-
-
-class Other(BaseModel):
-    value: float = 0.0
-
-
-class TestModels:
-    def test_equal_bytes_are_one_model(self):
-        first = same(b'{"value": 1.5}', Length)
-        assert same(b'{"value": 1.5}', Length) is first
-        assert first.model == Length(value=1.5)
-
-    def test_other_bytes_and_other_kinds_are_not(self):
-        first = same(b'{"value": 1.25}', Length)
-        assert same(b'{"value": 1.75}', Length).model.value == 1.75
-        assert isinstance(same(b'{"value": 1.25}', Other).model, Other)
-        assert isinstance(first.model, Length)
-
-    def test_a_long_answer_is_not_kept(self):
-        content = b'{"note": "%s"}' % (b"x" * (KEPT // 4))
-        assert same(content, Length).model == same(content, Length).model
-        assert (Length, content) not in same_answers._kept
-        assert same_answers._kept.currsize <= KEPT
-
-    def test_a_function_is_called_once_for_equal_others(self):
-        calls = []
-
-        def times(length, factor, *, shift=0.0):
-            calls.append(factor)
-            return length.value * factor + shift
-
-        length = same(b'{"value": 3}', Length)
-        assert [length.once(times, 2), length.once(times, 2), length.once(times, 4)] == [6, 6, 12]
-        assert length.once(times, 4, shift=1.0) == 13
-        assert length.once(times, 2) == 6
-        assert calls == [2, 4, 4, 2]
+from app.web import sections
 
 
 def films(http, count):
@@ -73,13 +30,7 @@ def page(http, design, **query):
 
 
 def forget():
-    for kept in (
-        same_answers._kept,
-        stored_results._kept,
-        drives._kept,
-        sections._kept,
-        sections._kept_beside,
-    ):
+    for kept in (stored_results._kept, drives._kept, sections._kept):
         kept.clear()
 
 

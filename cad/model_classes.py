@@ -1,0 +1,67 @@
+"""Classes of the models that a team imports, made from the text of their descriptions.
+
+A class is made once in a process. It pickles as the text from which another process makes it.
+"""
+
+from __future__ import annotations
+
+import copyreg
+import json
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+from cad.assemblies import assembly_of
+from cad.imported_models import Description, ImportedModel, Parameter, attribute_of
+from templates.core.catalogue.loading import BROUGHT
+from templates.core.language.declare import given
+from templates.core.paper.mathml import named_symbol
+
+
+def description_of(text: str) -> Description:
+    """Return the description that `Description.text` wrote."""
+    read = json.loads(text)
+    read["parameters"] = tuple(Parameter(**one) for one in read["parameters"])
+    if read["program"] == "assembly":
+        return assembly_of(read)
+    return Description(**read)
+
+
+class ImportedClass(type):
+    """The type of classes made from descriptions, by which pickle recognises them."""
+
+
+@lru_cache(maxsize=256)
+def class_of(text: str, id: str, version: int) -> type[ImportedModel]:
+    """Return the class of a description in this process, one for each text, id and version."""
+    description = description_of(text)
+    declared = {
+        attribute_of(one.name): given(
+            one.unit,
+            one.words,
+            name=one.name,
+            symbol=named_symbol(one.name),
+            default={"value": one.value, "unit": one.unit},
+            ge=one.low,
+            le=one.high,
+        )
+        for one in description.parameters
+    }
+    space = {
+        **declared,
+        "__module__": f"{BROUGHT}.{id}_v{version}",
+        "__doc__": f"{description.title}.",
+        "imported": description,
+        "sheet": description,
+        "example": description.example(),
+    }
+    cls = ImportedClass("".join(word.capitalize() for word in id.split("_")), description.bases(), space)
+    assert issubclass(cls, ImportedModel)
+    return cls
+
+
+def _reduced(cls: Any) -> tuple[Callable[..., Any], tuple[str, str, int]]:
+    return class_of, (cls.imported.text, cls.id, cls.version)
+
+
+copyreg.pickle(ImportedClass, _reduced)
