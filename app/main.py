@@ -53,7 +53,7 @@ from app.identity.routes.principals import router as principals
 from app.impact.routes import router as impact
 from app.imported_models.routes import router as brought_models
 from app.jobs.routes import router as jobs
-from app.observation import routes
+from app.observation.routes import router as health
 from app.reports.routes import router as reports
 from app.schemas.problems import PROBLEM_CONTENT
 from app.settings import Settings
@@ -155,7 +155,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     )
     for router in ROUTERS:
         app.include_router(router)
-    app.include_router(routes)
+    app.include_router(health)
     app.include_router(problems.router)
     problems.install(app)
     openapi.install(app)

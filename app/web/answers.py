@@ -11,10 +11,10 @@ from pydantic_core import to_json
 from starlette.responses import Response
 
 from app.api.answering import to_try
+from app.calculations.bodies import Asked
 from app.calculations.cost import EXPENSIVE
 from app.calculations.operations import OPERATIONS, Question
 from app.calculations.routes.evaluations import show_evaluation
-from app.calculations.schemas import Asked
 from app.http.pace import PiecesResponse
 from app.presentation.units import System
 from app.schemas.problems import Problem

@@ -10,8 +10,8 @@ from app.catalogue.routes.templates import show_template
 from app.catalogue.schemas.templates import Template
 from app.designs.schemas.designs import Design, RevisionWorksheet
 from app.jobs.schemas import Job
-from app.solids.bodies.models import CadModel
 from app.solids.routes.models import show_model
+from app.solids.schemas.models import CadModel
 from app.web.rendering import units_of
 from app.web.services import PageServices
 

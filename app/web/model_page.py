@@ -12,11 +12,11 @@ from app.http.roles import AUTHOR
 from app.presentation.input_text import text_of, value_of
 from app.schemas.problems import Problem
 from app.schemas.values import Given
-from app.solids.bodies.models import CadModel as Model
 from app.solids.routes.analyses import list_analyses_of_build, show_analysis
 from app.solids.routes.models import BuildIn, show_model
 from app.solids.schemas.analyses import Analysis, ModelAnalysis
 from app.solids.schemas.models import Build
+from app.solids.schemas.models import CadModel as Model
 from app.web import sheet
 from app.web.rendering import show, units_of
 from app.web.services import PageServices, Refused, refusals
