@@ -77,7 +77,7 @@ from app.studies.service import Studies
 from app.studies.variant_design import Building
 
 NETWORK = (
-    "app.designs.net",
+    "app.designs.engine.net",
     "app.impact.process",
     "app.studies.plan",
     "app.studies.search_slice",

@@ -8,8 +8,7 @@ from difflib import get_close_matches
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.approvals.bodies import CommentIn
-from app.approvals.schemas import Comment
+from app.approvals.schemas import Comment, CommentIn
 from app.designs import repository
 from app.identity.audit import record
 from app.identity.principal import acting

@@ -8,9 +8,8 @@ from fastapi import APIRouter, Header, Path, Response
 
 from app.api.dependencies import TheApproving, TheComments, TheOnce
 from app.api.waiting import written
-from app.approvals.bodies import ApprovalIn, CommentIn
 from app.approvals.comments import shown
-from app.approvals.schemas import Approvals, Comment, CommentList, Released
+from app.approvals.schemas import ApprovalIn, Approvals, Comment, CommentIn, CommentList, Released
 from app.designs.routes.answers import Id, Number
 from app.http.pages import Cursor, Limit, page
 from app.http.strict_requests import PreconditionRequired, StrictRoute

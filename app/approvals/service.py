@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from sqlalchemy.orm import Session
 
-from app.approvals.bodies import ApprovalIn
 from app.approvals.content import STEP, digest, present, require_files, shown, steps_taken, to_sign
 from app.approvals.errors import ApprovalError, NotReady, OtherDigest
 from app.approvals.rules import next_step, require_principal, require_turn, state_of
-from app.approvals.schemas import Approvals, Present, Released, Signed
+from app.approvals.schemas import ApprovalIn, Approvals, Present, Released, Signed
 from app.designs import repository
 from app.designs.releases import NEWEST_RELEASED, newest_released
 from app.identity.audit import record

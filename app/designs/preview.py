@@ -11,10 +11,11 @@ from app.calculations.criteria import rendered
 from app.calculations.schemas.evaluations import Output
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, results, tolerances
-from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document, merge
+from app.designs.engine.calculate import calculate
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph, raise_if
-from app.designs.judging import judged
 from app.designs.reading import read_document, resolved
 from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, Status
 from app.designs.starting import starts
@@ -168,7 +169,7 @@ def _values(new: Calculation) -> dict[str, Shown]:
     names = (name for name in new.graph.parameters if name in new.values)
     return {
         name: Shown(
-            value=np.asarray(new.values[name]).tolist(), unit=f"{new.graph.kinds[name].base:~C}" or "1"
+            value=np.asarray(new.values[name].value).tolist(), unit=f"{new.graph.kinds[name].base:~C}" or "1"
         )
         for name in names
     }

@@ -17,7 +17,7 @@ from app.calculations.rendering import identity
 from app.calculations.schemas.evaluations import UsedInput, WorkedFormula
 from app.calculations.steps import evaluated_step
 from app.calculations.worksheet import formulas
-from app.designs.calculate import Calculation
+from app.designs.engine.calculation import Calculation
 from app.designs.schemas.designs import PreviewedStep, Revision, RevisionStep, RevisionWorksheet
 from app.plain import JsonObject, Raw
 from app.presentation.units import System

@@ -1,4 +1,4 @@
-"""Locks of names and of work in the database, where no row is there to be locked."""
+"""Locks on names, for units of work that read before they write, where there is no row to lock."""
 
 from __future__ import annotations
 

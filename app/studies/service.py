@@ -12,8 +12,8 @@ from app.catalogue.catalogues import Catalogues
 from app.designs import repository as designs
 from app.designs.analyses import is_measured, is_table
 from app.designs.bodies import LONGEST_NOTE
-from app.designs.calculate import Calculation
 from app.designs.document import Document
+from app.designs.engine.calculation import Calculation
 from app.designs.graph import build_graph
 from app.designs.service import Designs, Saved
 from app.designs.variant_sheets.reading import Units

@@ -9,7 +9,7 @@ from pydantic import BaseModel
 
 from app.web.design_answers import job_of
 from app.web.multipart import forms_with_files, parts_of
-from app.web.rendering import go, show
+from app.web.responses import go, show
 from app.web.routes import Id, Text
 from app.web.services import PageServices, Refused, ThePageServices
 from app.worksheets.routes.imports import FileName, NewId, read_import

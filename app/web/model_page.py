@@ -18,7 +18,7 @@ from app.solids.schemas.analyses import Analysis, ModelAnalysis
 from app.solids.schemas.models import Build
 from app.solids.schemas.models import CadModel as Model
 from app.web import sheet
-from app.web.rendering import show, units_of
+from app.web.responses import show, units_of
 from app.web.services import PageServices, Refused, refusals
 from cad.export import MEDIA_TYPES
 from cad.model import CadModel

@@ -17,7 +17,7 @@ from app.presentation import numbers
 from app.presentation.input_text import value_of
 from app.web.answers import Answered, stored
 from app.web.places import PlaceOption, outputs, related, suggested, times, varied
-from app.web.rendering import go, show, units_of
+from app.web.responses import go, show, units_of
 from app.web.services import PageServices
 from app.web.solution import PATIENCE, Drawing, Reply, ShownRoot, replied
 

@@ -19,7 +19,7 @@ from app.reference import Reference
 from app.schemas.criteria import Criterion
 from app.studies.schemas import StudyEstimate
 from app.web.places import outputs, present, set_aside, suggested, varied
-from app.web.rendering import show
+from app.web.responses import show
 from app.web.services import PageServices, Refused
 
 LINES = 4

@@ -14,7 +14,7 @@ from app.reference import Reference
 from app.schemas.criteria import Criterion
 from app.studies.routes.studies import Fits, Sort, list_rows, list_studies, show_study
 from app.studies.schemas import Best, Index, Study
-from app.web.rendering import show, units_of
+from app.web.responses import show, units_of
 from app.web.services import PageServices, Refused
 
 SHOWN = 20  # rows in the table

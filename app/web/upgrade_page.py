@@ -16,9 +16,8 @@ from app.presentation import numbers
 from app.presentation.criteria import line
 from app.schemas.answers import Quantity
 from app.solids.schemas.analyses import AnalysisOutput
-from app.web.actions import forms_only
-from app.web.forms import Patch, fields
-from app.web.rendering import go, show, units_of
+from app.web.forms import Patch, fields, forms_only
+from app.web.responses import go, show, units_of
 from app.web.routes import Id, Text
 from app.web.services import PageServices, Refused, ThePageServices
 from templates.core.units.units import compatible, unit

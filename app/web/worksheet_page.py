@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fastapi import Request, Response
 
 from app.solids.routes.models import list_models
-from app.web.rendering import show
+from app.web.responses import show
 from app.web.services import PageServices
 from app.web.sheet_preview import offered, tried_in
 from app.web.stages import begins_next, newest_released, stages

@@ -7,8 +7,8 @@ import pytest
 from sqlalchemy import text
 from sqlalchemy.exc import DatabaseError
 
-from app.approvals.bodies import ApprovalIn
 from app.approvals.errors import ApprovalError
+from app.approvals.schemas import ApprovalIn
 from app.approvals.service import Approving
 from app.designs import repository
 from app.designs.repository import Written

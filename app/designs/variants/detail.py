@@ -15,8 +15,8 @@ from app.calculations.criteria import rendered
 from app.calculations.jobs import VARIANT
 from app.calculations.schemas.evaluations import Output
 from app.designs import repository
-from app.designs.calculation import Calculation
 from app.designs.document import Document
+from app.designs.engine.calculation import Calculation
 from app.designs.graph import raise_if
 from app.designs.long_answers import LongAnswers
 from app.designs.schemas.variants import VariantDetail
