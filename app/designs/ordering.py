@@ -13,7 +13,7 @@ from templates.core.errors import Fault
 def ordered(
     network: Network, sources: Mapping[Node, tuple[Node, ...]]
 ) -> tuple[tuple[Node, ...], list[Fault]]:
-    """All nodes, each after those from which it follows; or none, and a fault that names the loop."""
+    """Return all nodes, each after those from which it follows; or none, and a fault that names the loop."""
     try:
         return tuple(TopologicalSorter(sources).static_order()), []
     except CycleError as error:
@@ -25,7 +25,7 @@ def ordered(
 
 
 def _named(network: Network, cycle: Sequence[Node]) -> Iterator[str]:
-    """A cycle of nodes (its last is its first) in the names that its relations use."""
+    """Return a cycle of nodes (its last is its first) in the names that its relations use."""
     for node, following in pairwise(cycle):
         if isinstance(node, Cell):
             yield node.name

@@ -18,7 +18,7 @@ MOST_OPERATIONS = 20_000_000  # on single values, of all relations of a design
 
 
 def too_many_relations(document: Document) -> Iterator[Fault]:
-    """A fault if the relations of a design are longer together than is read."""
+    """Yield a fault if the relations of a design are longer together than is read."""
     texts = [item for item in _items(document) if isinstance(item, str)]
     required = sum(len(criterion.require or "") for criterion in document.criteria.values())
     if required + sum(map(len, texts)) <= MOST_RELATION_TEXT:
@@ -31,7 +31,7 @@ def too_many_relations(document: Document) -> Iterator[Fault]:
 
 
 def _items(document: Document) -> Iterator[Raw]:
-    """Every value of a document, and every item of those that are lists."""
+    """Return every value of a document, and every item of those that are lists."""
     groups = [document.parameters]
     groups += [group for step in document.steps.values() for group in (step.inputs, step.limits)]
     groups += [model.parameters for model in document.models.values()]

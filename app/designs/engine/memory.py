@@ -25,7 +25,7 @@ class Memory:
         self._cache = cache
 
     def evaluation(self, block: Block, raw: Mapping[str, Raw], wanted: tuple[str, ...] | None) -> Evaluation:
-        """The evaluation of a step, kept or computed.
+        """Return the evaluation of a step, kept or computed.
 
         Raises
         ------
