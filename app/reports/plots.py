@@ -10,8 +10,8 @@ from typing import NotRequired, TypedDict
 from app.presentation import numbers
 from app.reports.charts import Chart, Series, svg
 from app.reports.content import Plot
+from app.reports.crank_star import crank_star
 from app.reports.pictures import Declaring, Picture, pictures
-from app.reports.throw_star import throw_star
 from app.schemas.designs import PreviewedStep
 from app.schemas.evaluations import Output, UsedInput
 from templates.core.language.levels import accuracy
@@ -43,7 +43,7 @@ def drawn(declared: Declaring, step: PreviewedStep) -> list[Plot]:
 
 def _plot(picture: Picture, values: Values) -> Plot:
     if picture.kind == STAR:
-        return Plot(picture.title, throw_star(_numbers(values[_name(picture, "angles")])))
+        return Plot(picture.title, crank_star(_numbers(values[_name(picture, "angles")])))
     return Plot(picture.title, svg(KINDS[picture.kind](picture, values)))
 
 

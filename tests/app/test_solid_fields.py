@@ -20,7 +20,7 @@ from app.schemas.designs import RevisionStep
 from app.solids import analysis_rows as repository
 from app.solids.questions import Options, question
 from cad.analysis.kinds import KINDS, TABLES
-from cad.painting import Glb
+from cad.field_mesh import Glb
 
 DESIGNS = f"{API}/designs"
 SIZES = {

@@ -19,8 +19,8 @@ from app.designs.variant_sheets.service import Kind, save_sheet, write_sheet
 from app.designs.variants.views import variants
 from app.schemas.problems import Responses, refusals
 from app.schemas.variants import VariantsOut
-from cad.naming import name as wide_name
-from cad.naming import plain_name
+from cad.file_names import name as wide_name
+from cad.file_names import plain_name
 
 by_type = APIRouter(
     prefix="/api/v1/designs", route_class=SheetRoute, dependencies=[ExpensiveSteps], include_in_schema=False
