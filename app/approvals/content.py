@@ -1,4 +1,4 @@
-"""The content that a signature covers: document, results, files, signer, time, and the step before."""
+"""The content that a signature covers: document, results, files, signer, time and previous step."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.approvals.errors import NotReady
+from app.approvals.schemas import Approval, Files, Present, Signed
 from app.designs.stored_results import results_of
-from app.schemas.approvals import ORDER, Approval, Files, Present, Signed
+from app.schemas.approval_steps import ORDER
 from app.solids import rows
 from app.storage.tables import ApprovalRow, RevisionRow, canonical_json
 

@@ -1,4 +1,4 @@
-"""`crankwright check-template FILE`: what the service would say of a file, before it is put into a folder."""
+"""`crankwright check-template FILE`: report a file's faults as the service would, before it is installed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from app.catalogue.catalogues import loaded
-from app.catalogue.checking import CheckInProcess
+from app.catalogue.check import CheckInProcess
 from app.catalogue.team import TeamFile, TeamFiles, merged
 from app.settings import Settings
 from app.workers.base import Limits
@@ -17,7 +17,7 @@ from app.workers.local import LocalProcesses
 from cad.model import CadModel
 from templates.core.language.template import Template
 
-PRELOAD = ("cad.surfaces", "cad.model", "templates.core.checking.check", "app.catalogue.checking")
+PRELOAD = ("cad.surfaces", "cad.model", "templates.core.checking.check", "app.catalogue.check")
 
 
 @click.command("check-template")

@@ -1,4 +1,4 @@
-"""`crankwright impact`: what a version of a template does to the designs that use another one."""
+"""`crankwright impact`: show the effect of a template's version on designs that use another one."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from pathlib import Path
 import click
 
 from app.cli.connections import connected, data_option, url_option
+from app.impact.schemas import DesignImpact, Impact, VerdictMoved
 from app.presentation import numbers
-from app.schemas.impact import DesignImpact, Impact, VerdictMoved
 
 
 @click.command("impact")

@@ -1,4 +1,4 @@
-"""`crankwright worksheet …`: worksheets as text files, which read well in git, and their life in the service.
+"""`crankwright worksheet …`: worksheets as text files, and their states in the service.
 
 A file is named `<id>.sheet`, or `<id>_v<n>.sheet` if it is one version of several. It holds the text as it
 was written, byte by byte.
@@ -13,8 +13,8 @@ import click
 
 from app.cli.connections import connected, data_option, url_option
 from app.client import Client
-from app.schemas.worksheet_imports import ImportedRegion
-from app.schemas.worksheets import Sheet, SheetCheck, SheetSummary
+from app.worksheets.schemas.imports import ImportedRegion
+from app.worksheets.schemas.worksheets import Sheet, SheetCheck, SheetSummary
 from templates.core.errors import plain
 
 OPEN = ("draft", "tested", "reviewed")

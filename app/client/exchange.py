@@ -1,4 +1,4 @@
-"""Exchanges with the service, whoever sends them.
+"""Exchanges with the service: generators of requests, independent of the client that sends them.
 
 An exchange is a generator. It yields requests, receives their responses and returns a model; it knows nothing
 of sockets, so that `Client` and `AsyncClient` run the same exchanges.
@@ -15,9 +15,9 @@ import httpx
 from pydantic import TypeAdapter
 
 from app.client.problem import Problem, checked
+from app.jobs.schemas import Job
 from app.plain import JsonObject
 from app.schemas.answers import Answer, Page
-from app.schemas.jobs import Job
 
 BASE = "/api/v1"
 ENDED = ("done", "failed", "cancelled")

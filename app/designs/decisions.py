@@ -6,20 +6,20 @@ from dataclasses import dataclass
 
 from app.calculations.criteria import rendered
 from app.calculations.jobs import DECISION
-from app.designs import deciding, repository
-from app.designs.calculate import calculate
-from app.designs.calculation import Calculation
-from app.designs.deciding import Deciding
+from app.designs import repository
 from app.designs.document import Document
+from app.designs.engine.calculate import calculate
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.decision import Climb, ClimbResult, Trial
+from app.designs.engine.verdicts import Verdicts
 from app.designs.graph import build_graph, raise_if
-from app.designs.judging import Judging
 from app.designs.long_answers import LongAnswers
+from app.designs.schemas.decision import Decision, Tried
 from app.designs.starting import settled, starts
 from app.designs.stored_solids import analysed, built
 from app.plain import Json, JsonObject, Raw
 from app.presentation.units import System
 from app.schemas.answers import Quantity
-from app.schemas.decisions import Decision, Tried
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_names
 from templates.core.units.quantity import read
 
@@ -90,12 +90,12 @@ class Decisions(LongAnswers):
 
     def _decided(self, asked: Asked) -> Decision:
         number, calculation = self._calculated(asked)
-        names = Judging(calculation).names()
+        names = Verdicts(calculation).names()
         unknown = (name for name in asked.criteria or () if name not in names)
         raise_if([fault.within("criteria") for fault in unknown_names(unknown, names, "criterion")])
         if calculation.deferred:
             return _shown(number, asked, _pending(calculation))
-        return _shown(number, asked, Deciding(calculation, asked.criteria, asked.budget).decide())
+        return _shown(number, asked, Climb(calculation, asked.criteria, asked.budget).decide())
 
     def _calculated(self, asked: Asked) -> tuple[int, Calculation]:
         """The revision, the newest if none is named, as it was calculated."""
@@ -114,13 +114,13 @@ class Decisions(LongAnswers):
         return row.number, calculation
 
 
-def _pending(calculation: Calculation) -> deciding.Decision:
+def _pending(calculation: Calculation) -> ClimbResult:
     """The answer while the design itself is still calculated."""
-    judgements = sorted(Judging(calculation).all(), key=lambda judgement: judgement.name)
-    return deciding.Decision(judgements, (), (), (), "pending")
+    judgements = sorted(Verdicts(calculation).all(), key=lambda judgement: judgement.name)
+    return ClimbResult(judgements, (), (), (), "pending")
 
 
-def _shown(number: int, asked: Asked, decision: deciding.Decision) -> Decision:
+def _shown(number: int, asked: Asked, decision: ClimbResult) -> Decision:
     judged = {"criteria": [], **rendered(decision.criteria)}
     return Decision(
         revision=number,
@@ -135,7 +135,7 @@ def _shown(number: int, asked: Asked, decision: deciding.Decision) -> Decision:
     ).in_units(asked.units)
 
 
-def _tried(trial: deciding.Trial) -> Tried:
+def _tried(trial: Trial) -> Tried:
     tried: JsonObject = {"step": trial.step, "level": trial.level}
     if trial.reason is not None:
         tried["reason"] = trial.reason

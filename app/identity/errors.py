@@ -1,10 +1,10 @@
-"""Why a request is not carried out for the one who sends it."""
+"""Errors of identity: a request is refused because of who sends it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from app.identity.acting import Principal
+from app.identity.principal import Principal
 
 
 class IdentityError(Exception):

@@ -1,4 +1,4 @@
-"""Describe, in the description of the interface, values that a user gives.
+"""Input values in the description of the interface.
 
 Only its form: which units fit, and which names a choice has, is in the schema of each template and model.
 """
@@ -10,7 +10,7 @@ from typing import Annotated
 from pydantic import Field, JsonValue, WithJsonSchema
 from pydantic.config import JsonDict
 
-from app.schemas.bounded import at_most
+from app.schemas.bounds import at_most
 
 FORMS: list[JsonValue] = [
     {"type": "string", "minLength": 1},

@@ -10,15 +10,15 @@ from pydantic_core import from_json
 
 from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document
+from app.designs.engine.net import Net
 from app.designs.graph import raise_if
-from app.designs.net import Net
 from app.designs.tasks import DesignTask
 from app.plain import JsonObject
 from app.reference import Reference
 from app.storage.tables import canonical_json
-from app.studies.asking import Asked, asked_of
+from app.studies.bodies import StudyIn
+from app.studies.question import Asked, asked_of
 from app.studies.row_solids import RowSolids, iterated, measures_of_rows, tables_among
-from app.studies.schemas import StudyIn
 from templates.core.errors import Fault, InvalidInputs
 
 

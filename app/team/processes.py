@@ -1,4 +1,4 @@
-"""Processes that are waited for, stopped by their number, and die with the process that started them."""
+"""Child processes that are stopped by their id, and die with the process that started them."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Tied:
     ) -> None:
         self.name, self.log = name, log
         self._line = Lifeline()
-        tied = [sys.executable, "-m", "app.team.tied", str(self._line.reader), user or ""]
+        tied = [sys.executable, "-m", "app.team.tether", str(self._line.reader), user or ""]
         with log.open("ab") as output:
             self._process = subprocess.Popen(
                 [*tied, *command],

@@ -5,10 +5,10 @@ from xml.etree import ElementTree
 
 import pytest
 
-from app.reports.crank_star import RAY, rays, crank_star
+from app.calculations.schemas.evaluations import Output
+from app.reports.crank_star import RAY, crank_star, rays
 from app.reports.pictures import MOST_PINS, pictures
 from app.reports.plots import drawn
-from app.schemas.evaluations import Output
 
 V8 = [45.0, 45.0, 135.0, 135.0, 315.0, 315.0, -135.0, 225.0]
 DECLARED = SimpleNamespace(

@@ -13,9 +13,9 @@ from app.approvals.service import Approving
 from app.designs import repository
 from app.designs.repository import Written
 from app.identity import chain
-from app.identity.acting import Principal, acting_as
 from app.identity.audit import record
-from app.identity.sealing import Sealer
+from app.identity.principal import Principal, acting_as
+from app.identity.sealer import Sealer
 from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.storage.tables import ApprovalRow

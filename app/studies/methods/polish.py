@@ -1,4 +1,4 @@
-"""Polishing a place: SciPy's SLSQP, with values and slopes at a place by one call of 1 + 2 n rows.
+"""Local optimisation by SciPy's SLSQP; one call of 1 + 2 n rows gives value and slopes.
 
 References
 ----------
@@ -15,7 +15,7 @@ from typing import Literal, TypedDict
 import numpy as np
 from scipy.optimize import minimize
 
-from app.studies.methods.corrected import Corrected
+from app.studies.methods.correction import Corrected
 from templates.core.arrays import Array, Mask
 
 STEP = 1e-5

@@ -1,0 +1,106 @@
+"""Check one file of a team in a process of its own, since it may hang, crash or exhaust memory.
+
+What passes is loaded by the server from the very bytes that were checked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.workers.base import Limits, Worker
+from app.workers.errors import DeadlineExceeded, JobCancelled, MemoryExceeded, WorkerError
+from cad.model import CadModel
+from templates.core.catalogue.finding import declared_in
+from templates.core.catalogue.loading import failing_line, load
+from templates.core.checking.check import faults_of
+from templates.core.checking.faults import FileFault
+from templates.core.errors import UnusableFile
+from templates.core.language.template import Template
+
+MOST_BYTES = 2**20
+KERNEL = (b"cadquery", b"OCP")
+"""Names in a file for whose import a process that has the kernel is the quicker one."""
+DECLARE = "a file <id>_v<version>.py declares one class that inherits Template or CadModel"
+
+Check = Callable[[Path, bytes], list[FileFault]]
+"""Returns the faults of a file with this content."""
+
+
+@dataclass(frozen=True)
+class CheckInProcess:
+    """Checks files in processes of a worker; those that do not name the kernel in processes of `light`."""
+
+    worker: Worker
+    limits: Limits
+    light: Worker | None = None
+
+    def __call__(self, path: Path, content: bytes) -> list[FileFault]:
+        """Return every fault of a file; that it did not come to an end is one.
+
+        Raises
+        ------
+        JobCancelled
+            The service is stopping.
+        """
+        if len(content) > MOST_BYTES:
+            what = f"the file has more than {MOST_BYTES // 2**20} MiB"
+            return [FileFault("too_large", what, "keep tables in a file beside it")]
+        try:
+            names_kernel = any(name in content for name in KERNEL)
+            worker = self.worker if self.light is None or names_kernel else self.light
+            return worker.run(check_content, str(path), content, limits=self.limits)
+        except DeadlineExceeded as error:
+            what = f"it was not loaded and checked within {error.seconds:g} s"
+            remedy = "let the import only declare, or allow more by CRANKWRIGHT_TEMPLATE_SECONDS"
+            return [FileFault("too_long", what, remedy)]
+        except MemoryExceeded as error:
+            what = f"to load and check it takes more than {error.megabytes} MiB"
+            return [FileFault("memory", what, "give a smaller example")]
+        except JobCancelled:
+            raise
+        except WorkerError as error:
+            return [FileFault("crashed", f"its process came to no end: {error}", "correct what ends it")]
+
+
+def check_content(path: str, content: bytes) -> list[FileFault]:
+    """Return every fault of a file: of its import, then of what it declares; runs in a process of its own."""
+    place = Path(path)
+    cls = loaded_or_faulty(place, content)
+    if isinstance(cls, FileFault):
+        return [cls]
+    try:
+        return faults_of(cls, place)
+    except BaseException as error:  # as SystemExit, which nobody wants in the server
+        return [_import_fault(error, place)]
+
+
+def loaded_or_faulty(path: Path, content: bytes, digest: str = "") -> type[Template] | FileFault:
+    """Return the class that a file declares, or why there is none."""
+    try:
+        cls = declared_in(load(path, content, digest), path)
+    except UnusableFile as error:
+        return FileFault("declares", str(error).removeprefix(f"{path}: "), DECLARE)
+    except BaseException as error:  # whatever a file raises: SystemExit, KeyboardInterrupt
+        return _import_fault(error, path)
+    if issubclass(cls, CadModel) or cls.formulas:
+        return cls
+    return FileFault("declares", f"class {cls.__name__} declares no output", "declare a @formula")
+
+
+def _import_fault(error: BaseException, path: Path) -> FileFault:
+    line = failing_line(error, path)
+    match error:
+        case SyntaxError():
+            remedy = "correct this line" if line else "save the file as UTF-8"
+            return FileFault("syntax", f"{type(error).__name__}: {error.msg}", remedy, line)
+        case UnicodeError():
+            return FileFault("syntax", f"it is not text in UTF-8: {error}", "save the file as UTF-8", line)
+        case ImportError():
+            remedy = "correct the name, or install what is missing where the service runs"
+            return FileFault("import", f"{type(error).__name__}: {error}", remedy, line)
+        case MemoryError():
+            return FileFault("memory", "it takes too much memory", "keep tables in a file beside it", line)
+    remedy = "correct the declaration" if isinstance(error, TypeError) else "let the import only declare"
+    return FileFault("raises", f"{type(error).__name__}: {error}", remedy, line)

@@ -1,0 +1,178 @@
+"""One level for all rows of a step: the cheapest whose stated error is small enough at enough of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.columns import Column
+from app.designs.engine.row_design import Levels, RowDesign, Rows, Wanted
+from app.designs.engine.steps import Part, StepRows
+from app.designs.network import Block
+from app.reference import Reference
+from templates.core.arrays import Array, Mask
+from templates.core.language.levels import Accuracy, accuracy
+
+S = TypeVar("S", bound=np.generic)
+
+Passes = Callable[[str | None], Iterable[Calculation]]
+"""The rows, calculated with a step at a level, in chunks."""
+
+
+@dataclass(frozen=True)
+class Levelling:
+    """The choice of levels for some rows.
+
+    Attributes
+    ----------
+    rows
+        A column for every varied place.
+    wanted
+        What is going to be calculated.
+    """
+
+    design: RowDesign
+    rows: Rows
+    count: int
+    wanted: Wanted
+
+    def of_tolerances(self, levels: Levels) -> dict[str, str | None]:
+        """The levels given, and those of steps for which the design has a tolerance and no level."""
+        chosen = dict(levels)
+        for block in self.design.steps(self.wanted):
+            if block.tolerance is not None and not (levels.get(block.name) or block.level):
+                chosen[block.name] = self._level(block, chosen, block.tolerance, 1.0)
+        return chosen
+
+    def within(self, tolerance: float, share: float, starts: Levels) -> dict[str, str | None]:
+        """The level of each step, chosen after those from which it follows.
+
+        `starts` are levels at which steps start whose rows would start at different ones.
+        """
+        chosen = dict(starts)
+        for block in self.design.steps(self.wanted):
+            chosen[block.name] = block.level or self._level(block, chosen, tolerance, share)
+        return chosen
+
+    def _level(self, block: Block, levels: Levels, tolerance: float, share: float) -> str | None:
+        cls = block.cls
+        if not cls.levels:
+            return None
+        outputs = self.design.needs(self.wanted).outputs(block)
+        inside = Wanted.of(Reference(block.name, None, output) for output in outputs)
+
+        def passes(level: str | None) -> Iterator[Calculation]:
+            pinned = {**levels, block.name: level or levels.get(block.name)}
+            return (rows for _, rows in self.design.passes(self.rows, self.count, inside, pinned))
+
+        search = LevelSearch(block, outputs, passes, tolerance, share)
+        is_a_choice = any("level" in cls.ancestors(cls.formulas[name].attribute) for name in outputs)
+        return search.level() if is_a_choice else search.start
+
+
+@dataclass(frozen=True)
+class LevelSearch:
+    """The choice of one level for a step.
+
+    Attributes
+    ----------
+    outputs
+        Whose errors have to be small enough.
+    share
+        Of the rows, in which they have to be.
+    """
+
+    block: Block
+    outputs: Sequence[str]
+    passes: Passes
+    tolerance: float
+    share: float
+
+    def level(self) -> str:
+        """The cheapest level that serves; the starting one, where that states too few errors."""
+        measured = accuracy(self.block.cls)
+        for level in self.ladder:
+            if measured is not None and self._met(measured, level) >= self.share:
+                return level
+            if level == self.start and self._stated() < self.share:
+                return level
+        return self.ladder[-1]
+
+    @cached_property
+    def _started(self) -> list[StepRows]:
+        return self._calculated(None)
+
+    @property
+    def _parts(self) -> Iterator[tuple[StepRows, Part]]:
+        return ((step, part) for step in self._started for part in step.parts)
+
+    @cached_property
+    def start(self) -> str:
+        """The level at which the step starts."""
+        return next((step.level for step in self._started if step.level), self.block.cls.default_level)
+
+    @cached_property
+    def ladder(self) -> tuple[str, ...]:
+        """The levels that answer these rows, cheapest first."""
+        return next((part.template.ladder() for _, part in self._parts), (self.block.cls.default_level,))
+
+    @cached_property
+    def _exists(self) -> dict[str, Mask]:
+        """For each output, the rows in which it has a value at the starting level."""
+        return {name: _joined(_has_value(step, name) for step in self._started) for name in self.outputs}
+
+    def _stated(self) -> float:
+        """Return at which share of the rows the starting level states the errors of what has a value."""
+        return self._share(self._started, np.inf)
+
+    def _met(self, measured: Accuracy, level: str) -> float:
+        """Return at which share of the rows all errors of a level are small enough."""
+        if level in self.block.cls.most_points:
+            return float(np.mean(self._expected(measured, level)))
+        steps = self._started if level == self.start else self._calculated(level)
+        return self._share(steps, self.tolerance)
+
+    def _share(self, steps: Sequence[StepRows], tolerance: float) -> float:
+        """Return the share of rows whose outputs all have a small error, or no value at the first level."""
+        met = np.ones(sum(step.count for step in steps), dtype=bool)
+        for name in self.outputs:
+            there = _joined(_has_value(step, name) for step in steps)
+            errors = _joined(step.error(name).spread(step.count) for step in steps)
+            met &= np.where(there, errors <= tolerance, ~self._exists[name])
+        return float(np.mean(met))
+
+    def _calculated(self, level: str | None) -> list[StepRows]:
+        """The step in each chunk of rows; without parts where it waits, or is refused."""
+        nothing = StepRows(self.block, 1, has_rows=False)
+        return [rows.step(self.block.name) or nothing for rows in self.passes(level)]
+
+    def _expected(self, measured: Accuracy, level: str) -> Mask:
+        """Where an expensive level is expected to serve, by what it states for where the rows lie now."""
+        met = np.ones(sum(step.count for step in self._started), dtype=bool)
+        for name in self.outputs:
+            errors = _joined(_expected(measured, step, level, name) for step in self._started)
+            met &= (errors <= self.tolerance) | ~self._exists[name]
+        return met
+
+
+def _joined(chunks: Iterable[NDArray[S]]) -> NDArray[S]:
+    return np.concatenate(list(chunks))
+
+
+def _has_value(step: StepRows, output: str) -> Mask:
+    """The rows in which an output has a value."""
+    return Column(step.column(output).spread(step.count), is_row=True).finite_rows()
+
+
+def _expected(measured: Accuracy, step: StepRows, level: str, output: str) -> Array:
+    """The errors that another level states for where the rows lie; infinite, where it states none."""
+    errors = np.full(step.count, np.inf)
+    for part in step.parts:
+        errors[part.rows] = measured.expected(part.template, level, [output])[output]
+    return errors

@@ -1,0 +1,144 @@
+"""Find what a design must calculate for some of its values, and which of that differs from row to row.
+
+Pure functions over the network: no value is calculated here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from app.designs.network import Block, Cell, Graph, Node, Solid, SolidAnalysis
+from app.reference import Reference
+from templates.core.errors import Fault
+
+
+@dataclass(frozen=True)
+class Needs:
+    """The cells and blocks behind some values.
+
+    Attributes
+    ----------
+    cells
+        Cells whose values are used.
+    members
+        By block, the inputs and outputs of it that are used beside its cells.
+    waiting
+        What is measured on solids, or analysed, and not known.
+    """
+
+    cells: set[Cell] = field(default_factory=set)
+    members: dict[str, set[str]] = field(default_factory=dict)
+    waiting: set[Reference] = field(default_factory=set)
+
+    def outputs(self, block: Block) -> tuple[str, ...]:
+        """The formulas of a block that are used, in the order in which they are declared."""
+        used = self.members.get(block.name, set())
+        return tuple(name for name in block.cls.formulas if name in used)
+
+
+def needs(
+    graph: Graph,
+    wanted: Iterable[Reference],
+    measured: Collection[Reference],
+    inside: Iterable[Reference] = (),
+) -> Needs:
+    """All nodes on which some values depend, except those that lie behind `known` values.
+
+    Of inputs `inside` steps the steps are needed too, with what they take these inputs for.
+    """
+    result, seen = Needs(), set[Reference]()
+    left = [*wanted, *(before for reference in inside for before in _of_member(graph, reference, result))]
+    while left:
+        reference = left.pop()
+        if reference in seen:
+            continue
+        seen.add(reference)
+        left += _before(graph, reference, measured, result)
+    return result
+
+
+def _before(
+    graph: Graph, reference: Reference, measured: Collection[Reference], result: Needs
+) -> Iterator[Reference]:
+    """The values that are used for one value, which is noted as needed."""
+    if cell := graph.cell(reference):
+        result.cells.add(cell)
+        if reference not in measured:
+            yield from cell.uses.values()
+    elif reference in measured:
+        return
+    elif is_member(graph, reference):
+        yield from _of_member(graph, reference, result)
+    else:
+        result.waiting.add(reference)
+
+
+def _of_member(graph: Graph, reference: Reference, result: Needs) -> list[Reference]:
+    """The values that are used for an input or output of a block, which is noted as needed."""
+    block = graph.blocks[reference.block]
+    result.members.setdefault(block.name, set()).add(reference.member)
+    return [cell.reference for cell in block.cells.values()]
+
+
+def is_member(graph: Graph, reference: Reference) -> bool:
+    """True if a name means an input or an output of a step or model, not what is measured on a solid."""
+    block = graph.blocks.get(reference.block)
+    if block is None or reference.analysis is not None:
+        return False
+    return reference.member in block.cls.inputs or reference.member in block.cls.formulas
+
+
+@dataclass(frozen=True)
+class Varying:
+    """The nodes that depend on varied places, each with the node through which it does."""
+
+    because: Mapping[Node, Node | None]
+
+    def __contains__(self, node: object) -> bool:
+        return node in self.because
+
+    def chain(self, node: Node) -> list[Node]:
+        """From the varied cell to a node that follows from it."""
+        nodes = [node]
+        while before := self.because[nodes[-1]]:
+            nodes.append(before)
+        return nodes[::-1]
+
+
+def varying(graph: Graph, varied: Collection[Reference]) -> Varying:
+    """All nodes that follow from varied places."""
+    because: dict[Node, Node | None] = {}
+    for node in graph.order:
+        if source := next((source for source in graph.sources.get(node, ()) if source in because), None):
+            because[node] = source
+        elif isinstance(node, Cell) and _is_varied(node, varied):
+            because[node] = None
+    return Varying(because)
+
+
+def _is_varied(cell: Cell, varied: Collection[Reference]) -> bool:
+    """Return whether a cell is a varied place, or uses one, such as a measure that rows give."""
+    return any(reference in varied for reference in (cell.reference, *cell.uses.values()))
+
+
+def solids_in_the_way(graph: Graph, measures: Iterable[Reference], moving: Varying) -> list[Fault]:
+    """A fault for each measure of a solid that differs from row to row; it names the chain."""
+    solids = {reference: graph.blocks[reference.block].solid for reference in sorted(measures, key=str)}
+    return [_in_the_way(graph, r, moving.chain(solid)) for r, solid in solids.items() if solid in moving]
+
+
+def _in_the_way(graph: Graph, reference: Reference, chain: list[Node]) -> Fault:
+    uses = [cell.name for cell in graph.cells() if reference in cell.uses.values()]
+    names = [*map(_name, chain), str(reference), *uses[:1]]
+    path = " → ".join(dict.fromkeys(filter(None, names)))
+    detail = f"{reference} is measured on a solid that differs from row to row ({path}); each needs its solid"
+    return Fault(names[0], "needs_solids", detail)
+
+
+def _name(node: Node) -> str:
+    match node:
+        case Cell(name=name) | Block(name=name):
+            return name
+        case Solid() | SolidAnalysis():
+            return ""  # what is measured on it is named

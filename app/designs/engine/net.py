@@ -1,0 +1,276 @@
+"""A design as a function of N rows: built and checked once, calculated in array calls.
+
+A row is one set of values for some places of the design. All values are in SI; arrays have the row first and
+the place along a curve last. Each step has one level for all rows of a call, so that a switch of levels makes
+no jump in a column. Only what the wanted values follow from is calculated. Between calls nothing is kept but
+what is one for all rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+
+from app.calculations.cost import array_seconds
+from app.catalogue.catalogues import Catalogues
+from app.designs.analyses import measured_unit
+from app.designs.document import Document
+from app.designs.engine.levels import Levelling
+from app.designs.engine.needs import is_member, solids_in_the_way
+from app.designs.engine.places import Ranks, checked_rows, place_faults, with_places
+from app.designs.engine.refusals import Refusal
+from app.designs.engine.row_design import MOST_ROWS, Levels, RowDesign, Rows, Wanted
+from app.designs.engine.table import Table
+from app.designs.engine.verdicts import JudgedColumn
+from app.designs.graph import build_graph, raise_if
+from app.designs.network import Graph
+from app.designs.subjects import Subject, subjects
+from app.reference import Reference
+from templates.core.arrays import Array
+from templates.core.errors import unknown_names
+from templates.core.units.quantity import read_any
+from templates.core.units.units import Value
+
+__all__ = ["MOST_ROWS", "JudgedColumn", "Net", "Refusal", "Rows", "Table"]
+
+
+@dataclass(frozen=True)
+class Net:
+    """A design of which some places vary.
+
+    Attributes
+    ----------
+    design
+        With a value at every varied place.
+    written
+        As its user wrote it.
+    """
+
+    design: RowDesign
+    written: RowDesign
+
+    @property
+    def varied(self) -> frozenset[Reference]:
+        """The places of which rows give the values."""
+        return self.design.varied
+
+    @property
+    def graph(self) -> Graph:
+        """The network of the design, with a value at every varied place."""
+        return self.design.graph
+
+    @classmethod
+    def of(
+        cls,
+        document: Document,
+        catalogues: Catalogues,
+        varied: Collection[Reference],
+        *,
+        wanted: Collection[Reference] | None = None,
+        criteria: Collection[str] = (),
+        measured: Mapping[Reference, float] | None = None,
+        pending: bool = False,
+        set_aside: Collection[Reference] = (),
+    ) -> Net:
+        """A design whose places `varied` differ from row to row.
+
+        Parameters
+        ----------
+        document
+            The design.
+        catalogues
+            Its templates and models.
+        varied
+            Parameters, inputs of steps, parameters of models. A measure of a solid may be among them: then
+            the rows give it.
+        wanted
+            What will be asked for; where it is given, other parts of the design are not checked.
+        criteria
+            Those that will be judged, beside what is wanted.
+        measured
+            Measures of solids, and measures through which iterations run, that are known [SI].
+        pending
+            Whether values that wait for a solid are NaN instead of being refused.
+        set_aside
+            Varied places that a relation sets in the document: the rows replace it.
+
+        Raises
+        ------
+        InvalidInputs
+            With everything that is wrong with the design; else naming the places that cannot vary, with the
+            codes `unknown_name`, `not_a_number`, `follows_from`, `not_varied`, `no_relation`,
+            `needs_solids` or `shape`.
+        """
+        written, faults = build_graph(document, catalogues)
+        raise_if(faults)
+        raise_if(list(place_faults(written, varied, set_aside)))
+        graph, faults = build_graph(with_places(document, written, varied), catalogues)
+        raise_if(faults)
+        constants = dict(measured or {})
+        design = RowDesign(graph, frozenset(varied), constants)
+        judged = [subject for name, subject in subjects(graph).items() if name in criteria]
+        due = design.needs(Wanted.of(wanted if wanted is not None else _all_used(graph), judged))
+        measures = {
+            reference for reference in due.waiting | constants.keys() if reference not in design.varied
+        }
+        raise_if([] if pending else solids_in_the_way(graph, measures, design.moving))
+        steps = [name for name, block in graph.blocks.items() if not block.is_model]
+        checked = [name for name in steps if wanted is None or name in due.members]
+        raise_if(list(Ranks(graph, design.moving).faults(checked)))
+        return cls(design, RowDesign(written, frozenset(), constants))
+
+    def __call__(
+        self,
+        rows: Rows,
+        wanted: Collection[Reference],
+        *,
+        levels: Levels | None = None,
+        judge: bool = False,
+        criteria: Collection[str] | None = None,
+        chunk: int = MOST_ROWS,
+    ) -> Table:
+        """The wanted values of all rows, and the verdicts of criteria.
+
+        Parameters
+        ----------
+        rows
+            A column for every varied place.
+        wanted
+            Parameters, inputs and outputs of steps, parameters of models, known measures.
+        levels
+            By step; a step that is not named has the level, or the tolerance, of the design, else the level
+            at which its template starts.
+        judge
+            Whether criteria are judged with all numbers; all criteria, unless some are named. An error is
+            carried through relations, at both ends, as in a design of its own.
+        criteria
+            Those whose verdicts are wanted.
+        chunk
+            The rows of one array call, at most; fewer where curves or a level ask for it (`rows_at_once`).
+
+        Raises
+        ------
+        InvalidInputs
+            If columns or names are wrong; never because of the values in a row.
+        """
+        raise_if(list(self.design.faults(wanted, levels or {})))
+        count, given = self.checked(rows)
+        judged = self.subjects(self.criteria() if judge and criteria is None else criteria or ())
+        asked = Wanted.of(wanted, judged.values())
+
+        def table(pinned: Levels) -> Table:
+            chosen = Levelling(self.design, given, count, asked).of_tolerances(pinned)
+            result = Table.of(count, wanted)
+            for start, part in self.design.passes(given, count, asked, chosen, chunk):
+                result.add(start, part, wanted)
+                result.judge(start, part, judged, with_columns=judge)
+            return result
+
+        return self.design.settled(table, levels or {})
+
+    def levels_for(
+        self,
+        rows: Rows,
+        wanted: Collection[Reference],
+        tolerance: float,
+        share: float = 1.0,
+        *,
+        criteria: Collection[str] = (),
+    ) -> dict[str, str | None]:
+        """One level for each step: the cheapest whose stated error is within the tolerance.
+
+        It is so at a `share` of the rows that have values at all. A step of which the design names a level
+        keeps it, and one that states too few errors has the level at which it starts. None of a step without
+        levels.
+        """
+        raise_if(list(self.design.faults(wanted, {})))
+        count, given = self.checked(rows)
+        choice = Levelling(self.design, given, count, self._wanted(wanted, criteria))
+        return self.design.settled(lambda starts: choice.within(tolerance, share, starts), {})
+
+    def seconds(
+        self,
+        count: int,
+        wanted: Collection[Reference],
+        levels: Levels,
+        *,
+        criteria: Collection[str] = (),
+        by_tables: bool = False,
+    ) -> float:
+        """Estimate how long a call for so many rows takes [s].
+
+        By the processor time of the last call of this kind, if it had some rows; before it by the tables of
+        errors, which is an order of magnitude, and knows no heat balance. `by_tables` takes these always:
+        equal questions have equal answers, in whatever process and after whatever calls.
+        """
+        asked, seconds = self._wanted(wanted, criteria), 0.0
+        if not by_tables and (pace := self.design.pace(asked, levels)) is not None:
+            return count * pace
+        due, places = self.design.needs(asked), max(self.design.sizes(asked).values(), default=1)
+        calls = -(-count // self.design.rows_at_once(asked, levels))
+        for block in self.design.steps(asked):
+            level = levels.get(block.name) or block.level or block.cls.default_level or None
+            points, times = (count, calls) if block in self.design.moving else (1, 1)
+            seconds += array_seconds(block.cls, level, points, due.outputs(block), times, places)
+        return seconds
+
+    def rows_at_once(
+        self,
+        wanted: Collection[Reference],
+        levels: Levels,
+        chunk: int = MOST_ROWS,
+        *,
+        criteria: Collection[str] = (),
+    ) -> int:
+        """Number of rows that one array call takes; at most `chunk`."""
+        return self.design.rows_at_once(self._wanted(wanted, criteria), levels, chunk)
+
+    def criteria(self) -> list[str]:
+        """The criteria that a design of one row has: not those of outputs that its steps leave out."""
+        return [name for name, one in subjects(self.graph).items() if one.is_due(self.graph)]
+
+    def unit(self, reference: Reference) -> str:
+        """The declared unit of a place, an output or a measure; of a parameter the unit as written."""
+        if cell := self.graph.parameters.get(str(reference)):
+            typed = None if cell.relations else read_any(cell.raw).unit
+            return typed or f"{self.graph.kinds[str(reference)].base:~C}" or "1"
+        raise_if(list(self.design.faults([reference], {})))
+        is_inside = is_member(self.graph, reference)
+        return self.graph.unit_of(reference) if is_inside else measured_unit(reference)
+
+    def nominal(self, reference: Reference) -> Value:
+        """The value [SI] of a name as the document has it; NaN where it has none, or waits for a solid."""
+        raise_if(list(self.design.faults([reference], {})))
+        return self.written.nominal(Wanted.of([reference]), {}).column(reference).value
+
+    def checked(self, rows: Rows, levels: Levels | None = None) -> tuple[int, dict[Reference, Array]]:
+        """The number of rows, and their columns as arrays.
+
+        Raises
+        ------
+        InvalidInputs
+            If columns are missing, too many, of different lengths or of the wrong shape, or levels unknown.
+        """
+        raise_if(list(self.design.faults((), levels or {})))
+        return checked_rows(self.graph, self.varied, rows)
+
+    def subjects(self, criteria: Collection[str]) -> dict[str, Subject]:
+        """Criteria by their names.
+
+        Raises
+        ------
+        InvalidInputs
+            If the design has no criterion of a name.
+        """
+        by_name = subjects(self.graph)
+        unknown = (name for name in criteria if name not in by_name)
+        raise_if([fault.within("criteria") for fault in unknown_names(unknown, by_name, "criterion")])
+        return {name: by_name[name] for name in criteria}
+
+    def _wanted(self, wanted: Collection[Reference], criteria: Collection[str]) -> Wanted:
+        return Wanted.of(wanted, self.subjects(criteria).values())
+
+
+def _all_used(graph: Graph) -> list[Reference]:
+    """All references of all relations."""
+    return [reference for cell in graph.cells() for reference in cell.uses.values()]

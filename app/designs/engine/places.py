@@ -1,0 +1,197 @@
+"""The places of a design that rows vary: which may be, and of what shape their values are."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app.designs.analyses import axes_of, is_measured
+from app.designs.document import Document
+from app.designs.engine.calculate import literal
+from app.designs.engine.needs import Varying
+from app.designs.engine.relations import rank_of
+from app.designs.network import Block, Cell, Graph
+from app.plain import Raw
+from app.reference import Reference
+from templates.core.arrays import Array
+from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name
+from templates.core.language.spec import Choice, Curve, Given, Input, Profile, Table
+from templates.core.units.units import Value
+
+
+def with_places(document: Document, graph: Graph, varied: Collection[Reference]) -> Document:
+    """The document with a literal at every varied place that it leaves to its default, or to a relation.
+
+    Only its shape matters: the rows give its values.
+    """
+    plain = document.model_copy(deep=True)
+    for reference in varied:
+        declared, cell = _declared(graph, reference), graph.cell(reference)
+        if isinstance(declared, Choice) or (cell and not cell.relations):
+            continue
+        if declared is None:
+            if cell:
+                plain.parameters[reference.block] = {"value": 1.0, "unit": _unit(graph, reference)}
+        elif reference.block in plain.steps:
+            plain.steps[reference.block].inputs[reference.member] = _placeholder(declared)
+        else:
+            plain.models[reference.block].parameters[reference.member] = _placeholder(declared)
+    return plain
+
+
+def _unit(graph: Graph, reference: Reference) -> str:
+    """The unit of a parameter that a relation sets."""
+    return f"{graph.kinds[str(reference)].base:~C}" or "1"
+
+
+def _placeholder(declared: Input) -> Raw:
+    default = declared.default if isinstance(declared, Given) else None
+    if default is not None:
+        return {"value": default.value, "unit": default.unit}
+    return {"value": [1.0] if isinstance(declared, Curve) else 1.0, "unit": declared.meaning.unit}
+
+
+def _declared(graph: Graph, reference: Reference) -> Input | None:
+    block = graph.blocks.get(reference.block)
+    if block is None or reference.analysis is not None:
+        return None
+    return block.cls.inputs.get(reference.member)
+
+
+def place_faults(
+    graph: Graph, varied: Collection[Reference], set_aside: Collection[Reference] = ()
+) -> Iterator[Fault]:
+    """Yield the faults of the places that are to vary, and of those whose relations are set aside."""
+    for reference in set_aside:
+        cell = graph.cell(reference)
+        if reference not in varied:
+            yield Fault(str(reference), "not_varied", f"{reference} does not vary here")
+        elif cell is None or not cell.relations:
+            yield Fault(str(reference), "no_relation", f"no relation sets {reference}: it varies as it is")
+    for reference in varied:
+        name, cell = str(reference), graph.cell(reference)
+        block = graph.blocks.get(reference.block)
+        if block and block.is_model and is_measured(reference, block.analyses, block.cls):
+            continue  # measures of each row, from whoever knows them
+        if cell is None and _declared(graph, reference) is None:
+            yield unknown_name(name, _places(graph), "place")
+        elif isinstance(_declared(graph, reference), Choice):
+            yield Fault(name, "not_a_number", f"{name} is a word; only quantities vary")
+        elif cell and cell.relations and reference not in set_aside:
+            yield Fault(name, "follows_from", _followed(cell))
+
+
+def _followed(cell: Cell) -> str:
+    """The places to vary instead of a relation."""
+    text = cell.raw if isinstance(cell.raw, str) else "a list with relations"
+    instead = f"; vary {', '.join(sorted(cell.uses))} instead, or write a value there" if cell.uses else ""
+    return f"{cell.name} follows from others ({text.strip()}){instead}"
+
+
+def _places(graph: Graph) -> list[str]:
+    inputs = (f"{block.name}.{name}" for block in graph.blocks.values() for name in block.cls.inputs)
+    return [*graph.parameters, *inputs]
+
+
+@dataclass(frozen=True)
+class Ranks:
+    """Numbers of axes that values have in one row, as far as known before they are calculated."""
+
+    graph: Graph
+    moving: Varying
+    _ranks: dict[Cell, int] = field(default_factory=dict)
+
+    def faults(self, blocks: Collection[str]) -> Iterator[Fault]:
+        """Lists of single values among the inputs of steps that differ from row to row."""
+        for node in self.graph.order:
+            if isinstance(node, Cell):
+                self._ranks[node] = self._of_cell(node)
+            elif isinstance(node, Block) and node in self.moving and node.name in blocks:
+                yield from self._of_step(node)
+
+    def _of_step(self, block: Block) -> Iterator[Fault]:
+        for name, cell in block.cells.items():
+            declared = block.cls.inputs[name]
+            if not isinstance(declared, Table) and self._ranks[cell] > int(isinstance(declared, Curve)):
+                detail = "this is a list of its own; where rows vary, an input has one value in each row"
+                yield Fault(cell.name, "shape", f"{detail}: give one value, or vary it too")
+
+    def _of_cell(self, cell: Cell) -> int:
+        if isinstance(cell.declared, Choice):
+            return 0
+        if isinstance(cell.raw, list) and cell.relations:
+            return 1
+        if not cell.relations:
+            return _rank(cell)
+        relation = cell.relations[0]
+        ranks = {name: self._of_reference(cell.uses[name]) for name in relation.whole_names}
+        ranks |= {item.text: self._of_reference(cell.uses[item.name]) - 1 for item in relation.items}
+        return rank_of(relation.tree, ranks)
+
+    def _of_reference(self, reference: Reference) -> int:
+        if cell := self.graph.cell(reference):
+            return self._ranks[cell]
+        if axes := axes_of(reference):
+            return axes
+        block = self.graph.blocks[reference.block]
+        formula = block.cls.formulas.get(reference.member)
+        own = formula.axes if isinstance(formula, Profile) else 0
+        return own + (0 if block in self.moving else self._points(block))
+
+    def _points(self, block: Block) -> int:
+        """Return the number of axes of the points of a step that is one for all rows."""
+        inputs = ((self._ranks[cell], block.cls.inputs[name]) for name, cell in block.cells.items())
+        return max((n - isinstance(d, Curve) for n, d in inputs if not isinstance(d, Table)), default=0)
+
+
+def _rank(cell: Cell) -> int:
+    try:
+        return np.ndim(literal(cell).si)
+    except FaultyText:
+        return 0  # reported where it is read
+
+
+def checked_rows(
+    graph: Graph, varied: Collection[Reference], rows: Mapping[Reference, Value]
+) -> tuple[int, dict[Reference, Array]]:
+    """The number of rows, and their columns as arrays.
+
+    Raises
+    ------
+    InvalidInputs
+        If columns are missing, too many, of different lengths or of the wrong shape.
+    """
+    faults = [
+        Fault(str(r), "missing", "this place varies, so rows need its values")
+        for r in varied
+        if r not in rows
+    ]
+    faults += [
+        Fault(str(r), "unknown_name", "this place was not declared as varied")
+        for r in rows
+        if r not in varied
+    ]
+    arrays = {reference: np.asarray(value, dtype=float) for reference, value in rows.items()}
+    count = next((len(array) for array in arrays.values() if array.ndim), 1)
+    for reference, array in arrays.items():
+        if reference in varied and array.ndim - 1 not in _ranks(graph, reference):
+            faults.append(Fault(str(reference), "shape", f"rows of this place have no shape {array.shape}"))
+        elif array.ndim and len(array) != count:
+            detail = f"all columns have one length, but this one has {len(array)} rows, another {count}"
+            faults.append(Fault(str(reference), "shape", detail))
+    if faults:
+        raise InvalidInputs(faults)
+    return count, arrays
+
+
+def _ranks(graph: Graph, reference: Reference) -> set[int]:
+    """Return the number of axes that a varied value may have in one row."""
+    declared = _declared(graph, reference)
+    if isinstance(declared, Curve):
+        return {0, 1} if declared.constant else {1}
+    if isinstance(declared, Table):
+        return {2}
+    cell = graph.cell(reference)
+    return {_rank(cell)} if cell and declared is None else {0}

@@ -1,0 +1,79 @@
+"""Why rows have no values: the faults of array calls, and the points that templates mask in them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.designs.engine.columns import Indices
+from templates.core.errors import Fault, FaultyText
+from templates.core.language.causes import BROKEN
+from templates.core.language.ledger import Mask
+from templates.core.language.template import Template
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """Why a row has no values: where, a code for programs, and a sentence."""
+
+    place: str
+    code: str
+    detail: str
+
+
+def refusal_of(faults: Sequence[Fault]) -> Refusal:
+    """One refusal of all that is wrong, at the place of the first."""
+    first, *others = faults
+    details = [first.detail, *(f"{fault.name}: {fault.detail}" for fault in others)]
+    return Refusal(first.name, first.code, "; ".join(details))
+
+
+def refusal_of_text(place: str, error: FaultyText) -> Refusal:
+    """The refusal of a relation."""
+    return Refusal(place, error.code, str(error))
+
+
+def masked(step: str, template: Template, rows: Indices) -> dict[int, Refusal]:
+    """The rows whose points are masked, each with the words of the first mask that covers it."""
+    refusals: dict[int, Refusal] = {}
+    for mask in template.ledger.masks:
+        if not mask.explains and mask.where.any():
+            refused = rows[np.broadcast_to(mask.where, rows.shape)].tolist()
+            refusals = dict.fromkeys(refused, _refusal(step, template, mask)) | refusals
+    return refusals
+
+
+def _refusal(step: str, template: Template, mask: Mask) -> Refusal:
+    """A mask in the form of the fault that a point has when it stands alone."""
+    attribute, *others = mask.names
+    name = template.declarations[attribute].name
+    code = BROKEN
+    if not others and attribute not in template.ledger.handed:
+        code = "outside_domain"
+    elif not others and mask.reason.startswith(f"{name} must be "):
+        code = "out_of_range"
+    return Refusal(f"{step}.{name}", code, mask.reason)
+
+
+def is_of_all_rows(cls: type[Template], faults: Sequence[Fault], varied: Collection[str]) -> bool:
+    """True if a fault holds for all rows, because it concerns nothing that follows from varied inputs."""
+    attributes = {cls.inputs[name].attribute for name in varied}
+    for fault in faults:
+        beneath = _beneath(cls, fault)
+        if fault.code == "missing" or (beneath and beneath.isdisjoint(attributes)):
+            return True
+    return False
+
+
+def _beneath(cls: type[Template], fault: Fault) -> frozenset[str]:
+    """The attributes that a fault follows from; none, where that is not known."""
+    declared = {**cls.formulas, **cls.inputs}
+    if not all(name in declared for name in fault.names):
+        return frozenset()
+    used = {declared[name].attribute for name in fault.names}
+    if fault.code == BROKEN:
+        rules = (rule for rule in cls.requirements if not set(rule.names).isdisjoint(fault.names))
+        used = used.union(*(rule.uses for rule in rules))
+    return frozenset().union(*map(cls.dependencies, used))

@@ -1,0 +1,274 @@
+"""One step, or one model, over many rows: array calls of its template, and which rows it refuses.
+
+In arrays a template masks the points that it would refuse alone; such rows are refused here with the words
+of the mask. Where it refuses a whole array, the rows are halved until those are found that it refuses. A row
+that is refused has no value in any output of the step, as in a design of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from app.calculations.size import shape
+from app.designs.engine.columns import Column, Indices, scattered
+from app.designs.engine.refusals import Refusal, is_of_all_rows, masked, refusal_of
+from app.designs.network import Block
+from app.plain import Raw
+from templates.core.arrays import Mask
+from templates.core.errors import InvalidInputs
+from templates.core.language.answer import Answer
+from templates.core.language.evaluate import Evaluation, answers_at_level
+from templates.core.language.intake import is_single
+from templates.core.language.levels import at_level
+from templates.core.language.spec import Curve, Profile, Table
+from templates.core.language.template import Template
+from templates.core.units.quantity import Typed
+from templates.core.units.units import Value
+
+NO_VALUE = "there is no value here"
+
+Given = Mapping[str, Column | Raw]
+"""Inputs of a step by name: those that differ from row to row as columns, all others as they were read."""
+
+
+class LevelMoved(Exception):
+    """Some rows start at another level than those before them; one level has to serve all rows."""
+
+    def __init__(self, step: str, before: str, level: str) -> None:
+        self.step, self.before, self.level = step, before, level
+        super().__init__(f"{step} starts at {before} and at {level}")
+
+
+@dataclass(frozen=True)
+class Part:
+    """A template with the answers for some of the rows."""
+
+    rows: Indices
+    template: Template
+    answers: Mapping[str, Answer]
+    errors: Mapping[str, Value | None]
+
+    @cached_property
+    def is_array(self) -> bool:
+        """Whether its template has a point for each of its rows."""
+        return self.template.shape_of_points() == self.rows.shape
+
+
+@dataclass
+class StepRows:
+    """The results of a step for `count` rows.
+
+    Attributes
+    ----------
+    has_rows
+        Whether any input differs from row to row. If not, there is one row, which stands for all.
+    level
+        At which it was evaluated.
+    refusals
+        By row.
+    evaluation
+        Of a step that is one for all rows.
+    """
+
+    block: Block
+    count: int
+    has_rows: bool
+    level: str | None = None
+    parts: list[Part] = field(default_factory=list)
+    refusals: dict[int, Refusal] = field(default_factory=dict)
+    evaluation: Evaluation | None = None
+    _columns: dict[str, Column] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, block: Block, evaluation: Evaluation) -> StepRows:
+        """A step of which nothing differs from row to row."""
+        part = Part(_ONE_ROW, evaluation.template, evaluation.outputs, evaluation.error)
+        level = evaluation.level if isinstance(evaluation.level, str) else None
+        return cls(block, 1, has_rows=False, level=level, parts=[part], evaluation=evaluation)
+
+    def refused(self) -> Mask:
+        """Which rows are refused."""
+        refused = np.zeros(self.count, dtype=bool)
+        refused[list(self.refusals)] = True
+        return refused
+
+    def column(self, name: str) -> Column:
+        """The values [SI] of an input or output; NaN where there is none."""
+        if name not in self._columns:
+            self._columns[name] = self._joined([(part.rows, self._value(part, name)) for part in self.parts])
+        return self._columns[name]
+
+    def error(self, output: str) -> Column:
+        """The relative errors of an output; NaN where none is stated."""
+        return self._joined([(part.rows, self._error(part, output)) for part in self.parts])
+
+    def absence(self, output: str) -> str | None:
+        """Why an output does not exist in rows that are not refused: the first reason."""
+        for part in self.parts:
+            answer = part.answers[output]
+            if answer.value is None:
+                return answer.reason or NO_VALUE
+            if answer.reasons is not None:
+                reasons = np.broadcast_to(answer.reasons, part.rows.shape)
+                for row, reason in zip(part.rows.tolist(), reasons.tolist(), strict=True):
+                    if reason is not None and row not in self.refusals:
+                        return str(reason)
+        return None
+
+    def _joined(self, columns: list[tuple[Indices, Column]]) -> Column:
+        """One column of all parts, without the rows that are refused."""
+        if not columns:
+            return Column(np.nan)
+        if len(columns) == 1 and columns[0][0].size == self.count:
+            whole = columns[0][1]
+        else:
+            whole = scattered(self.count, columns)
+        return whole.without(self.refused()) if self.refusals else whole
+
+    def _value(self, part: Part, name: str) -> Column:
+        template, answer = part.template, part.answers.get(name)
+        if answer is not None and answer.value is None:
+            return Column(np.nan)
+        declared = template.formulas.get(name) or template.inputs[name]
+        with np.errstate(all="ignore"):
+            si = getattr(template, declared.attribute)
+        if answer is not None and answer.reasons is not None:
+            si = np.where(np.isnan(answer.value), np.nan, si)
+        axes = declared.axes if isinstance(declared, Profile) else int(isinstance(declared, Curve))
+        return Column(si, is_row=self.has_row_axis(part) and np.ndim(si) > axes)
+
+    def _error(self, part: Part, output: str) -> Column:
+        error = part.errors.get(output)
+        error = np.nan if error is None else error
+        return Column(error, is_row=self.has_row_axis(part) and bool(np.ndim(error)))
+
+    def has_row_axis(self, part: Part) -> bool:
+        """Return whether the values of a part may have an axis of rows: a single row is a single value."""
+        return self.has_rows and part.is_array
+
+
+_ONE_ROW = np.arange(1)
+
+
+def step_rows(
+    block: Block,
+    given: Given,
+    members: Sequence[str],
+    count: int,
+    level: str | None = None,
+    started: str | None = None,
+) -> StepRows:
+    """Evaluate a step for `count` rows; rows in which an input has no value are left out.
+
+    Without a `level` it is the one at which the first rows start, or at which those before `started`.
+
+    Raises
+    ------
+    LevelMoved
+        If no level is given and rows start at different ones.
+    """
+    columns = {name: value for name, value in given.items() if isinstance(value, Column)}
+    step = StepRows(block, count, has_rows=True, level=level or started)
+    has_inputs = np.ones(count, dtype=bool)
+    for column in columns.values():
+        has_inputs &= column.finite_rows()
+    evaluator = _Evaluator(step, given, tuple(members), is_level_given=level is not None)
+    for rows in _grouped(block, columns, np.flatnonzero(has_inputs)):
+        evaluator.evaluate(rows)
+    return step
+
+
+def _grouped(block: Block, columns: Mapping[str, Column], rows: Indices) -> Iterator[Indices]:
+    """Rows that go into one array call: those of equal inputs where an input is one value for all points."""
+    shared = [
+        np.asarray(column.value)[rows].reshape(len(rows), -1)
+        for name, column in columns.items()
+        if _is_one_for_all(block, name)
+    ]
+    if not shared:
+        yield from [rows] if rows.size else []
+        return
+    _, group = np.unique(np.hstack(shared), axis=0, return_inverse=True)
+    for number in range(int(group.max(initial=-1)) + 1):
+        yield rows[np.ravel(group) == number]
+
+
+def _is_one_for_all(block: Block, name: str) -> bool:
+    declared = block.cls.inputs[name]
+    return isinstance(declared, Table) or is_single(declared)
+
+
+@dataclass(frozen=True)
+class _Evaluator:
+    """The array calls of one step."""
+
+    step: StepRows
+    given: Given
+    members: tuple[str, ...]
+    is_level_given: bool
+
+    def evaluate(self, rows: Indices) -> None:
+        """Answers for some rows; a refusing call is halved down to single rows."""
+        try:
+            part = self._part(rows)
+        except InvalidInputs as error:
+            if rows.size > 1 and not is_of_all_rows(self.step.block.cls, error.faults, self._varied()):
+                for half in np.array_split(rows, 2):
+                    self.evaluate(half)
+            else:
+                refusal = refusal_of([fault.within(self.step.block.name) for fault in error.faults])
+                self.step.refusals |= dict.fromkeys(rows.tolist(), refusal)
+        else:
+            self.step.parts.append(part)
+            self.step.refusals |= masked(self.step.block.name, part.template, part.rows)
+
+    def _varied(self) -> list[str]:
+        """The inputs that differ from row to row."""
+        return [name for name, value in self.given.items() if isinstance(value, Column)]
+
+    def _part(self, rows: Indices) -> Part:
+        cls = self.step.block.cls
+        template = cls.from_quantities({name: self._input(name, rows) for name in self.given})
+        if cls.levels:
+            template = at_level(template, self._level(template))
+        outputs = [name for name in self.members if name in cls.formulas]
+        answers, errors = answers_at_level(template, outputs)
+        for name in self.members:
+            if name not in cls.formulas:
+                getattr(template, cls.inputs[name].attribute)
+        return Part(rows, template, answers, errors)
+
+    def _level(self, template: Template) -> str:
+        step = self.step
+        if step.level is None:
+            step.level = template.starting_level()
+        elif not self.is_level_given and step.level != (started := template.starting_level()):
+            raise LevelMoved(step.block.name, step.level, started)
+        return step.level
+
+    def _input(self, name: str, rows: Indices) -> Raw:
+        """An input as its template takes it; of a single row as a single value, so that it speaks of it."""
+        value = self.given[name]
+        if not isinstance(value, Column):
+            return value
+        declared = self.step.block.cls.inputs[name]
+        si: Value = np.asarray(value.value)[rows]
+        if rows.size == 1 or _is_one_for_all(self.step.block, name):
+            si = np.asarray(value.value)[rows[0]]
+        elif isinstance(declared, Curve) and not value.rank:
+            si = np.broadcast_to(np.asarray(si)[:, None], (rows.size, self._places(declared)))
+        return Typed(None, declared.meaning.unit, si if np.ndim(si) else float(si), {})
+
+    def _places(self, declared: Curve) -> int:
+        """Number of places that the other curves have along the same axis."""
+        lengths = [1]
+        for name, value in self.given.items():
+            other = self.step.block.cls.inputs[name]
+            if isinstance(other, Curve) and other.along == declared.along:
+                places = value.places if isinstance(value, Column) else shape(value)
+                lengths += places[-1:]
+        return max(lengths)

@@ -1,0 +1,104 @@
+"""The results of many rows of a design: columns, errors, levels, and why rows have no values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.columns import Column
+from app.designs.engine.refusals import Refusal
+from app.designs.engine.verdicts import JudgedColumn, RowCodes, Verdicts
+from app.designs.subjects import Subject
+from app.reference import Reference
+from templates.core.arrays import Array
+from templates.core.errors import Fault, InvalidInputs
+
+
+@dataclass
+class Table:
+    """The values of `count` rows.
+
+    Attributes
+    ----------
+    columns
+        By name, in SI: of shape (N,), or (N, K) of a curve. NaN where a row is refused, where an output does
+        not exist, and where it waits for a solid. A value that is one for all rows is a read-only view.
+    errors
+        The own relative error of an output of a step, of shape (N,); NaN where none is stated.
+    refusals
+        By row, the first reason why some of its values are missing.
+    absent
+        Outputs that do not exist in some rows that are not refused, and the first reason.
+    levels
+        By step, the one level of all rows.
+    verdicts
+        By criterion, the verdict of each row: a place in `judging.comparison.WORST_FIRST`.
+    judged
+        By criterion, what was compared in each row, where that was asked for.
+    """
+
+    count: int
+    columns: dict[Reference, Array] = field(default_factory=dict)
+    errors: dict[Reference, Array] = field(default_factory=dict)
+    refusals: dict[int, Refusal] = field(default_factory=dict)
+    absent: dict[Reference, str] = field(default_factory=dict)
+    levels: dict[str, str | None] = field(default_factory=dict)
+    verdicts: dict[str, RowCodes] = field(default_factory=dict)
+    judged: dict[str, JudgedColumn] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, count: int, wanted: Iterable[Reference]) -> Table:
+        """A table to which chunks are added; of no rows it has its columns already."""
+        return cls(count) if count else cls(0, {reference: np.empty(0) for reference in wanted})
+
+    def add(self, start: int, rows: Calculation, wanted: Iterable[Reference]) -> None:
+        """Take over a chunk that begins at a row."""
+        chunk = slice(start, start + rows.count)
+        for reference in wanted:
+            column = rows.column(reference)
+            self.columns[reference] = self._filled(self.columns.get(reference), chunk, column, reference)
+            if rows.is_output(reference):
+                step, output = rows.step(reference.block), reference.member
+                error = step.error(output) if step else Column(np.nan)
+                self.errors[reference] = self._filled(self.errors.get(reference), chunk, error, reference)
+                if step and (absence := step.absence(output)):
+                    self.absent.setdefault(reference, absence)
+        needed = rows.needs.members if rows.needs else ()
+        steps = (name for name in needed if not rows.graph.blocks[name].is_model)
+        self.levels |= dict.fromkeys(steps) | rows.levels_used()
+        self.refusals |= _refusals(rows, start)
+
+    def judge(
+        self, start: int, rows: Calculation, subjects: Mapping[str, Subject], *, with_columns: bool
+    ) -> None:
+        """Judge a chunk that begins at a row."""
+        verdicts, chunk = Verdicts(rows), slice(start, start + rows.count)
+        for name, subject in subjects.items():
+            codes, column = verdicts.rows(subject)
+            if name not in self.verdicts:
+                self.verdicts[name] = np.empty(self.count, dtype=np.int8)
+            self.verdicts[name][chunk] = codes
+            if with_columns:
+                whole = self.judged.get(name)
+                self.judged[name] = column.within(whole, chunk, self.count)
+
+    def _filled(self, whole: Array | None, chunk: slice, column: Column, reference: Reference) -> Array:
+        """A column with the values of a chunk; allocated once, unless one value serves all rows."""
+        if not column.is_row and chunk == slice(0, self.count):
+            return column.spread(self.count)
+        if whole is None or (whole.ndim == 1 and column.rank):
+            whole = np.full((self.count, *column.places), np.nan)
+        if column.rank and column.places != whole.shape[1:]:
+            detail = f"curves of different lengths in one column: {whole.shape[1:]} and {column.places}"
+            raise InvalidInputs([Fault(str(reference), "shape", detail)])
+        whole[chunk] = column.padded(whole.ndim - 1)
+        return whole
+
+
+def _refusals(rows: Calculation, start: int) -> Mapping[int, Refusal]:
+    if rows.for_all is not None:
+        return dict.fromkeys(range(start, start + rows.count), rows.for_all)
+    return {start + row: refusal for row, refusal in rows.refusals.items()}

@@ -1,0 +1,72 @@
+"""The acting principal: set for each request and job, read wherever an action is recorded.
+
+Units of work run in the context of their caller, so a row that is written there has the right author.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from typing import Literal
+
+Role = Literal["viewer", "author", "checker", "admin"]
+ROLES: tuple[Role, ...] = ("viewer", "author", "checker", "admin")
+INCLUDED: dict[Role, frozenset[Role]] = {
+    "viewer": frozenset({"viewer"}),
+    "author": frozenset({"viewer", "author"}),
+    "checker": frozenset({"viewer", "author", "checker"}),
+    "admin": frozenset({"admin"}),
+}
+"""What each role includes. An administrator administers: designs need a role of their own."""
+
+
+@dataclass(frozen=True)
+class Principal:
+    """A person or a service; `roles` are those that the key or session of the request allows.
+
+    `key` is the prefix of the key that the request carries, or by which its session began.
+    """
+
+    id: str
+    name: str
+    kind: Literal["person", "service"]
+    roles: frozenset[Role]
+    key: str | None = None
+
+    def may(self, role: Role) -> bool:
+        """Return whether one of the roles includes a given role."""
+        return any(role in INCLUDED[own] for own in self.roles)
+
+
+LOCAL = Principal("local", "local", "person", frozenset(ROLES))
+"""Whoever uses the service on its own machine, where nothing asks for a key."""
+SYSTEM = Principal("system", "Crankwright", "service", frozenset(ROLES))
+"""The service itself, such as its sweep of old files."""
+
+ANONYMOUS = Principal("anonymous", "nobody", "person", frozenset())
+"""Whoever has sent no valid key where keys are asked for."""
+
+BUILT_IN = frozenset({LOCAL.id, SYSTEM.id, ANONYMOUS.id})
+"""Principals without a row: the service neither limits them nor counts their usage."""
+
+
+def client_of(principal: str) -> str:
+    """Return the client, whose turn jobs take, that a principal is."""
+    return f"principal:{principal}"
+
+
+ACTING: ContextVar[Principal] = ContextVar("acting", default=LOCAL)
+acting: Callable[[], Principal] = ACTING.get
+"""On whose behalf the present request or job runs."""
+
+
+@contextmanager
+def acting_as(principal: Principal) -> Iterator[None]:
+    """Act on behalf of a principal."""
+    token = ACTING.set(principal)
+    try:
+        yield
+    finally:
+        ACTING.reset(token)

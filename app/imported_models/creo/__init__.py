@@ -1,0 +1,1 @@
+"""Draw models by a running Creo session, through CREOSON's JSON interface."""

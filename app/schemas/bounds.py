@@ -1,0 +1,45 @@
+"""JSON objects with a bounded number of names, so that a large wrong object gives few errors.
+
+Pydantic looks at every entry of an object before it counts them, and describes each that is wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+
+from pydantic import BaseModel, BeforeValidator, model_validator
+from pydantic_core import PydanticCustomError
+
+MOST_FIELDS = 100
+
+
+class Bounded(BaseModel):
+    """A model that refuses an object with far more names than any of ours has, before it looks at them."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def few_fields(cls, raw: object) -> object:
+        """The object as it is.
+
+        Raises
+        ------
+        PydanticCustomError
+            If it has too many names.
+        """
+        return _few(raw, MOST_FIELDS)
+
+
+def at_most(count: int) -> BeforeValidator:
+    """Return an annotation of a dictionary.
+
+    It has at most so many entries, counted before they are looked at.
+    """
+    return BeforeValidator(partial(_few, most=count))
+
+
+def _few(raw: object, most: int) -> object:
+    if isinstance(raw, Mapping) and len(raw) > most:
+        message = "an object here has at most {most} names, not {count}"
+        raise PydanticCustomError("too_long", message, {"most": most, "count": len(raw)})
+    return raw
