@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.designs.engine.net import Net
-from app.designs.subjects import subjects
+from app.designs.network import subjects
 from templates.core.judging.criterion import Criterion
 
 

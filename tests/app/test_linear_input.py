@@ -17,8 +17,7 @@ from app.calculations.curves import _NUMBER, LONGEST_LINE, read_curves
 from app.calculations.schemas import OIL_FILM, EvaluateIn
 from app.calculations.size import points
 from app.designs.document import Document, merge
-from app.designs.graph import Catalogues, Graph, build_graph
-from app.designs.size import MOST_RELATION_TEXT
+from app.designs.graph import MOST_RELATION_TEXT, Catalogues, Graph, build_graph
 from app.presentation import numbers
 from app.presentation.typed import text_of, value_of
 from app.reports.cells import clean
