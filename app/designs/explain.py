@@ -1,4 +1,4 @@
-"""Where a model parameter comes from: dimension ← relation ← output ← formula ← inputs."""
+"""Explain a model parameter: dimension ← relation ← output ← formula ← inputs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Read the question of a study against the design: places with their units, rows by number, objectives."""
+"""Validate the request of a study against its design: places with units, rows, objectives."""
 
 from __future__ import annotations
 
