@@ -9,7 +9,7 @@ from app.calculations import rendering
 from app.calculations.cache import Cache
 from app.calculations.sizes import size_of
 from app.catalogue.finding import find_templates
-from app.designs import memory as designs
+from app.designs.engine import steps as designs
 from app.designs.engine.steps import Memory
 from app.designs.graph import Block
 from app.designs.worksheet import _evaluated

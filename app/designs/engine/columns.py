@@ -1,7 +1,8 @@
 """Values of many rows of a design, and how far off they may be.
 
-The row is the first axis, a place along a curve the last. A value that does not follow from the rows has no axis for them. So whether the first axis of an array counts
-rows is part of the column, and 360 rows are not mistaken for a curve of 360 places.
+The row is the first axis, a place along a curve the last. A value that does not follow from the rows has no
+axis for them. So whether the first axis of an array counts rows is part of the column, and 360 rows are not
+mistaken for a curve of 360 places.
 """
 
 from __future__ import annotations
