@@ -23,10 +23,10 @@ from app.designs.engine.relations import MOST_OPERATIONS
 from app.designs.engine.row_design import MOST_VALUES, Wanted
 from app.designs.network import Subject
 from app.designs.origins import literals_behind, measures_behind, through_solids
+from app.designs.schemas.designs import Sensitivity
 from app.designs.slopes import Local, Slopes, slope_in, slopes_at
 from app.presentation.units import System, shown_unit
 from app.reference import Reference
-from app.schemas.designs import Sensitivity
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs, listed
 from templates.core.units.units import registry, unit
