@@ -1,4 +1,4 @@
-"""From a document to its network, checked before anything is calculated.
+"""Build the network of a document, and check it before anything is calculated.
 
 Every check returns what it finds; nothing is changed on the way.
 """

@@ -1,4 +1,4 @@
-"""`/designs/{id}/model` and its kin: the newest good model, or that of a revision, in the kind asked for."""
+"""`/designs/{id}/model…`: files of the newest good model, or of that of a revision."""
 
 from __future__ import annotations
 
