@@ -13,12 +13,12 @@ from pathlib import Path
 
 import click
 
-from app.identity.acting import ROLES, Role
 from app.identity.errors import IdentityError
+from app.identity.principal import ROLES, Role
 from app.identity.rows import is_over
 from app.identity.service import Changes, Identity, Kind
 from app.settings import Settings
-from app.storage.connecting import require_connection
+from app.storage.connection import require_connection
 from app.storage.database import Database
 from app.storage.engines import sqlite_file
 from app.storage.errors import DataFolderInUse, StorageError
@@ -156,7 +156,7 @@ def _state(key: ApiKeyRow) -> str:
 
 
 def _moment(span: str | None) -> datetime | None:
-    """The moment when a span such as `90d` from now has passed."""
+    """Return the moment when a span such as `90d` from now has passed."""
     if span is None:
         return None
     if (match := _SPAN.fullmatch(span)) is None:
@@ -182,7 +182,7 @@ def opened(data: Path | None) -> Iterator[Identity]:
 
 
 def _prepared(settings: Settings) -> str:
-    """The URL of the database, migrated; a server that holds the data folder has migrated its own.
+    """Return the URL of the database, migrated; a server that holds the data folder has migrated its own.
 
     A database that servers share needs no folder: this may run where nothing can be written.
     """

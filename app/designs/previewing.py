@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from app.calculations.jobs import PREVIEW
 from app.designs.long_answers import LongAnswers
 from app.designs.preview import preview
+from app.designs.schemas.designs import Preview
 from app.plain import Json, JsonObject
 from app.presentation.units import System
-from app.schemas.designs import Preview
 
 
 @dataclass(frozen=True)

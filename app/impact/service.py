@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from app.calculations.jobs import IMPACT
 from app.designs import repository as designs
 from app.designs.long_answers import LongAnswers
-from app.impact.schemas import ImpactIn
+from app.impact.bodies import ImpactIn
+from app.impact.schemas import Impact
 from app.impact.survey import Asked, Survey
 from app.presentation.units import System
-from app.schemas.impact import Impact
 
 
 class Impacts(LongAnswers):
