@@ -37,10 +37,10 @@ class LongAnswers(ABC):
 
     @abstractmethod
     def calculated(self, payload: JsonObject, body: Json) -> Answer:
-        """The whole answer to what a job holds."""
+        """Return the whole answer to what a job holds."""
 
     def queued(self, payload: JsonObject, body: object, client: str) -> str:
-        """The id of a new job; it takes over the steps that this request has begun."""
+        """Return the id of a new job; it takes over the steps that this request has begun."""
         whole = {**payload, "body": self.store.put(to_json(body))}
         begun = begun_steps()
 

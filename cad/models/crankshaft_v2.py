@@ -68,7 +68,7 @@ class Crankshaft(CrankRules):
 
     z is the axis on which the shaft turns; z = 0 is the middle of the first main journal. The nose is at -z,
     the flange at +z, where an engine has its flywheel. Pin angles count from x towards y, as those of
-    `engine` 2; their number is that of the throws. All throws are alike but for their counterweights.
+    `engine` 1; their number is that of the throws. All throws are alike but for their counterweights.
 
     A bore, fillet, oil drilling, counterweight, bolt hole or inclination of 0 is none. Counterweight radii
     are one number, or one for each web from the nose on, two for each throw; their angle is common.

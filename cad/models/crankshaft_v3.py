@@ -29,7 +29,7 @@ class Crankshaft(SplitParameters, EndParameters):
 
     z is the axis on which the shaft turns; z = 0 is the middle of the first main journal. The nose is at -z,
     the flange at +z, where an engine has its flywheel. Pin angles count from x towards y, as those of
-    `engine` 2; their number is that of the throws. All throws are alike but for their counterweights.
+    `engine` 1; their number is that of the throws. All throws are alike but for their counterweights.
 
     A pin split of 0 is none: one pin a throw. Else each throw has a front pin at its
     pin angle and a rear pin further on by the split, each as long as the pin length, each for one rod, and
