@@ -135,14 +135,14 @@ def _document(
         "steps": {
             "engine": {
                 "template": "engine",
-                "version": 2,
+                "version": 1,
                 "inputs": {**engine, **placed, "crankpin_diameter": "= pin_diameter"},
                 "outputs": _OUTPUTS,
                 "limits": {"permissible_main_load": "60 kN", "permissible_crankpin_load": "60 kN"},
             },
             "film": {
                 "template": "oil_film_cycle",
-                "version": 2,
+                "version": 1,
                 "level": "mobility",
                 "inputs": {
                     "crank_angle": "= engine.crank_angle",
