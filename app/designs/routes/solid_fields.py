@@ -9,7 +9,7 @@ from fastapi import APIRouter, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheCatalogues, TheDatabase
-from app.api.stored import UNAVAILABLE, UNCHANGED
+from app.api.file_answers import UNAVAILABLE, UNCHANGED
 from app.api.waiting import LATER
 from app.designs import views
 from app.designs.routes.answers import Id, Number
@@ -22,9 +22,9 @@ from app.schemas.problems import RouteOptions, refusals
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from cad.export import MEDIA_TYPES
-from cad.naming import name as wide_name
-from cad.naming import plain_name
-from cad.painting import Glb
+from cad.field_mesh import Glb
+from cad.file_names import name as wide_name
+from cad.file_names import plain_name
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
 

@@ -1,0 +1,108 @@
+"""Streams that go on where the client left off: `id` and `Last-Event-ID`, as in the HTML standard.
+
+Browsers send the header by themselves when they connect again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager, suppress
+from dataclasses import dataclass
+from typing import Annotated
+
+from fastapi import Depends, Header
+from fastapi.sse import ServerSentEvent
+from starlette.concurrency import run_in_threadpool
+
+from app.jobs.events import Events, Subscription
+from app.schemas.answers import Answer
+from app.storage.errors import DatabaseUnavailable
+from app.storage.event_log import Event
+
+
+async def last_event(
+    last_event_id: Annotated[
+        str | None,
+        Header(
+            pattern="^[0-9]{0,18}$",
+            description="the `id` of the last event that the client got: the stream goes on after it",
+        ),
+    ] = None,
+) -> int | None:
+    """Return the number of the last event that the client got; None if it got none."""
+    return int(last_event_id) if last_event_id else None
+
+
+LastEvent = Annotated[int | None, Depends(last_event)]
+
+
+Still = Callable[[], Awaitable[bool]]
+"""Asks whether whoever listens may still do so: the key may have been revoked since."""
+
+
+async def always() -> bool:
+    """Return where nothing asks for a key: the stream may always go on."""
+    return True
+
+
+async def allowed(events: Subscription, still: Still) -> AsyncIterator[Event]:
+    """Yield the events as they come, to the first one that whoever listens may not have any more."""
+    async for event in events:
+        if not await still():
+            return
+        yield event
+
+
+@asynccontextmanager
+async def listening(events: Events, topic: str) -> AsyncIterator[Subscription]:
+    """Listen to a topic; if the database goes away the stream ends, and the client comes back."""
+    with suppress(DatabaseUnavailable):
+        async with events.subscribe(topic) as subscription:
+            yield subscription
+
+
+def identity(number: int | None) -> str | None:
+    """Return the `id` of an event.
+
+    One that is stored nowhere has none: the client keeps that of the one before.
+    """
+    return None if number is None else str(number)
+
+
+@dataclass(frozen=True)
+class Whole:
+    """The whole content that a stream shows at every event, and the number of that event."""
+
+    number: int
+    state: str
+    data: Answer
+    has_ended: bool
+
+    @property
+    def event(self) -> ServerSentEvent:
+        """Return the content as an event to be sent."""
+        return ServerSentEvent(id=identity(self.number), event=self.state, data=self.data)
+
+
+async def as_it_stands(
+    events: Subscription, still: Still, read: Callable[[], Whole], last: int | None, **more: str
+) -> AsyncIterator[ServerSentEvent]:
+    """Yield the content whenever it has changed, and its progress with `more`, until it has ended.
+
+    A client that has got how it stands now hears only of what comes.
+    """
+    now = await run_in_threadpool(read)
+    events.number = now.number
+    if now.number != last:
+        yield now.event
+    if now.has_ended:
+        return
+    async for event in allowed(events, still):
+        if event.number is None:
+            yield ServerSentEvent(event=event.name, data={**event.message, **more})
+            continue
+        now = await run_in_threadpool(read)
+        events.number = now.number
+        yield now.event
+        if now.has_ended:
+            return

@@ -1,0 +1,67 @@
+"""Other values for a design in a question about it: nothing of them is saved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from app.catalogue.catalogues import Catalogues
+from app.designs.document import Document
+from app.designs.graph import Graph, build_graph, raise_if
+from app.designs.variants.table import Overrides, applied, is_place, places
+from app.plain import Raw
+from app.reference import Reference
+from templates.core.errors import Fault, FaultyText, unknown_name, unknown_names
+from templates.core.language.spec import Choice, Table
+from templates.core.units.quantity import read, read_any
+from templates.core.units.relation import is_relation
+
+WITH = "with"
+
+
+def changed(document: Document, catalogues: Catalogues, others: Overrides, unknown: str) -> Document:
+    """Return the document with other values; nothing of the original changes.
+
+    Raises
+    ------
+    InvalidInputs
+        With places that the design does not have, values that do not fit them, and the unknown itself.
+    """
+    graph, faults = build_graph(document, catalogues)
+    raise_if(faults)
+    raise_if([fault.within(WITH) for fault in _faults(graph, others, unknown)])
+    return applied(document, others)
+
+
+def _faults(graph: Graph, others: Overrides, unknown: str) -> Iterator[Fault]:
+    absent = [name for name in others if not is_place(graph, name)]
+    if absent:
+        yield from unknown_names(absent, list(places(graph)), "parameter or input")
+    for name, raw in others.items():
+        if name == unknown:
+            yield Fault(name, "conflict", f"{name} is what is solved for; it has no other value")
+        elif name not in absent and not is_relation(raw) and not isinstance(raw, list):
+            yield from _misfit(graph, name, raw)
+
+
+def _misfit(graph: Graph, name: str, raw: Raw) -> Iterator[Fault]:
+    """Yield a fault if a value is none of its place.
+
+    A word that is not an option, a quantity of another kind.
+    """
+    reference = Reference.parse(name)
+    block = graph.blocks.get(reference.block)
+    declared = block.cls.inputs[reference.member] if block else None
+    if isinstance(declared, Choice):
+        if raw not in declared.options:
+            yield unknown_name(str(raw), declared.options, "option").within(name)
+        return
+    if isinstance(declared, Table):
+        return
+    try:
+        if declared is not None:
+            read(raw, declared.meaning.unit)
+        else:
+            cell = graph.parameters[name]
+            read(raw, f"{graph.kinds[name].base:~C}" or "1" if cell.relations else read_any(cell.raw).unit)
+    except FaultyText as error:
+        yield error.fault(name)

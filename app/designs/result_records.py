@@ -1,0 +1,87 @@
+"""The results that a revision stores, as models; equal texts are read once.
+
+Results are attached to a revision once, but a page asks for them several times, and so does every later look.
+They are kept by their text, so nothing that is old can be returned.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from threading import Lock
+
+from cachetools import LRUCache
+from pydantic import TypeAdapter
+from sqlalchemy import Text, bindparam, select, type_coerce
+from sqlalchemy.orm import Session
+
+from app.designs.schemas.designs import RevisionStep, Round
+from app.schemas.criteria import Criterion, Verdict
+from app.solids.schemas.analyses import ModelAnalysis
+from app.storage.tables import JsonText, RevisionRow, canonical_json
+
+KEPT = 4 * 2**20  # characters of stored texts; their models take some ten times as many bytes
+_TEXT = select(type_coerce(RevisionRow.results, Text)).where(
+    RevisionRow.design_id == bindparam("of"), RevisionRow.number == bindparam("at")
+)
+_JSON = JsonText()
+_ROUNDS = TypeAdapter(list[Round])
+_ANALYSES = TypeAdapter(dict[str, dict[str, ModelAnalysis]])
+_JUDGED: Mapping[str, TypeAdapter[list[Criterion] | Verdict | None]] = {
+    "criteria": TypeAdapter(list[Criterion] | None),
+    "verdict": TypeAdapter(Verdict | None),
+}
+
+
+@dataclass(frozen=True)
+class Results:
+    """The results of a revision; they are shared, so nobody changes them."""
+
+    text: str | None
+    steps: Mapping[str, RevisionStep]  # those that are calculated
+    judged: Mapping[str, list[Criterion] | Verdict | None]  # what is stored of `criteria` and `verdict`
+    iterations: list[Round]
+    analyses: Mapping[str, dict[str, ModelAnalysis]]  # by model and kind
+
+    @cached_property
+    def digest(self) -> str:
+        """Return the SHA-256 of their canonical form, which a signature covers."""
+        return hashlib.sha256(canonical_json(_JSON.process_result_value(self.text)).encode()).hexdigest()
+
+
+_kept: LRUCache[str, Results] = LRUCache(KEPT, getsizeof=lambda results: len(results.text or ""))
+_keeping = Lock()
+
+
+def results_of(session: Session, row: RevisionRow) -> Results:
+    """Return the results of a revision; empty while there are none."""
+    text: str | None = session.scalar(_TEXT, {"of": row.design_id, "at": row.number})
+    if text is None:
+        return Results(None, {}, {}, [], {})
+    with _keeping:
+        results = _kept.get(text)
+    if results is None:
+        results = _read(text)
+        if len(text) <= KEPT:
+            with _keeping:
+                _kept[text] = results
+    return results
+
+
+def _read(text: str) -> Results:
+    plain = _JSON.process_result_value(text)
+    if not plain:
+        return Results(text, {}, {}, [], {})
+    return Results(
+        text=text,
+        steps={
+            name: RevisionStep.model_validate(step)
+            for name, step in plain["steps"].items()
+            if "outputs" in step
+        },
+        judged={name: kind.validate_python(plain[name]) for name, kind in _JUDGED.items() if name in plain},
+        iterations=_ROUNDS.validate_python(plain["iterations"]),
+        analyses=_ANALYSES.validate_python(plain.get("analyses", {})),
+    )

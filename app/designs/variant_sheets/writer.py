@@ -1,0 +1,127 @@
+"""The table of variants as rows of a sheet: inputs that can be read back, then results that are not."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from app.designs.schemas.variants import VariantColumn, VariantResult, VariantsOut
+from app.designs.variant_sheets.reader import FIRST, RELATION, RESULTS
+from app.designs.variant_sheets.values import Shape, shape
+from app.designs.variant_sheets.xlsx_files import number_text
+from app.presentation.criteria import WORDS
+from app.presentation.input_text import text_of
+from app.presentation.spreadsheets import Value
+from app.schemas.criteria import Criterion
+
+DIGITS = 4  # of a utilisation, behind the point
+UNIT = "unit"
+
+
+@dataclass(frozen=True)
+class SheetColumn:
+    """Heading, unit, and the cell of every variant."""
+
+    heading: str
+    unit: str
+    cells: Sequence[Value]
+    is_result: bool = False
+
+
+def sheet_columns(out: VariantsOut) -> list[SheetColumn]:
+    """Return the columns of a table of variants: names, what they override, results."""
+    names = list(out.variants)
+    inputs = [column for about in out.columns for column in _of_place(out, about)]
+    return [SheetColumn(FIRST, UNIT, names), *inputs, *_results(out, names)]
+
+
+def rows_of(columns: Sequence[SheetColumn]) -> list[list[Value]]:
+    """Return headings, units, and a row for each variant."""
+    head: list[list[Value]] = [[column.heading for column in columns], [column.unit for column in columns]]
+    return head + [list(cells) for cells in zip(*(column.cells for column in columns), strict=True)]
+
+
+def _of_place(out: VariantsOut, about: VariantColumn) -> Iterable[SheetColumn]:
+    """Yield a column for the values of a place, and one for its relations, if there are any."""
+    raws = [overrides.get(about.place) for overrides in out.variants.values()]
+    shapes = [None if raw is None else shape(raw) for raw in raws]
+    if any(one and not one.is_relation for one in shapes):
+        unit = _unit(shapes, about)
+        cells = [_cell(one, raw, unit) for one, raw in zip(shapes, raws, strict=True)]
+        yield SheetColumn(about.place, unit, cells)
+    if any(one and one.is_relation for one in shapes):
+        relations = [one.value if one and one.is_relation else None for one in shapes]
+        yield SheetColumn(f"{about.place} {RELATION}", "", relations)
+
+
+def page_columns(out: VariantsOut) -> list[SheetColumn]:
+    """Return the columns of inputs on a page: texts, relations with their sign, one column for a place."""
+    names = list(out.variants)
+    return [SheetColumn(FIRST, UNIT, names), *(_on_page(out, about) for about in out.columns)]
+
+
+def _on_page(out: VariantsOut, about: VariantColumn) -> SheetColumn:
+    raws = [overrides.get(about.place) for overrides in out.variants.values()]
+    shapes = [None if raw is None else shape(raw) for raw in raws]
+    unit = _unit(shapes, about) or about.unit or ""
+    return SheetColumn(
+        about.place, unit, [_text(one, raw, unit) for one, raw in zip(shapes, raws, strict=True)]
+    )
+
+
+def _text(one: Shape | None, raw: object, unit: str) -> str:
+    if one is None:
+        return ""
+    if one.is_relation:
+        return f"= {one.value}"
+    cell = _cell(one, raw, unit)
+    return number_text(cell) if isinstance(cell, (int, float)) else str(cell)
+
+
+def _unit(shapes: Sequence[Shape | None], about: VariantColumn) -> str:
+    """Return the unit that most of the numbers have; none for a choice."""
+    units = Counter(one.unit for one in shapes if one and one.unit)
+    most = max(units, key=lambda unit: units[unit], default="")
+    return "" if about.unit is None and most == "1" else most
+
+
+def _cell(one: Shape | None, raw: object, unit: str) -> Value:
+    """Return a number in the unit of its column, else the value with its own unit."""
+    if one is None or one.is_relation:
+        return None
+    is_plain = one.unit == unit or (one.unit == "1" and not unit)
+    return one.value if one.unit and is_plain else text_of(raw)
+
+
+def _results(out: VariantsOut, names: Sequence[str]) -> Iterable[SheetColumn]:
+    """Yield verdict and governing criterion of each variant, then verdict and use of each criterion."""
+    rows = {row.name: row for row in out.rows}
+    results = [rows.get(name) for name in names]
+    if any(row and row.problem for row in results):
+        problems = [row.problem.detail if row and row.problem else None for row in results]
+        yield _result("problem", "", problems)
+    if not any(row and row.verdict for row in results):
+        return
+    verdicts = [row.verdict if row else None for row in results]
+    yield _result("verdict", "", [one.headline if one else None for one in verdicts])
+    yield _result("governing", "", [one.governing if one else None for one in verdicts])
+    for name in dict.fromkeys(one.name for row in results if row for one in row.criteria):
+        yield from _of_criterion(name, results)
+
+
+def _of_criterion(name: str, results: Sequence[VariantResult | None]) -> Iterable[SheetColumn]:
+    judged = [_criterion(row, name) for row in results]
+    yield _result(name, "", [WORDS[one.verdict] if one else None for one in judged])
+    if any(one and one.utilisation is not None for one in judged):
+        used = [one.utilisation if one else None for one in judged]
+        cells = [None if value is None else round(value, DIGITS) for value in used]
+        yield _result(f"{name} used", "1", cells)
+
+
+def _criterion(row: VariantResult | None, name: str) -> Criterion | None:
+    return next((one for one in row.criteria if one.name == name), None) if row else None
+
+
+def _result(heading: str, unit: str, cells: Sequence[Value]) -> SheetColumn:
+    return SheetColumn(f"{RESULTS} {heading}", unit, cells, is_result=True)

@@ -1,0 +1,164 @@
+"""One step for several variants: an array call for all whose inputs have one form, and its rows."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.calculations.errors import StepDeferred
+from app.designs.engine.calculation import DEFERRED, Prepared
+from app.designs.engine.steps import memory
+from app.designs.network import Block, Graph
+from app.plain import Raw
+from templates.core.arrays import Array
+from templates.core.errors import InvalidInputs
+from templates.core.language.evaluate import Evaluation, answers_at_level
+from templates.core.language.intake import is_single
+from templates.core.language.levels import at_level
+from templates.core.language.spec import Curve, Declaration, Profile, Table
+from templates.core.language.template import Template
+from templates.core.units.quantity import Typed
+
+MOST_ROWS = 4096
+
+
+@dataclass(frozen=True)
+class Asking:
+    """The inputs of a step for one variant, as they were read, by name."""
+
+    block: Block
+    raw: Mapping[str, Raw]
+    graph: Graph
+
+    @property
+    def wanted(self) -> tuple[str, ...] | None:
+        """Return the outputs to compute; None for all."""
+        return self.graph.computed(self.block)
+
+    def form(self) -> Hashable:
+        """Return the key that variants must have in common to share an array call.
+
+        None for one that is alone.
+
+        It is the step, the names of the inputs, the shapes of curves, and the values of choices, tables and
+        of what is one value for all points.
+        """
+        parts = [(name, _form(self.block, name, raw)) for name, raw in sorted(self.raw.items())]
+        if any(form is None for _, form in parts):
+            return None
+        return self.block.cls, self.block.level, self.block.tolerance, self.wanted, tuple(parts)
+
+
+def _form(block: Block, name: str, raw: Raw) -> Hashable:
+    declared = block.cls.inputs[name]
+    if not isinstance(raw, Typed):
+        return repr(raw)
+    shape = np.shape(raw.si)
+    is_curve = isinstance(declared, Curve)
+    if isinstance(declared, Table) or is_single(declared) or (is_curve and not shape):
+        return shape, np.asarray(raw.si).tobytes()
+    return shape if len(shape) == int(is_curve) else None
+
+
+def evaluations(asked: Sequence[Asking]) -> list[Prepared | None]:
+    """Return the evaluation of each, `DEFERRED` if nobody waits for it.
+
+    None where it has to be calculated alone.
+    """
+    results: list[Prepared | None] = [None] * len(asked)
+    groups: dict[Hashable, list[int]] = {}
+    for place, one in enumerate(asked):
+        if (form := one.form()) is not None:
+            groups.setdefault(form, []).append(place)
+    for places in groups.values():
+        for chunk in _chunks(asked[places[0]].block, places):
+            shared = _shared([asked[place] for place in chunk])
+            for place, evaluation in zip(chunk, shared, strict=True):
+                results[place] = evaluation
+    return results
+
+
+def _chunks(block: Block, places: Sequence[int]) -> Iterator[Sequence[int]]:
+    """Yield places in parts that one array call takes."""
+    level = block.level or block.cls.default_level
+    most = [block.cls.most_points.get(level, MOST_ROWS)]
+    most += block.cls.most_points.values() if block.tolerance is not None else []
+    size = min(most)
+    for start in range(0, len(places), size):
+        yield places[start : start + size]
+
+
+def _shared(asked: Sequence[Asking]) -> Sequence[Prepared | None]:
+    """Return the rows of one array call; of a call that refuses, those of its halves."""
+    if len(asked) < 2:
+        return [None] * len(asked)  # alone it is calculated as it always is
+    first = asked[0]
+    try:
+        whole = memory.evaluation(first.block, _stacked(asked), first.wanted)
+    except StepDeferred:
+        return [DEFERRED] * len(asked)
+    except InvalidInputs:
+        half = len(asked) // 2
+        return [*_shared(asked[:half]), *_shared(asked[half:])]
+    if not whole.template.shape_of_points():
+        return [whole] * len(asked)  # all ask the same
+    rows = _Rows(whole, len(asked))
+    return [rows.evaluation(number, one) for number, one in enumerate(asked)]
+
+
+def _stacked(asked: Sequence[Asking]) -> dict[str, Raw]:
+    """Return inputs for all rows: one value where all have the same, else an array with the row first."""
+    return {name: _column(asked, name) for name in asked[0].raw}
+
+
+def _column(asked: Sequence[Asking], name: str) -> Raw:
+    first = asked[0].raw[name]
+    typed = [raw for one in asked if isinstance(raw := one.raw[name], Typed)]
+    if not isinstance(first, Typed) or all(np.array_equal(first.si, other.si) for other in typed):
+        return first
+    scale = asked[0].block.cls.inputs[name].meaning.scale
+    si: Array = np.array([one.si for one in typed], dtype=np.float64)
+    return Typed(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {})
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """An array call, row by row."""
+
+    whole: Evaluation
+    count: int
+
+    def evaluation(self, row: int, asked: Asking) -> Evaluation | None:
+        """Return the evaluation of one row; None if it has to be calculated alone, because it is refused."""
+        try:
+            template = self._template(row, asked)
+            answers, errors = answers_at_level(template, list(self.whole.outputs))
+        except InvalidInputs:
+            return None
+        seconds = self.whole.seconds / self.count
+        return Evaluation(template, {}, answers, self.whole.level, errors, [], seconds)
+
+    def _template(self, row: int, asked: Asking) -> Template:
+        """Return the template of one variant with what the array call has computed.
+
+        What has no value in a row is left out: the template then finds out why.
+        """
+        cls, level = asked.block.cls, self.whole.level
+        template = cls.from_quantities(asked.raw)
+        template = at_level(template, level) if level is not None else template
+        computed = vars(self.whole.template)
+        for attribute, declared in cls.declarations.items():
+            if attribute in computed and attribute not in vars(template):
+                value = self._value(row, declared, computed[attribute])
+                if isinstance(value, str) or np.isfinite(value).all():
+                    vars(template)[attribute] = value
+        return template
+
+    def _value(self, row: int, declared: Declaration, value: Any) -> Any:
+        """Return the value of an attribute in one row."""
+        axes = declared.axes if isinstance(declared, Profile) else int(isinstance(declared, Curve))
+        own = value[row] if isinstance(value, np.ndarray) and value.ndim > axes else value
+        return str(own) if isinstance(own, str) else own

@@ -1,0 +1,46 @@
+"""All variants of a design, calculated, and everything that is wrong with its table at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import chain
+
+from app.designs.document import Document
+from app.designs.engine.calculation import Calculation
+from app.designs.variants.outcome import Outcome
+from app.designs.variants.table import faulty_cells, sound
+from app.designs.variants.together import Available, row_arrays, together
+from templates.core.errors import Fault
+
+MOST_CELLS = 50_000  # values of a design, times its variants; a cell takes some 20 us
+
+
+def checked(document: Document, base: Calculation, available: Available) -> tuple[list[Outcome], list[Fault]]:
+    """Return the variants of a document that can be calculated now, and the faults of the table."""
+    if faults := list(too_many_cells(document)):
+        return [], faults
+    cells = faulty_cells(document, base.graph)
+    outcomes = together(sound(document, cells), available)
+    wrong = chain.from_iterable(outcome.faults for outcome in outcomes)
+    return outcomes, [*cells.values(), *(row_faults(base) if document.variants else ()), *wrong]
+
+
+def too_many_cells(document: Document) -> Iterator[Fault]:
+    """Yield a fault if there is more to calculate than a save does.
+
+    Every variant has every value of the design.
+    """
+    blocks = [*(step.inputs for step in document.steps.values())]
+    blocks += [model.parameters for model in document.models.values()]
+    cells = len(document.parameters) + sum(map(len, blocks))
+    if cells * len(document.variants) > MOST_CELLS:
+        most = MOST_CELLS // cells
+        detail = (
+            f"a design that sets {cells} values has at most {most} variants, not {len(document.variants)}"
+        )
+        yield Fault("variants", "too_many_values", detail)
+
+
+def row_faults(base: Calculation) -> list[Fault]:
+    """Return a fault for every step of a design with variants that has rows of its own."""
+    return [fault.within("variants") for fault in row_arrays(base)]

@@ -1,0 +1,111 @@
+"""The part of a regeneration that is about variants: one solid for each distinct set of parameters.
+
+What goes wrong with a solid is a matter of the variants that have it; the revision stays usable.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from app.designs.calculation_cache import Prepared
+from app.designs.document import Document
+from app.designs.engine.calculation import Calculation
+from app.designs.errors import NotConverged
+from app.designs.model_failures import named
+from app.designs.variants.outcome import Outcome, outcome_of
+from app.jobs.service import JobContext
+from app.plain import JsonObject
+from app.solids.builds import Builds
+from app.storage.errors import CannotRebuild
+from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
+from cad.errors import AnalysisError, GeometryError
+from cad.model import CadModel
+from cad.regenerate import build_key
+from templates.core.errors import InvalidInputs, TemplateError
+
+FAILURES = (
+    NotConverged, TemplateError, GeometryError, AnalysisError, DeadlineExceeded, MemoryExceeded, JobCrashed,
+    CannotRebuild,
+)  # fmt: skip
+"""What a variant itself brings about."""
+
+MOST_CRASHES = 2  # of the process that builds one solid
+
+Describe = Callable[[Exception], JsonObject]
+"""Turns an error into a problem (RFC 9457)."""
+
+Settle = Callable[[Prepared, JobContext], Calculation]
+"""Completes the calculation of a design: builds, measures, iterates."""
+
+
+def plain_problem(error: Exception) -> JsonObject:
+    """Return an error as a problem, where nobody knows more of it."""
+    return {"type": "about:blank", "title": "The variant failed", "status": 422, "detail": str(error)}
+
+
+@dataclass(frozen=True)
+class Settling:
+    """One regeneration of variants.
+
+    Attributes
+    ----------
+    builds, settle, describe
+        What builds a solid, completes a design, and describes an error.
+    context
+        The job.
+    """
+
+    builds: Builds
+    settle: Settle
+    describe: Describe
+    context: JobContext
+    _failed: dict[str, Exception] = field(default_factory=dict)  # by key of build: nothing is tried twice
+
+    def settled(self, outcomes: Sequence[Outcome]) -> list[Outcome]:
+        """Return the variants with all their solids built, or with the reason why one is not."""
+        done: list[Outcome] = []
+        for number, outcome in enumerate(outcomes):
+            self.context.progress(number / len(outcomes), f"variant {outcome.name}")
+            done.append(self._settled(outcome))
+        return done
+
+    def _settled(self, outcome: Outcome) -> Outcome:
+        if outcome.faults:
+            return replace(outcome, problem=self.describe(InvalidInputs(outcome.faults)))
+        failures = dict(self._failures(outcome.shapes))
+        if failures:
+            return replace(outcome, failures=failures)
+        if outcome.document is None or outcome.calculation is None or not outcome.is_pending:
+            return outcome
+        return self._completed(outcome, outcome.document, outcome.calculation)
+
+    def _failures(self, shapes: Mapping[str, CadModel]) -> Iterator[tuple[str, JsonObject]]:
+        """Build the solids whose parameters are known; why those that fail do."""
+        for name, shape in shapes.items():
+            try:
+                with named(name):
+                    self._make(shape)
+            except FAILURES as error:
+                self._failed[build_key(shape)] = error
+                yield name, self.describe(error)
+
+    def _make(self, shape: CadModel) -> None:
+        if failed := self._failed.get(build_key(shape)):
+            raise failed
+        for attempt in range(MOST_CRASHES):
+            try:
+                self.builds.make(shape, self.context)
+            except JobCrashed:
+                if attempt + 1 == MOST_CRASHES:
+                    raise
+            else:
+                return
+
+    def _completed(self, outcome: Outcome, document: Document, calculation: Calculation) -> Outcome:
+        """Return a variant that is a design of its own, with everything that follows from its solids."""
+        try:
+            complete = self.settle(Prepared(document, calculation), self.context)
+        except FAILURES as error:
+            return replace(outcome, problem=self.describe(error))
+        return outcome_of(outcome.name, outcome.places, document, complete)

@@ -1,0 +1,52 @@
+"""The verdict over a design with variants: each criterion at its worst variant."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from app.designs.variants.names import BASE
+from templates.core.judging.comparison import Verdict
+from templates.core.judging.judgement import Judgement, Place
+from templates.core.judging.summary import SHOWN, worst_first
+
+VARIANT = "variant"
+"""In `where` of a criterion: the name of the worst variant; `base` is the design itself."""
+
+Judged = Mapping[str, Sequence[Judgement]]
+"""Criteria by the name of the variant, the design itself among them."""
+
+
+def merged(base: Sequence[Judgement], variants: Judged) -> list[Judgement]:
+    """Return every criterion of a design at its worst variant, worst first.
+
+    As it is where there are no variants.
+
+    Points are variants, the design itself one of them. Whatever is not certain of one is not certain of all.
+    """
+    if not variants:
+        return list(base)
+    by_name: dict[str, list[Judgement]] = {}
+    for variant, judgements in {BASE: base, **variants}.items():
+        for judgement in judgements:
+            place = Place(VARIANT, variant, "")
+            by_name.setdefault(judgement.name, []).append(replace(judgement, where=(place, *judgement.where)))
+    return worst_first(map(_worst, by_name.values()))
+
+
+def _worst(judgements: Sequence[Judgement]) -> Judgement:
+    """Return the worst of one criterion over variants, and how many of each verdict there are."""
+    worst = worst_first(judgements)[0]
+    counts = Counter(judgement.verdict for judgement in judgements)
+    return replace(
+        worst,
+        points=len(judgements),
+        counts=_ordered(counts),
+        is_stated=all(judgement.is_stated for judgement in judgements),
+        unverified=next((j.unverified for j in (worst, *judgements) if j.unverified), None),
+    )
+
+
+def _ordered(counts: Counter[Verdict]) -> dict[Verdict, int]:
+    return {verdict: counts[verdict] for verdict in SHOWN if counts[verdict]}

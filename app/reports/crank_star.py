@@ -1,0 +1,59 @@
+"""The throw star: the crankpins of an engine seen from its flywheel, each with the cylinders on it.
+
+`static/crank_star.js` draws the same in the page. x is up and y left, as `engine` 1 counts its angles, so the
+shaft turns against the hands of a clock. Pins at one angle are one ray, whichever throws they are on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import cos, radians, sin
+
+WIDTH, HEIGHT = 560, 240  # as wide as the charts beside it
+RAY, WORDS = 74, 98  # radius of the pins, and of their words
+_SAME = 0.05  # deg, pins nearer than this are drawn as one
+
+
+def rays(angles: Sequence[float]) -> list[tuple[float, list[int]]]:
+    """Return angles of pins [deg] from 0 up to 360, and which cylinders, counted from 1, are at each."""
+    star: list[tuple[float, list[int]]] = []
+    for cylinder, angle in enumerate(angles, 1):
+        for at, cylinders in star:
+            if abs((angle - at + 180) % 360 - 180) < _SAME:
+                cylinders.append(cylinder)
+                break
+        else:
+            star.append((angle % 360, [cylinder]))
+    return star
+
+
+def crank_star(angles: Sequence[float]) -> str:
+    """Return the star as SVG; empty without pins. `angles` are those of the cylinders' pins [deg]."""
+    if not angles:
+        return ""
+    drawn = [_ray(angle, cylinders) for angle, cylinders in rays(angles)]
+    box = f"-{WIDTH // 2} -{HEIGHT // 2} {WIDTH} {HEIGHT}"
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" '
+    look = (
+        'font-family="Liberation Sans, Arial, sans-serif" font-size="12" text-anchor="middle" fill="#1b2733"'
+    )
+    circle = f'<circle r="{RAY}" fill="none" stroke="#c3cad1" stroke-dasharray="3 3"/>'
+    turning = '<path d="M20,-22a30,30 0 0,0 -40,0m1,-7l-2,8l8,1" fill="none" stroke="#5a5f66"/>'
+    return f'{head}{look}>{circle}{turning}{"".join(drawn)}<circle r="7" fill="#1b4f7f"/></svg>'
+
+
+def _ray(angle: float, cylinders: Sequence[int]) -> str:
+    """Return one pin and its web."""
+    left, up = sin(radians(angle)), cos(radians(angle))
+    x, y = _place(-RAY * left), _place(-RAY * up)
+    at_x, at_y = _place(-WORDS * left), _place(-WORDS * up + 4)
+    names = ", ".join(map(str, cylinders))
+    return (
+        f'<path d="M0,0L{x},{y}" stroke="#1b4f7f" stroke-width="5"/>'
+        f'<circle cx="{x}" cy="{y}" r="9" fill="#b5651d"/><text x="{at_x}" y="{at_y}">{names}</text>'
+    )
+
+
+def _place(value: float) -> str:
+    """Return a coordinate, without a minus of zero."""
+    return f"{value + 0.0 if abs(value) >= 0.05 else 0.0:.1f}"

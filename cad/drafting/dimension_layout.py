@@ -1,0 +1,274 @@
+"""Where dimensions and their words stand, so that no words overlap and none lie across a view.
+
+Dimensions beside a view run in lanes, each in the first one in which it has room. Those of arcs, oblique
+holes and angles have words at the nearest free place outside the views, and a leader to them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import atan2, cos, hypot, pi, radians, sin
+
+from cad.drafting.curves import Point
+from cad.drafting.formats import FORMATS
+from cad.drafting.labels import Label, label_of
+from cad.drafting.lanes import Lane
+from cad.drafting.parameter_match import Dimension
+from cad.drafting.plan import LANE, Plan
+from cad.drafting.room import Rectangle, Room, around
+
+TEXT = 3.5  # height of letters [mm on paper]
+GAP = 0.9  # between a dimension line and its words [mm on paper]
+EXTENSION = 1.5  # of an extension line beyond its dimension line [mm on paper]
+
+_ARROWS = 7.0  # shortest dimension line with its arrows within [mm on paper]
+_TAIL = 6.5  # of a line with its arrows outside [mm on paper]
+_FIRST = 10.0  # from the view to its first dimension line [mm on paper]
+_MOST_LANES = 40
+_MOST_ALIKE = 8  # other arcs that are tried
+_NEAREST, _FARTHEST, _STEP = 5.0, 150.0, 3.0  # from what is measured to its words [mm on A3]
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A dimension with its place, in the drawing's coordinates.
+
+    Attributes
+    ----------
+    base
+        A point of its dimension line; of an arc or circle the end of its leader.
+    words
+        The middle of its words, if they do not stand on the dimension line.
+    right
+        By how much its view is moved to the right.
+    ends
+        Of a dimension in a lane: the ends of its dimension line on the paper [mm].
+    """
+
+    dimension: Dimension
+    label: Label
+    base: Point
+    words: Point | None
+    right: float
+    ends: tuple[Point, Point] | None = None
+
+
+Try = tuple[Rectangle, Placed, list[list[Point]]]
+"""A place of words, the dimension with it, and the lines that it draws on the paper."""
+
+
+class NoRoom(Exception):
+    """The sheet has no free place at this scale."""
+
+
+class Placing:
+    """Finds a place for each dimension of a plan."""
+
+    def __init__(self, plan: Plan, room: Room, *, is_last: bool) -> None:
+        self.plan, self.room, self.is_last = plan, room, is_last
+
+    def all(self) -> list[Placed]:
+        """Return every dimension; those in lanes first.
+
+        Raises
+        ------
+        NoRoom
+            If one has none, unless it is the last scale to be tried.
+        """
+        placed = [one for lane in self.plan.lanes.sides() for one in self._in_lanes(lane)]
+        for one in placed:
+            self._take_lines(one)
+        ordered = sorted(self.plan.lanes.local, key=lambda one: one.measure.form != "angle")
+        return placed + [self._local(one) for one in ordered]
+
+    def lane(self, lane: Lane) -> list[Placed]:
+        """Return the dimensions of one side of a view."""
+        placed = list(self._in_lanes(lane))
+        for one in placed:
+            self._take_lines(one)
+        return placed
+
+    def within(self, one: Dimension, along: float, high: float) -> Placed:
+        """An upright dimension whose line runs within a view, as across a web; its words stand above that.
+
+        Parameters
+        ----------
+        one
+            The dimension.
+        along
+            Where its line runs [mm].
+        high
+            The upper side of the view [mm].
+        """
+        label = label_of(one)
+        points = tuple((along, y) for _, y in one.measure.points)
+        moved = replace(one, measure=replace(one.measure, points=points))
+        ends = sorted(y for _, y in self._on_paper(moved, 0.0))
+        half = label.width(TEXT) / 2
+        place, top = self.plan.paper((along, high))
+        middle = top + 2.5 + half
+        self.room.add((place - GAP - label.height(TEXT) - 0.5, middle - half, place + 0.5, middle + half))
+        return self._laned(moved, label, 1, place, (ends[0], ends[1]), middle, 0.0)
+
+    def _in_lanes(self, lane: Lane) -> Iterator[Placed]:
+        right = self.plan.beside if lane.is_of_end else 0.0
+        ends = [sorted(p[lane.along] for p in self._on_paper(one, right)) for one in lane.dimensions]
+        for one, (low, high) in zip(lane.dimensions, ends, strict=True):
+            label = label_of(one)
+            others = [end for pair in ends for end in pair]
+            middle = _middle(low, high, label.width(TEXT), others)
+            for number in range(_MOST_LANES):
+                away = lane.edge + lane.out * (_FIRST + LANE * number) / self.plan.scale
+                place = self.plan.paper((away, away), right)[1 - lane.along]
+                box = self._box_in_lane(label, lane.along, place, (low, high), middle)
+                if self.room.is_clear(box, 0.1):
+                    break
+                if not self.room.holds(box) and not self.is_last:
+                    raise NoRoom
+            self.room.add(box)
+            yield self._laned(one, label, lane.along, place, (low, high), middle, right)
+
+    def _on_paper(self, one: Dimension, right: float) -> list[Point]:
+        return [self.plan.paper(point, right) for point in one.measure.points]
+
+    def _laned(
+        self,
+        one: Dimension,
+        label: Label,
+        along: int,
+        place: float,
+        ends: tuple[float, float],
+        middle: float,
+        right: float,
+    ) -> Placed:
+        """Return a dimension whose line runs at a place across its lane."""
+        line = tuple((place, end) if along else (end, place) for end in ends)
+        words = None
+        if label.upper or not ends[0] <= middle <= ends[1]:
+            above = GAP + label.height(TEXT) / 2
+            words = self.plan.at(*((place - above, middle) if along else (middle, place + above)))
+        return Placed(one, label, self.plan.at(*line[0]), words, right, (line[0], line[1]))
+
+    def _box_in_lane(
+        self, label: Label, along: int, place: float, ends: tuple[float, float], middle: float
+    ) -> Rectangle:
+        """Return what a dimension line and its words take on the paper."""
+        half = label.width(TEXT) / 2 + 0.5
+        is_narrow = ends[1] - ends[0] < _ARROWS
+        tail = _TAIL if is_narrow else 0.0
+        begin, stop = min(ends[0] - tail, middle - half), max(ends[1] + tail, middle + half)
+        height = GAP + label.height(TEXT) + 0.8
+        if along:
+            return place - height, begin, place + 1.0, stop
+        return begin, place - 1.0, stop, place + height
+
+    def _take_lines(self, placed: Placed) -> None:
+        """Dimension line and extension lines, which no later words cross."""
+        assert placed.ends is not None
+        self.room.add_line(placed.ends)
+        points = sorted(self._on_paper(placed.dimension, placed.right))
+        for end in placed.ends:
+            along = 1 if placed.ends[0][0] == placed.ends[1][0] else 0
+            nearest = min(points, key=lambda point: abs(point[along] - end[along]))
+            self.room.add_line([nearest, end])
+
+    def _local(self, one: Dimension) -> Placed:
+        right = self.plan.beside if one.measure.place == "end" else 0.0
+        label = label_of(one)
+        match one.measure.form:
+            case "circle" | "arc":
+                tries = self._beyond_arc(one, label, right)
+            case "angle":
+                tries = self._across_angle(one, label, right)
+            case _:
+                tries = self._around(one, label, right)
+        every = list(tries)
+        free = [one for one in every if self.room.is_free(one[0])]
+        clear = (one for one in free if all(self.room.passes(piece) for piece in pairwise(one[2][0])))
+        if not free and not self.is_last:
+            raise NoRoom
+        box, placed, lines = next(clear, (free or every)[0])
+        self.room.add(box)
+        for line in lines:
+            self.room.add_line(line)
+        return placed
+
+    def _beyond_arc(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
+        """Yield the words at the end of a leader along a radius, of any arc that shows the parameter."""
+        whole = one.measure.form == "circle"
+        turns = sorted(range(-180, 180, 15), key=abs) if whole else (0, 10, -10, 20, -20)
+        width, height = label.width(TEXT), label.height(TEXT)
+        arcs = [replace(one, measure=measure) for measure in (one.measure, *one.alike[:_MOST_ALIKE])]
+        for away in self._distances():
+            for arc in arcs:
+                centre, on = self._on_paper(arc, right)
+                radius = hypot(on[0] - centre[0], on[1] - centre[1])
+                angle = atan2(on[1] - centre[1], on[0] - centre[0])
+                for turn in turns:
+                    u, v = cos(angle + radians(turn)), sin(angle + radians(turn))
+                    x, y = centre[0] + (radius + away) * u, centre[1] + (radius + away) * v
+                    left = x - width if u <= 0 else x
+                    low = y + GAP + TEXT / 2 - height / 2
+                    box = left - 0.5, min(low, y + 0.2), left + width + 0.5, low + height
+                    lines = [[centre, (x, y)], [(left, y), (left + width, y)]]
+                    yield box, Placed(arc, label, self.plan.at(x, y), None, right), lines
+
+    def _across_angle(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
+        """Yield the words beyond an arc between two legs, or their prolongations."""
+        corner, *legs = self._on_paper(one, right)
+        turns = [atan2(y - corner[1], x - corner[0]) for x, y in legs]
+        opening = (turns[1] - turns[0]) % (2 * pi)
+        if opening > pi:
+            turns, opening = turns[::-1], 2 * pi - opening
+        middle = turns[0] + opening / 2
+        shortest = min(hypot(x - corner[0], y - corner[1]) for x, y in legs)
+        size = max(label.width(TEXT), 2 * TEXT)
+        start = max(0.5 * shortest, 8.0)
+        for away in self._distances():
+            radius = start + away
+            beyond = radius + GAP + TEXT / 2
+            words = corner[0] + beyond * cos(middle), corner[1] + beyond * sin(middle)
+            base = corner[0] + radius * cos(middle), corner[1] + radius * sin(middle)
+            height = abs(size * cos(middle)) + abs(TEXT * sin(middle)) + 2 * EXTENSION
+            width = abs(size * sin(middle)) + abs(TEXT * cos(middle)) + 2 * EXTENSION
+            steps = [turns[0] + opening * (i / 24 * 1.2 - 0.1) for i in range(25)]
+            arc = [(corner[0] + radius * cos(t), corner[1] + radius * sin(t)) for t in steps]
+            lines = [arc, [legs[0], arc[2]], [legs[0], arc[-3]], [legs[1], arc[2]], [legs[1], arc[-3]]]
+            placed = Placed(one, label, self.plan.at(*base), None, right)
+            yield around(words, width, height), placed, lines[:1] + _nearest(lines[1:])
+
+    def _distances(self) -> Iterator[float]:
+        """From what is measured to its words [mm on paper]: on a large sheet views are large too."""
+        away, farthest = _NEAREST, _FARTHEST * self.plan.format.width / FORMATS[0].width
+        while away < farthest:
+            yield away
+            away += _STEP
+
+    def _around(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
+        """Yield the words at any place around an oblique dimension."""
+        points = self._on_paper(one, right)
+        middle = (points[0][0] + points[1][0]) / 2, (points[0][1] + points[1][1]) / 2
+        width, height = label.width(TEXT), label.height(TEXT)
+        for away in self._distances():
+            for turn in range(90, 450, 15):
+                x = middle[0] + (away + width / 2) * cos(radians(turn))
+                y = middle[1] + (away + height / 2) * sin(radians(turn))
+                placed = Placed(one, label, self.plan.at(*middle), self.plan.at(x, y), right)
+                yield around((x, y), width + 1.0, height + 1.0), placed, [[middle, (x, y)]]
+
+
+def _middle(low: float, high: float, width: float, others: list[float]) -> float:
+    """The middle of words on a dimension line: between its ends, or beyond that which fewer lines cross."""
+    half = width / 2
+    if width + 1.0 <= high - low:
+        return (low + high) / 2
+    tail = 1.5
+    tries = [high + tail + half, low - tail - half]
+    return min(tries, key=lambda at: sum(at - half < end < at + half for end in others))
+
+
+def _nearest(lines: list[list[Point]]) -> list[list[Point]]:
+    """Return the shorter half of lines: extension lines from each leg to its own end of the arc."""
+    return sorted(lines, key=lambda line: hypot(line[0][0] - line[1][0], line[0][1] - line[1][1]))[:2]

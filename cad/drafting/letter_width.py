@@ -1,0 +1,53 @@
+"""Width of letters: an upper bound over the fonts in which a browser or a typesetter shows a drawing.
+
+The widths are those of DejaVu Sans, which is wider than Inter, Liberation Sans and Arial; a CAD program's
+ISO lettering is narrower than all of them.
+"""
+
+from __future__ import annotations
+
+from unicodedata import category, east_asian_width
+
+SIZE = 1.3
+"""Size of a font whose letters have height 1; a font's size is that of its line."""
+
+_WIDTHS = {
+    275: "'", 278: "ijl", 295: "IJ", 318: " ,.", 337: "/:;\\|", 352: "f", 361: "-", 390: "()[]", 392: "t",
+    401: "!°³²", 411: "r", 460: '"', 500: "*_`–", 521: "s", 525: "z", 531: "?", 550: "c", 557: "L", 575: "F",
+    579: "k", 592: "vxy", 603: "P", 611: "TY", 612: "o", 613: "a", 615: "e", 632: "E", 634: "hnu",
+    635: "Sbdgpq", 637: "$0123456789{}µ", 656: "K", 684: "AV", 685: "XZ", 686: "B", 695: "R", 698: "C",
+    732: "U", 748: "N", 752: "H", 770: "D", 775: "G", 780: "&", 788: "OQØ", 818: "w", 838: "#+<=>^~×±",
+    863: "M", 950: "%", 974: "m", 989: "W", 1000: "@…",
+}  # fmt: skip
+_OF = {letter: width / 1000 for width, letters in _WIDTHS.items() for letter in letters}
+_WIDE = 1.05  # a letter of East Asia
+_PICTURE = 1.4  # an emoji
+_OTHER = 1.0
+
+
+def width_of(text: str, height: float) -> float:
+    """Return the width of a line of letters of that height, in the same unit."""
+    return sum(_letter(sign) for sign in text) * SIZE * height
+
+
+def clipped(text: str, width: float, height: float) -> str:
+    """Return a text as one line that is not wider than that; what is left out shows as `…`."""
+    line = "".join(sign if sign.isprintable() else " " for sign in text)
+    if width_of(line, height) <= width:
+        return line
+    room = width - width_of("…", height)
+    for place, sign in enumerate(line):
+        room -= width_of(sign, height)
+        if room < 0:
+            return f"{line[:place].rstrip()}…"
+    return line
+
+
+def _letter(sign: str) -> float:
+    if sign in _OF:
+        return _OF[sign]
+    if ord(sign) >= 0x1F000:
+        return _PICTURE
+    if category(sign) in ("Mn", "Me"):
+        return 0.0  # stands on the letter before it
+    return _WIDE if east_asian_width(sign) in "WF" else _OTHER

@@ -1,0 +1,240 @@
+"""Removed sections (ISO 128-3): across a bar, beside the views, with their own dimensions.
+
+A model declares in `sections` where its drawing has one, by letter:
+
+    sections = {"B": {"of": "rod", "at": {"centre_distance": 0.5}, "shows": ["shank_width"]}}
+
+`of` is the part; `at` where it is cut along y, a sum of parameters with their factors; `shows` are the
+parameters that are dimensioned there instead of in the other views.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+from cadquery import Location, Vector
+
+from cad.drafting.curves import Point
+from cad.drafting.dimension_layout import TEXT, NoRoom, Placed, Placing
+from cad.drafting.labels import label_of
+from cad.drafting.lanes import Lane
+from cad.drafting.letter_width import width_of
+from cad.drafting.measures import Form, Measure
+from cad.drafting.page import Page
+from cad.drafting.parameter_match import Dimension, length_of, matched
+from cad.drafting.plan import LANE, Plan
+from cad.drafting.room import Rectangle, Room
+from cad.drafting.section import CLEAR, Cut, Frame, curve_of, cut_of, faces_across
+from cad.drafting.symbols import arrow
+from cad.drafting.views import View
+from cad.step import Body
+from cad.surfaces import Y, Z
+from cad.tolerances import Limits
+
+LETTERS = 5.0  # height of the letters that name a section [mm on paper]
+_MARGIN = 12.0  # about a section, beside its lanes [mm on paper]
+_STEP = 4.0  # between places that are tried [mm on paper]
+_LABEL = 14.0  # of a section's label above it [mm on paper]
+
+
+@dataclass(frozen=True)
+class Removed:
+    """A removed section: its view about its own origin, its dimensions, and its height in the end view."""
+
+    letter: str
+    view: View
+    height: float
+    dimensions: tuple[Dimension, ...]
+
+    @property
+    def names(self) -> set[str | None]:
+        """Return the parameters that it shows."""
+        return {one.name for one in self.dimensions}
+
+    @property
+    def along(self) -> list[Point]:
+        """Return where along the shaft the upright dimensions begin and end."""
+        sign = self.view.frame.up.dot(Z)
+        upright = [d.measure.points for d in self.dimensions if d.measure.form == "up"]
+        ends = (sorted(round(y * sign, 6) for _, y in points) for points in upright)
+        return [(low, high) for low, high in ends]
+
+
+def removed_sections(
+    declared: Mapping[str, Mapping[str, object]],
+    parameters: Mapping[str, str],
+    limits: Mapping[str, Limits],
+    bodies: Sequence[Body],
+    end: View,
+) -> list[Removed]:
+    """Return the removed sections of a drawing; one that shows nothing is left out."""
+    if (end.frame.up - Y).Length > CLEAR:
+        return []  # y is not upright in the view in which the section would be marked
+    return [
+        one
+        for letter, said in declared.items()
+        if (one := _removed(letter, said, parameters, limits, bodies, end)) is not None
+    ]
+
+
+def _removed(
+    letter: str,
+    said: Mapping[str, object],
+    parameters: Mapping[str, str],
+    limits: Mapping[str, Limits],
+    bodies: Sequence[Body],
+    end: View,
+) -> Removed | None:
+    factors, shows = said["at"], said["shows"]
+    assert isinstance(factors, Mapping)
+    assert isinstance(shows, Sequence)
+    height = sum(factor * length_of(parameters[name]) for name, factor in factors.items())
+    frame = Frame(end.frame.right, Y.cross(end.frame.right))  # seen from above
+    part, body = next((i, body) for i, body in enumerate(bodies) if body.name == said["of"])
+    faces = faces_across(body.shape.moved(Location(Vector(0, -height, 0))), Y)
+    edges = [edge for face in faces for edge in face.Edges()]
+    curves = [curve_of(edge, frame) for edge in edges]
+    straight = [(c.points[0], c.points[-1]) for c in curves if c.arc is None and len(c.points) == 2]
+    if not straight:
+        return None
+    view = View(frame, curves, [], [], [cut_of(part, face, frame) for face in faces], [], straight)
+    wanted = {name: parameters[name] for name in shows if name in parameters}
+    dimensions, _ = matched(wanted, [*_measures(view)], limits)
+    return Removed(letter, view, height, tuple(dimensions)) if dimensions else None
+
+
+def _measures(view: View) -> Iterator[Measure]:
+    """Distances between straight edges, level and upright, from those ends that are lowest or most left."""
+    forms: tuple[tuple[int, Form], ...] = ((0, "across"), (1, "up"))
+    for along, form in forms:
+        feet: dict[float, float] = {}
+        for one, other in view.edges:
+            if abs(one[along] - other[along]) < CLEAR:
+                place, foot = round(one[along], 6), min(one[1 - along], other[1 - along])
+                feet[place] = min(feet.get(place, foot), foot)
+        for low, high in combinations(sorted(feet), 2):
+            ends = ((low, feet[low]), (high, feet[high]))
+            points = ends if along == 0 else tuple((foot, place) for place, foot in ends)
+            yield Measure("width", high - low, "section", form, points)
+
+
+def mark(page: Page, room: Room, removed: Removed) -> None:
+    """The line along which a section is cut, in the end view; the arrows point down, as the eye looks."""
+    plan = page.plan
+    (left, _), (right, _) = removed.view.box
+    width = width_of(removed.letter, LETTERS)
+    for side, out in ((left, -1), (right, 1)):
+        x, y = plan.paper((side, removed.height), plan.beside)
+        start, stop = x + 2.0 * out, x + 8.0 * out
+        page.line([(start, y), (stop, y)], "CUTTING")
+        page.symbol(arrow((stop, y - 9.0), (stop, y), 4.0))
+        at = stop + 1.5 if out > 0 else stop - 1.5 - width
+        page.write(removed.letter, at, y - LETTERS - 1.0, LETTERS)
+        room.add((min(at, start, stop) - 0.5, y - 9.5, max(at + width, start, stop) + 0.5, y + 1.0))
+
+
+def place(page: Page, room: Room, removed: Removed, placing: Placing) -> list[Placed]:
+    """Draw a section at a free place of the sheet; returns its dimensions.
+
+    Raises
+    ------
+    NoRoom
+        If there is no such place.
+    """
+    plan = page.plan
+    lanes = {form: [d for d in removed.dimensions if d.measure.form == form] for form in ("across", "up")}
+    inner = [one for one in lanes["up"] if _is_within(one, removed.view)]
+    beside = [one for one in lanes["up"] if one not in inner]
+    sides = LANE * len(beside) + _MARGIN, LANE * len(lanes["across"]) + _MARGIN
+    above = _LABEL + max((label_of(one).width(TEXT) for one in inner), default=0.0)
+    left, low = _found(plan, room, removed, (*sides, above))
+    (x, y), _ = removed.view.box
+    corner = plan.at(left + sides[0], low + sides[1])
+    shift = corner[0] - x, corner[1] - y
+    view = _shifted(removed.view, shift)
+    (x, y), (right, high) = view.box
+    room.add((*plan.paper((x, y)), *plan.paper((right, high))), is_view=True)
+    _label(page, room, view, removed.letter, above)
+    page.view(view, 0.0)
+    over = 3.0 / plan.scale
+    middle = (x + right) / 2, (y + high) / 2
+    page.centres(
+        [
+            ((x - over, middle[1]), (right + over, middle[1])),
+            ((middle[0], y - over), (middle[0], high + over)),
+        ],
+        [],
+    )
+    across, up = ([_moved(one, shift) for one in some] for some in (lanes["across"], beside))
+    placed = [
+        *placing.lane(Lane(_by_size(across), 0, y, -1, False)),
+        *placing.lane(Lane(_by_size(up), 1, x, -1, False)),
+    ]
+    for one in (_moved(one, shift) for one in inner):
+        along = (one.measure.points[0][0] + middle[0]) / 2  # beside the centre line
+        placed.append(placing.within(one, along, high))
+    return placed
+
+
+def _by_size(dimensions: Sequence[Dimension]) -> list[Dimension]:
+    return sorted(dimensions, key=lambda one: one.measure.value)
+
+
+def _is_within(one: Dimension, view: View) -> bool:
+    """Return whether what a dimension measures ends within the section, as a web does between two pockets."""
+    return min(x for x, _ in one.measure.points) > view.box[0][0] + CLEAR
+
+
+def _found(plan: Plan, room: Room, removed: Removed, sides: tuple[float, float, float]) -> Point:
+    """Lower left corner of the nearest free place for a section with its dimensions [mm on paper]."""
+    (x, y), (right, high) = removed.view.box
+    width = sides[0] + (right - x) * plan.scale + _MARGIN
+    height = sides[1] + (high - y) * plan.scale + sides[2]
+    near = plan.paper((right, removed.height), plan.beside)
+
+    def away(corner: Point) -> float:
+        return abs(corner[0] - near[0]) + abs(corner[1] + height / 2 - near[1])
+
+    corners = sorted(_corners(room.area, width, height), key=away)
+    for corner in corners:
+        box: Rectangle = (*corner, corner[0] + width, corner[1] + height)
+        if room.is_free(box):
+            return corner
+    raise NoRoom
+
+
+def _corners(area: Rectangle, width: float, height: float) -> Iterator[Point]:
+    left, low, right, high = area
+    across, up = int((right - left - width) // _STEP), int((high - low - height) // _STEP)
+    for i in range(across + 1):
+        for j in range(up + 1):
+            yield left + i * _STEP, low + j * _STEP
+
+
+def _label(page: Page, room: Room, view: View, letter: str, above: float) -> None:
+    """B–B over the section, above the words that stand there."""
+    (x, _), (right, high) = view.box
+    text = f"{letter}–{letter}"
+    middle, top = page.plan.paper(((x + right) / 2, high))
+    half, low = width_of(text, LETTERS) / 2, top + above - LETTERS - 1.0
+    page.write(text, middle - half, low, LETTERS)
+    room.add((middle - half, low - 0.5, middle + half, low + LETTERS + 0.5))
+
+
+def _moved(one: Dimension, shift: Point) -> Dimension:
+    points = tuple((x + shift[0], y + shift[1]) for x, y in one.measure.points)
+    return replace(one, measure=replace(one.measure, points=points))
+
+
+def _shifted(view: View, shift: Point) -> View:
+    """Return a view at another place."""
+    curves = [curve.moved(shift) for curve in view.visible]
+    cut = [
+        Cut(
+            one.part, [[(x + shift[0], y + shift[1], bulge) for x, y, bulge in line] for line in one.outlines]
+        )
+        for one in view.cut
+    ]
+    return replace(view, visible=curves, cut=cut)

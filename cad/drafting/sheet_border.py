@@ -1,0 +1,173 @@
+"""Border, title block, notes and the table of parameters of a sheet."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from cad.drafting.formats import COLUMN, EDGE, LEFT
+from cad.drafting.frames import Frame
+from cad.drafting.letter_width import clipped, width_of
+from cad.drafting.page import APP, Page
+from cad.drafting.symbols import basic_texture, first_angle, texture
+from cad.drafting.title import (
+    CAPTION,
+    FIELDS,
+    GENERAL,
+    HEIGHT,
+    SIZES,
+    SURFACES,
+    TEXTURE,
+    WIDTH,
+)
+from cad.header import Header
+from cad.stamp import MARK
+
+_ROW = 6.0  # from one row of the table to the next, if they have room [mm on paper]
+_LETTERS = 3.0
+_NAMES = 58.0  # width of the names in the table [mm on paper]
+_BOTH_WAYS = re.compile(r"^(\S+ \S+ )\+(\S+)/-\2(?= )")  # equal deviations: ±0.1 mm
+_MOST_LINES = 3  # of one value in the table
+
+
+def frame(page: Page) -> None:
+    """The border of the sheet and of its areas; the sheet itself comes first."""
+    format = page.plan.format
+    width, height = format.width, format.height
+    right, column, block = width - EDGE, width - EDGE - COLUMN, width - EDGE - WIDTH
+    top, over = height - EDGE, EDGE + HEIGHT
+    page.line([(0, 0), (width, 0), (width, height), (0, height), (0, 0)], "FRAME")
+    page.line([(LEFT, EDGE), (right, EDGE), (right, top), (LEFT, top), (LEFT, EDGE)], "FRAME")
+    page.line([(column, over), (column, top)], "FRAME")
+    page.line([(LEFT, over), (right, over)], "FRAME")
+    page.line([(block, EDGE), (block, over)], "FRAME")
+
+
+@dataclass(frozen=True)
+class General:
+    """General tolerances: with a datum the surfaces have a profile tolerance about it [mm] (ISO 22081)."""
+
+    profile: float | None = None
+    datum: str = ""
+
+    @property
+    def has_profile(self) -> bool:
+        """Return whether ISO 22081 holds."""
+        return self.profile is not None and self.datum != ""
+
+    @property
+    def text(self) -> str:
+        """Return what the title block says, before the frame of the profile."""
+        return f"{SIZES}, {SURFACES}" if self.has_profile else GENERAL
+
+    @property
+    def note(self) -> str:
+        """Return what it means, for the notes."""
+        if not self.has_profile:
+            return f"sizes, angles and geometry without a tolerance: {GENERAL}"
+        return (
+            f"without a tolerance: sizes, angles {SIZES}; surfaces {SURFACES}, about those of the STEP file"
+        )
+
+    def draw(self, page: Page, left: float, low: float) -> None:
+        """The frame of the profile behind the words that begin at a place."""
+        if self.profile is not None and self.datum:
+            frame = Frame("profile", self.profile, self.datum, 2.5)
+            frame.draw(page, left + width_of(self.text, 2.5) + 1.5, low - 1.3)
+
+
+def title_block(page: Page, header: Header | None, general: General) -> None:
+    """The fields of ISO 7200; a stamp fills in those that belong to a design."""
+    left, low = page.plan.format.block
+    model = f"{header.model.replace('_', ' ')}, version {header.version}" if header else "part"
+    texts = {
+        "sheet": "1/1",
+        "language": "en",
+        "format": page.plan.format.name,
+        "model": model,
+        "general": general.text,
+        "scale": page.plan.scale_text,
+    }
+    for field in FIELDS:
+        x, y = left + field.left, low + field.low
+        box = [
+            (x, y),
+            (x + field.width, y),
+            (x + field.width, y + field.height),
+            (x, y + field.height),
+            (x, y),
+        ]
+        page.line(box, "FRAME")
+        page.write(field.caption, left + field.caption_at[0], low + field.caption_at[1], CAPTION)
+        text = clipped(texts.get(field.name, ""), field.room, field.letters)
+        if field.is_stamped or text:
+            line = page.write(text, left + field.text_at[0], low + field.text_at[1], field.letters)
+            if field.is_stamped:
+                line.set_xdata(APP, [(1000, f"{MARK}{field.mark}")])
+        if field.name == "general":
+            general.draw(page, left + field.text_at[0], low + field.text_at[1])
+        if field.name == "projection":
+            page.symbol(first_angle(4.8).moved(x + 25.0, y + 3.6))
+            page.write("first", left + field.text_at[0], low + field.text_at[1], 2.0)
+
+
+def notes(page: Page, header: Header | None, unseen: Sequence[str], general: General) -> None:
+    """What holds for the whole drawing, to the left of the title block."""
+    left, top = LEFT + 3.0, EDGE + HEIGHT - 6.0
+    lines = [
+        "dimensions in mm, measured on the solid, at 20 °C (ISO 1); ( ) for reference",
+        "size is a two-point size, independent of form (ISO 8015)",
+        general.note,
+        f"build {header.build[:32]}" if header else "",
+        "* not between two surfaces that are drawn" if unseen else "",
+    ]
+    for row, text in enumerate(filter(None, lines)):
+        page.write(text, left, top - 5.0 * row, 2.5)
+    y = EDGE + 4.0
+    text = f"Ra {TEXTURE:g}"
+    reach = width_of(text, 2.5)
+    page.symbol(texture(3.5, reach).moved(left + 4.0, y))
+    page.write(text, left + 9.5, y + 6.0, 2.5)
+    page.write("(", left + 14.0 + reach, y + 1.5, 5.0)
+    page.symbol(basic_texture(3.5).moved(left + 20.5 + reach, y + 0.5))
+    page.write(")", left + 26.0 + reach, y + 1.5, 5.0)
+    page.write("roughness in µm (ISO 21920-1)", left + 34.0 + reach, y + 1.5, 2.5)
+
+
+def table(page: Page, parameters: Mapping[str, str], unseen: Sequence[str]) -> None:
+    """The parameters with their values."""
+    left, top = page.plan.format.column
+    left, top = left + 3, top - 7
+    page.write("Parameters", left, top, 4.5)
+    rows = [
+        (name.replace("_", " ") + (" *" if name in unseen else "") if number == 0 else "", line)
+        for name, text in parameters.items()
+        for number, line in enumerate(_wrapped(_BOTH_WAYS.sub(r"\1±\2", text), COLUMN - _NAMES - 6))
+    ]
+    room = top - (EDGE + HEIGHT) - 3.0
+    row = min(_ROW, room / max(len(rows), 1))
+    size = min(_LETTERS, row * 0.55)
+    for number, (name, text) in enumerate(rows, 1):
+        y = top - row * number
+        page.write(clipped(name, _NAMES - 2, size), left, y, size)
+        page.write(text, left + _NAMES, y, size)
+
+
+def _wrapped(text: str, width: float) -> list[str]:
+    """Return a value in lines that are not wider than that; of a very long list only its beginning."""
+    if width_of(text, _LETTERS) <= width:
+        return [text]
+    lines = [""]
+    for word in text.split(" "):
+        longer = f"{lines[-1]} {word}".strip()
+        if lines[-1] and width_of(longer, _LETTERS) > width:
+            lines.append(word)
+        else:
+            lines[-1] = longer
+        if len(lines) > _MOST_LINES:
+            return [
+                *(clipped(line, width, _LETTERS) for line in lines[: _MOST_LINES - 1]),
+                "… whole in the STEP file",
+            ]
+    return [clipped(line, width, _LETTERS) for line in lines]

@@ -1,0 +1,40 @@
+"""Names of a design's files: `{design}_{model}_r{revision}`, in ASCII and in its user's letters."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+
+LONGEST = 120  # of a design's name in UTF-8 [bytes]: file systems take 255 for all
+NAMELESS = "design"
+_OTHER = re.compile(r"[^A-Za-z0-9.-]+")
+
+
+def plain_name(text: str) -> str:
+    """Return a text as part of a file's name in ASCII: accents are left out, other signs become `_`."""
+    letters = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
+    return _ends(_OTHER.sub("_", letters))
+
+
+def name(text: str) -> str:
+    """A text as part of a file's name: letters and digits of any alphabet stay, other signs become `_`."""
+    signs = (sign if _stays(sign) else "_" for sign in unicodedata.normalize("NFC", text))
+    return _ends(re.sub("_+", "_", "".join(signs)))
+
+
+def _stays(sign: str) -> bool:
+    return sign.isalnum() or sign in ".-" or unicodedata.category(sign) in ("Mn", "Mc")
+
+
+def _ends(text: str) -> str:
+    return text.encode()[:LONGEST].decode(errors="ignore").strip("._-") or NAMELESS
+
+
+def stem(design: str, model: str, revision: int) -> str:
+    """Return the name of a model's file without its ending, in ASCII."""
+    return f"{plain_name(design)}_{model}_r{revision}"
+
+
+def wide_stem(design: str, model: str, revision: int) -> str:
+    """Return the name of a model's file without its ending, in the letters of its user."""
+    return f"{name(design)}_{model}_r{revision}"

@@ -1,0 +1,99 @@
+"""Solids turned from a polygon, holes drilled through their walls, and both volumes in closed form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+from math import acos, asin, cos, pi, radians, sin, sqrt
+
+from cadquery import Shape, Solid, Vector
+from cadquery.func import face, polyline, revolve
+from scipy.integrate import quad
+
+Point = tuple[float, float]
+
+
+def outline(*corners: Point) -> list[Point]:
+    """Return the closed line through corners (r, z) [mm]; corners that fall together count once."""
+    points: list[Point] = []
+    for corner in corners:
+        if not points or corner != points[-1]:
+            points.append(corner)
+    return points if points[0] == points[-1] else [*points, points[0]]
+
+
+def turned(points: Sequence[Point], start: float = 270.0, turn: float = 360.0) -> Shape:
+    """Return a closed line through (r, z) turned about z, from an angle [deg] against +x on by a turn [deg].
+
+    A full turn begins at -y, so that its seam is off a hole at the crown.
+    """
+    across, up = cos(radians(start)), sin(radians(start))
+    if start % 90 == 0:
+        across, up = float(round(across)), float(round(up))
+    line = polyline(*(Vector(r * across, r * up, z) for r, z in points))
+    return revolve(face(line), (0, 0, 0), (0, 0, 1), turn)
+
+
+def turned_volume(points: Sequence[Point], turn: float = 360.0) -> float:
+    """Volume [mm³] of a closed line through (r, z) turned about z by a turn [deg]: ∮ r²/2 dz by its sides."""
+    sides = ((a[0] ** 2 + a[0] * b[0] + b[0] ** 2) * (b[1] - a[1]) for a, b in pairwise(points))
+    return abs(sum(sides)) / 6 * radians(turn)
+
+
+def area(points: Sequence[Point]) -> float:
+    """Return the area [mm²] within a closed line."""
+    return abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise(points))) / 2
+
+
+def drill(radius: float, reach: float, z: float = 0.0) -> Solid:
+    """What a hole takes away: a cylinder along +y, from the axis to beyond a reach [mm], at a level z."""
+    return Solid.makeCylinder(radius, 1.1 * reach, Vector(0, 0, z), Vector(0, 1, 0))
+
+
+def drilled_volume(
+    hole: float, outside: float, inside: float, groove: float = 0.0, half_groove: float = 0.0
+) -> float:
+    """What a radial hole takes out of a cylindrical wall [mm³]: its chords, summed over the hole's circle.
+
+    With x = a sin t and z = a cos t on the circle of radius a the integrand is smooth; it has one kink, where
+    the circle crosses the edge of a groove round the inside.
+
+    Parameters
+    ----------
+    hole, outside, inside, groove
+        Radii [mm] of the hole, of the wall and of the groove's bottom.
+    half_groove
+        Half the width of the groove [mm], whose middle is the hole's; 0 for none.
+    """
+    if hole == 0:
+        return 0.0
+
+    def slice_at(t: float) -> float:
+        x, z = hole * sin(t), hole * cos(t)
+        in_groove = min(z, half_groove)
+        far, deep, near = (sqrt(R * R - x * x) for R in (outside, max(groove, inside), inside))
+        return 2 * z * (z * far - in_groove * deep - (z - in_groove) * near)
+
+    kink = acos(min(half_groove / hole, 1.0))
+    pieces = ((0.0, kink), (kink, pi / 2))
+    return 2 * sum(quad(slice_at, low, high, epsabs=0, epsrel=1e-11)[0] for low, high in pieces)
+
+
+def sheet_under_arc(radius: float, half_width: float) -> float:
+    """Area [mm²] between a diameter and the arc of a circle above it, within half a width on either side."""
+    x = half_width / radius
+    return radius**2 * (x * sqrt(1 - x * x) + asin(x))
+
+
+def nearest(values: Iterable[float], wanted: float) -> float:
+    """Return the one of some values that is nearest to the one wanted.
+
+    Raises
+    ------
+    LookupError
+        If there is none.
+    """
+    listed = list(values)
+    if not listed:
+        raise LookupError(f"nothing measures {wanted:.9g} mm")
+    return min(listed, key=lambda value: abs(value - wanted))

@@ -1,0 +1,91 @@
+"""Check what a finished STEP file states beside the shape: limits as requested, properties as measured."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import isclose
+
+from cad.errors import GeometryError
+from cad.model import Part
+from cad.pmi import Annotations
+from cad.properties import PartProperties, properties_of
+from cad.statements import UNITS, Statement, Value, compared
+from cad.step import Body
+
+_RELATIVE = 1e-9  # volume and area of the file as read back; the kernel repeats them to some 1e-12
+_CLOSE = 1e-6  # [mm], of the centroid
+
+MEASURED = ("volume", "surface area", "centroid")
+
+
+def check_statements(
+    parts: Sequence[Part], bodies: Sequence[Body], annotations: Annotations, stated: Sequence[Statement]
+) -> None:
+    """The file states every limit exactly, every material, and what is measured on its bodies.
+
+    Raises
+    ------
+    GeometryError
+        `tolerance`, naming what is not as it should be.
+    """
+    expected = [*_dimensions(annotations), *_properties(parts, bodies)]
+    kinds = {one.kind for one in expected}
+    wrong = [
+        f"{one.name}: the file states the {one.kind} {shown(one.stated, one.kind)}, it should be "
+        f"{shown(one.expected, one.kind)}"
+        for one in compared(expected, [s for s in stated if s.kind in kinds])
+        if not (one.agrees or (one.kind in MEASURED and _is_close(one.kind, one.expected, one.stated)))
+    ]
+    if wrong:
+        raise GeometryError("tolerance", "; ".join(wrong), annotations.limits)
+
+
+def shown(values: Sequence[Value] | None, kind: str) -> str:
+    """Return the values of a statement as text."""
+    if values is None:
+        return "nothing"
+    text = ", ".join(value if isinstance(value, str) else f"{value:.12g}" for value in values)
+    return f"{text} {UNITS.get(kind, '')}".rstrip()
+
+
+def _dimensions(annotations: Annotations) -> Iterator[Statement]:
+    for name in annotations.dimensions:
+        one = annotations.limits[name]
+        yield Statement("dimension", name, (one.nominal, one.lower, one.upper))
+    letters = dict.fromkeys(annotations.declared[n].to for n, f in annotations.forms if f != "cylindricity")
+    for letter in letters:
+        yield Statement("datum", letter, ())
+    for name, form in annotations.forms:
+        declared = annotations.declared[name]
+        width = annotations.limits[name].share(declared.forms[form])
+        yield Statement(form, name, (width,) if form == "cylindricity" else (width, declared.to))
+
+
+def _properties(parts: Sequence[Part], bodies: Sequence[Body]) -> Iterator[Statement]:
+    by_name = {body.name: body for body in bodies}
+    each = [properties_of(part, by_name[part.name].shape) for part in parts]
+    for kind in (*MEASURED, "density", "material"):
+        for one in each:
+            yield Statement(kind, one.part, _values(one, kind))
+
+
+def _values(one: PartProperties, kind: str) -> tuple[Value, ...]:
+    match kind:
+        case "volume":
+            return (one.volume,)
+        case "surface area":
+            return (one.area,)
+        case "centroid":
+            return one.centroid
+        case "density":
+            return (one.density,)
+    return (one.material,)
+
+
+def _is_close(kind: str, expected: tuple[Value, ...] | None, stated: tuple[Value, ...] | None) -> bool:
+    """Return whether measures are equal but for the precision of the kernel."""
+    if expected is None or stated is None or len(expected) != len(stated):
+        return False
+    relative, absolute = (0.0, _CLOSE) if kind == "centroid" else (_RELATIVE, 0.0)
+    pairs = [(float(one), float(other)) for one, other in zip(expected, stated, strict=True)]
+    return all(isclose(one, other, rel_tol=relative, abs_tol=absolute) for one, other in pairs)
