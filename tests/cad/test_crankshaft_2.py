@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 import templates
-from cad.cranks.outline import Outline
-from cad.cranks.support import reach
+from cad.cranks.outline import Outline, reach
 from cad.lists import LONGEST_TEXT, listed, written
 from cad.models.crankshaft_v1 import Crankshaft as OneThrow
 from cad.models.crankshaft_v2 import Crankshaft
