@@ -1,4 +1,4 @@
-"""Answers that may take long: what a caller does not wait for is left to a job, which keeps the answer."""
+"""Long answers: a job goes on when the caller stops waiting, and stores the answer."""
 
 from __future__ import annotations
 
