@@ -103,7 +103,7 @@ REASONS = ("/problems/quarantined", "/problems/unknown-template")
 
 
 def is_unusable(refused: Refused) -> bool:
-    """Return whether the interface refused because a version is quarantined, or its file was taken away."""
+    """Return whether a service refused because a version is quarantined, or its file was taken away."""
     return refused.problem.type in REASONS
 
 

@@ -1,4 +1,4 @@
-"""The pages that are read. Each asks the REST interface and shows the answer."""
+"""The pages that are read. Each asks services and shows their answers."""
 
 from __future__ import annotations
 

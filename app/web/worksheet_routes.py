@@ -1,4 +1,4 @@
-"""The addresses of worksheets, and what their forms do: each is a call of the REST interface."""
+"""The addresses of worksheets, and what their forms do: each calls a service."""
 
 from __future__ import annotations
 
