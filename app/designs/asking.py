@@ -56,7 +56,7 @@ class Asking(LongAnswers, Generic[A]):
         self.kind, self.answered = kind, answered
 
     def answer(self, asked: Asked, client: str) -> tuple[A | None, str | None]:
-        """The answer, or the job that makes it where its caller does not wait so long.
+        """Return the answer, or the job that makes it where its caller does not wait so long.
 
         Raises
         ------
@@ -73,18 +73,18 @@ class Asking(LongAnswers, Generic[A]):
             return None, self.queued(payload, asked.body, client)
 
     def calculated(self, payload: JsonObject, body: Json) -> A:
-        """The whole answer to what a job holds."""
+        """Return the whole answer to what a job holds."""
         asked = Asked(body=str(body), **payload)
         return self._calculated(*self._task(asked), asked)
 
     def _task(self, asked: Asked) -> tuple[int, DesignTask]:
-        """The revision in question, and its design."""
+        """Return the revision in question, and its design."""
         with self.database.read() as session:
             number = asked.revision or repository.head(session, asked.design).number
             document = repository.document(session, asked.design, number)
         return number, DesignTask.of(document, self.catalogues)
 
     def _calculated(self, number: int, task: DesignTask, asked: Asked) -> A:
-        """The answer, calculated in the pool for the present caller."""
+        """Return the answer, calculated in the pool for the present caller."""
         key = self.kind, number, task, asked.body
         return in_the_pool(key, self.answered, task, number, asked.body).in_units(asked.units)

@@ -1,4 +1,4 @@
-"""The choices that relations test, `film.oil is "SAE 30"`: words of the document, known before anything else.
+"""The choices that relations test, `film.oil is "SAE 30"`: known from the document alone.
 
 A choice follows from nothing. So a test of it is decided when the network is built, and makes no loop where
 the input that a relation sets is one of the same step.
@@ -32,7 +32,9 @@ class Choices:
     catalogues: Catalogues
 
     def decided(self, relation: Relation) -> Relation:
-        """A relation with words in place of the choices that it tests; as it is, if a template is unknown.
+        """Return a relation with words in place of the choices that it tests.
+
+        As it is, if a template is unknown.
 
         Raises
         ------
@@ -50,7 +52,7 @@ class Choices:
         return relation.decided(words)
 
     def _choice(self, name: str) -> tuple[Choice, Raw]:
-        """The declaration of a choice, and its value in the document."""
+        """Return the declaration of a choice, and its value in the document."""
         reference = Reference.parse(name)
         cls, values = self._block(name, reference.block)
         declared = cls.inputs.get(reference.member) if cls else None

@@ -14,9 +14,9 @@ from app.designs.engine.decision import Climb, ClimbResult, Trial
 from app.designs.engine.verdicts import Verdicts
 from app.designs.graph import build_graph, raise_if
 from app.designs.long_answers import LongAnswers
-from app.designs.reading import settled, starts
+from app.designs.reader import settled, starts
 from app.designs.schemas.decision import Decision, Tried
-from app.designs.stored_solids import analysed, built
+from app.designs.solid_records import analysed, built
 from app.plain import Json, JsonObject, Raw
 from app.presentation.units import System
 from app.schemas.answers import Quantity
@@ -41,7 +41,7 @@ class Asked:
 
 
 def read_budget(raw: Raw) -> float:
-    """A time as typed [s].
+    """Return a time as typed [s].
 
     Raises
     ------
@@ -64,7 +64,7 @@ class Decisions(LongAnswers):
     kind = DECISION
 
     def answer(self, asked: Asked, client: str) -> tuple[Decision, str | None]:
-        """The decision as far as its caller waits for it, and the job that completes it, if any.
+        """Return the decision as far as its caller waits for it, and the job that completes it, if any.
 
         Raises
         ------
@@ -85,7 +85,7 @@ class Decisions(LongAnswers):
         return decision, self.queued(payload, asked.criteria, client)
 
     def calculated(self, payload: JsonObject, body: Json) -> Decision:
-        """The decision about the criteria that a job names."""
+        """Return the decision about the criteria that a job names."""
         return self._decided(Asked(criteria=body, **payload))
 
     def _decided(self, asked: Asked) -> Decision:
@@ -98,7 +98,7 @@ class Decisions(LongAnswers):
         return _shown(number, asked, Climb(calculation, asked.criteria, asked.budget).decide())
 
     def _calculated(self, asked: Asked) -> tuple[int, Calculation]:
-        """The revision, the newest if none is named, as it was calculated."""
+        """Return the revision, the newest if none is named, as it was calculated."""
         with self.database.read() as session:
             row = (
                 repository.head(session, asked.design)
@@ -115,7 +115,7 @@ class Decisions(LongAnswers):
 
 
 def _pending(calculation: Calculation) -> ClimbResult:
-    """The answer while the design itself is still calculated."""
+    """Return the answer while the design itself is still calculated."""
     judgements = sorted(Verdicts(calculation).all(), key=lambda judgement: judgement.name)
     return ClimbResult(judgements, (), (), (), "pending")
 

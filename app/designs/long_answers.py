@@ -1,4 +1,4 @@
-"""Answers that may take long: what a caller does not wait for is left to a job, which keeps the answer."""
+"""Long answers: a job goes on when the caller stops waiting, and stores the answer."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ class LongAnswers(ABC):
 
     @abstractmethod
     def calculated(self, payload: JsonObject, body: Json) -> Answer:
-        """The whole answer to what a job holds."""
+        """Return the whole answer to what a job holds."""
 
     def queued(self, payload: JsonObject, body: object, client: str) -> str:
-        """The id of a new job; it takes over the steps that this request has begun."""
+        """Return the id of a new job; it takes over the steps that this request has begun."""
         whole = {**payload, "body": self.store.put(to_json(body))}
         begun = begun_steps()
 

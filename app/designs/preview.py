@@ -16,13 +16,13 @@ from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph, raise_if
-from app.designs.reading import read_document, resolved, starts
+from app.designs.reader import read_document, resolved, starts
 from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, Status
-from app.designs.stored_solids import analysed, built
-from app.designs.variants.calculating import checked
-from app.designs.variants.judging import merged
+from app.designs.solid_records import analysed, built
+from app.designs.variants.checks import checked
 from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available
+from app.designs.variants.verdict import merged
 from app.designs.worksheet import previewed
 from app.plain import Raw
 from app.presentation.units import System
@@ -53,7 +53,7 @@ def preview(
     worksheet: bool = False,
     system: System = "si",
 ) -> Previewed:
-    """Old and new values for a patch of a design; nothing is saved or built.
+    """Return old and new values for a patch of a design; nothing is saved or built.
 
     The patch is one of the newest revision, if none is named. With `worksheet`, every step as a revision
     would hold it, its formulas written out.
@@ -96,7 +96,7 @@ def preview(
 
 
 def _steps_of(document: Document) -> list[tuple[str, int]]:
-    """The versions that the steps of a document name."""
+    """Return the versions that the steps of a document name."""
     named = ((step.template, step.version) for step in document.steps.values())
     return [(template, version) for template, version in named if isinstance(version, int)]
 
@@ -104,7 +104,7 @@ def _steps_of(document: Document) -> list[tuple[str, int]]:
 def _variants(
     database: Database, catalogues: Catalogues, document: Document, base: Calculation
 ) -> list[Outcome]:
-    """The variants of a document, refused as a save refuses them."""
+    """Return the variants of a document, refused as a save refuses them."""
     outcomes, faults = checked(document, base, Available(catalogues, built(database), analysed(database)))
     raise_if(faults)
     return outcomes
@@ -137,14 +137,14 @@ def _steps(calculation: Calculation, criteria: Sequence[Judgement] = ()) -> dict
 
 
 def _outputs(steps: Mapping[str, RevisionStep]) -> dict[str, Output]:
-    """All outputs of all steps by their names in relations: `film.minimum_film_thickness`."""
+    """Return all outputs of all steps by their names in relations: `film.minimum_film_thickness`."""
     return {
         f"{name}.{output}": value for name, step in steps.items() for output, value in step.outputs.items()
     }
 
 
 def _analysed(calculation: Calculation) -> dict[str, AnalysisOutput | None]:
-    """The outputs of analyses that relations use, by their names there; null while pending."""
+    """Return the outputs of analyses that relations use, by their names there; null while pending."""
     outputs: dict[str, AnalysisOutput | None] = {}
     for block in calculation.graph.blocks.values():
         for kind in block.analyses:
@@ -164,7 +164,7 @@ def _warnings(steps: Mapping[str, RevisionStep]) -> list[Warning]:
 
 
 def _values(new: Calculation) -> dict[str, Shown]:
-    """The values of the design's parameters in SI, without those that wait for a solid."""
+    """Return the values of the design's parameters in SI, without those that wait for a solid."""
     names = (name for name in new.graph.parameters if name in new.values)
     return {
         name: Shown(

@@ -28,11 +28,11 @@ class Previews(LongAnswers):
     kind = PREVIEW
 
     def quick(self, change: Change) -> Preview:
-        """The preview as far as its caller waits for it."""
+        """Return the preview as far as its caller waits for it."""
         return preview(self.database, self.catalogues, **vars(change)).content
 
     def answer(self, change: Change, client: str) -> tuple[Preview, str | None]:
-        """The preview as far as its caller waits for it, and the job that calculates the rest, if any.
+        """Return the preview as far as its caller waits for it, and the job that calculates the rest, if any.
 
         Raises
         ------
@@ -53,5 +53,5 @@ class Previews(LongAnswers):
         return previewed.content, self.queued(payload, change.patch, client)
 
     def calculated(self, payload: JsonObject, body: Json) -> Preview:
-        """The whole preview of the patch that a job holds."""
+        """Return the whole preview of the patch that a job holds."""
         return preview(self.database, self.catalogues, patch=body, **payload).content

@@ -17,14 +17,14 @@ from app.designs.engine.calculate import calculate, resume
 from app.designs.engine.calculation import Calculation
 from app.designs.errors import NotConverged
 from app.designs.graph import Graph, build_graph, raise_if
-from app.designs.naming import named
-from app.designs.reading import starts
+from app.designs.model_failures import named
+from app.designs.reader import starts
 from app.designs.service import REGENERATE
-from app.designs.stored_solids import analysed, built
-from app.designs.variants import stored as variants
-from app.designs.variants.calculating import row_faults
+from app.designs.solid_records import analysed, built
+from app.designs.variants import records as variants
+from app.designs.variants.checks import row_faults
 from app.designs.variants.outcome import Outcome
-from app.designs.variants.settling import Describe, Settling, plain_problem
+from app.designs.variants.solids import Describe, Settling, plain_problem
 from app.designs.variants.together import Available, together
 from app.jobs.service import Completion, Job, JobContext, JobFailed
 from app.plain import Json, JsonObject
@@ -104,7 +104,7 @@ class Regeneration:
             repository.fail(session, job.design, job.revision, {**problem, "changed": changed})
 
     def _prepared(self, plain: Mapping[str, Json]) -> Prepared:
-        """A revision's document and its calculation: that of its save, or calculated again."""
+        """Return a revision's document and its calculation: that of its save, or calculated again."""
         if prepared := self.calculation_cache.find(plain):
             return prepared
         document = Document.model_validate(plain)
@@ -116,7 +116,7 @@ class Regeneration:
         return calculate(graph, built(self.database), analysed(self.database), assumed)
 
     def _settled(self, prepared: Prepared, context: JobContext) -> tuple[Calculation, list[JsonObject]]:
-        """The calculation with all solids built and all iterations settled, and the rounds that it took."""
+        """Return the calculation with all solids built and iterations converged, and its rounds."""
         document, calculation = prepared
         rounds = list[JsonObject]()
         while True:
@@ -137,7 +137,7 @@ class Regeneration:
             calculation = self._calculated(calculation.graph, measured)
 
     def _variants(self, document: Document, base: Calculation, context: JobContext) -> list[Outcome]:
-        """The variants of a document, each with its solids or with the reason why it has none."""
+        """Return the variants of a document, each with its solids or with the reason why it has none."""
         if not document.variants:
             return []
         raise_if(row_faults(base))
@@ -149,7 +149,7 @@ class Regeneration:
         return self._settled(prepared, context)[0]
 
     def _built(self, calculation: Calculation, context: JobContext) -> Calculation:
-        """The calculation once every model in it is built, and analysed as far as somebody uses it.
+        """Return the calculation once every model in it is built, and analysed as far as somebody uses it.
 
         Models may wait for each other's measures, so each round makes what can be made.
         """
@@ -181,7 +181,7 @@ class Regeneration:
 
 
 def _lane(job: Job) -> Lane:
-    """The lane of a job: whoever changes a bearing does not wait for calculations of minutes."""
+    """Return the lane of a job: whoever changes a bearing does not wait for calculations of minutes."""
     return "answers" if job.kind == REGENERATE else "jobs"
 
 

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
-from sqlalchemy import bindparam, select
+from sqlalchemy import bindparam, select, tuple_
 from sqlalchemy.orm import Session, defer
 from sqlalchemy.orm.util import identity_key
 
 from app.designs import statements
 from app.designs.errors import DesignReleased, StaleRevision
-from app.designs.filtering import DesignFilter, conditions
+from app.designs.filters import DesignFilter, conditions
 from app.designs.releases import EVER_RELEASED, NEWEST_RELEASED
 from app.designs.results import ModelState
 from app.identity.audit import record
@@ -47,7 +47,7 @@ class Written:
 
 
 def design(session: Session, id: str) -> DesignRow:
-    """A design that is not deleted.
+    """Return a design that is not deleted.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def design(session: Session, id: str) -> DesignRow:
 
 
 def locked(session: Session, id: str) -> DesignRow:
-    """A design that is not deleted, as it is now; no other unit changes it before the end of this one.
+    """Return a design that is not deleted, as it is now; no other unit changes it before the end of this one.
 
     Raises
     ------
@@ -75,8 +75,15 @@ def locked(session: Session, id: str) -> DesignRow:
     return row
 
 
+def heads(session: Session, rows: Sequence[DesignRow]) -> dict[str, RevisionRow]:
+    """Return the newest revision of each design by the design's id, without results; read at once."""
+    places = [(row.id, row.head) for row in rows]
+    query = select(RevisionRow).where(tuple_(RevisionRow.design_id, RevisionRow.number).in_(places))
+    return {row.design_id: row for row in session.scalars(query.options(_LEAN))}
+
+
 def revision(session: Session, id: str, number: int) -> RevisionRow:
-    """A revision; those of a deleted design are kept.
+    """Return a revision; those of a deleted design are kept.
 
     Raises
     ------
@@ -90,7 +97,7 @@ def revision(session: Session, id: str, number: int) -> RevisionRow:
 
 
 def lean(session: Session, id: str, number: int) -> RevisionRow:
-    """A revision whose results are loaded only if somebody reads them from the row.
+    """Return a revision whose results are loaded only if somebody reads them from the row.
 
     Raises
     ------
@@ -104,12 +111,12 @@ def lean(session: Session, id: str, number: int) -> RevisionRow:
 
 
 def head(session: Session, id: str) -> RevisionRow:
-    """The newest revision of a design."""
+    """Return the newest revision of a design."""
     return revision(session, id, design(session, id).head)
 
 
 def lean_head(session: Session, id: str) -> RevisionRow:
-    """The newest revision of a design, as `lean` has it."""
+    """Return the newest revision of a design, as `lean` has it."""
     return lean(session, id, design(session, id).head)
 
 
@@ -125,7 +132,7 @@ class Newest(NamedTuple):
 
 
 def newest(session: Session, id: str, number: int | None = None) -> Newest:
-    """A revision of a design that is not deleted, by default the newest, without its results.
+    """Return a revision of a design that is not deleted, by default the newest, without its results.
 
     Raises
     ------
@@ -138,7 +145,7 @@ def newest(session: Session, id: str, number: int | None = None) -> Newest:
 
 
 def model_names(session: Session, id: str, number: int) -> list[str]:
-    """The models of a revision, without those of its variants.
+    """Return the models of a revision, without those of its variants.
 
     Raises
     ------
@@ -152,7 +159,7 @@ def model_names(session: Session, id: str, number: int) -> list[str]:
 
 
 def document(session: Session, id: str, number: int) -> JsonObject:
-    """The document of a revision, without its results.
+    """Return the document of a revision, without its results.
 
     Raises
     ------
@@ -169,12 +176,12 @@ def _no_revision(id: str, number: int) -> NotFound:
 
 
 def of_ids(session: Session, ids: Collection[str]) -> list[DesignRow]:
-    """The designs of these ids that are not deleted."""
+    """Return the designs of these ids that are not deleted."""
     return list(session.scalars(select(DesignRow).where(DesignRow.id.in_(ids), DesignRow.deleted.is_(None))))
 
 
 def newest_number(session: Session, id: str) -> int:
-    """The number of a design's newest revision, whether it is deleted or not."""
+    """Return the number of a design's newest revision, whether it is deleted or not."""
     row = session.get(DesignRow, id)
     assert row is not None, "a revision has its design"
     return row.head
@@ -183,7 +190,7 @@ def newest_number(session: Session, id: str) -> int:
 def designs(
     session: Session, limit: int, cursor: str | None, wanted: DesignFilter | None = None
 ) -> list[DesignRow]:
-    """One page of the designs that a filter selects, newest first, and one more if there are more."""
+    """Return one page of the designs that a filter selects, newest first, and one more if there are more."""
     query = select(DesignRow).where(DesignRow.deleted.is_(None)).order_by(DesignRow.id.desc())
     if wanted is not None:
         query = query.where(*conditions(session, wanted))
@@ -193,7 +200,7 @@ def designs(
 
 
 def revisions(session: Session, id: str, limit: int, before: int | None) -> list[RevisionRow]:
-    """One page of a design's revisions, newest first, and one more if there are more."""
+    """Return one page of a design's revisions, newest first, and one more if there are more."""
     query = select(RevisionRow).where(RevisionRow.design_id == id).order_by(RevisionRow.number.desc())
     query = query.options(_LEAN)
     if before is not None:
@@ -202,14 +209,17 @@ def revisions(session: Session, id: str, limit: int, before: int | None) -> list
 
 
 def create(session: Session, name: str, written: Written, at: str | None = None) -> tuple[str, int]:
-    """A new design with its first revision, `at` the time given or now; its id and the revision's number."""
+    """Return a new design with its first revision, `at` the time given or now.
+
+    Its id and the revision's number.
+    """
     id, created = new_id(session), at or now()
     statements.NEW_DESIGN.run(session, {"id": id, "name": name, "created": created, "head": 0})
     return id, append(session, id, 0, written, created)
 
 
 def append(session: Session, id: str, base: int, written: Written, at: str | None = None) -> int:
-    """A new revision of a design whose newest one is `base`, `at` the time given or now; its number.
+    """Return a new revision of a design whose newest one is `base`, `at` the time given or now; its number.
 
     The row of the design decides: of several servers that append to the same revision, one succeeds.
 
@@ -291,12 +301,12 @@ def delete(session: Session, id: str) -> None:
 
 
 def newest_good(session: Session, id: str, model: str, until: int) -> RevisionModelRow | None:
-    """The newest revision, up to this one, whose model of this name was built and accepted."""
+    """Return the newest revision, up to this one, whose model of this name was built and accepted."""
     return _model(statements.GOOD.run(session, {"of": id, "model": model, "until": until}))
 
 
 def built_model(session: Session, id: str, number: int, model: str) -> RevisionModelRow | None:
-    """A model of a revision, if it was built."""
+    """Return a model of a revision, if it was built."""
     return _model(statements.BUILT.run(session, {"of": id, "model": model, "at": number}))
 
 
@@ -306,7 +316,7 @@ def _model(rows: Sequence[Row]) -> RevisionModelRow | None:
 
 
 def changed_since_good(session: Session, id: str, number: int) -> list[str]:
-    """The model parameters of a revision that differ from those of the last good model."""
+    """Return the model parameters of a revision that differ from those of the last good model."""
     changed: list[str] = []
     for model in revision(session, id, number).models:
         good = newest_good(session, id, model.name, number - 1)

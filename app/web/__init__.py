@@ -1,1 +1,1 @@
-"""The pages: what the services answer, as an engineer reads it."""
+"""The pages of the service, for engineers."""

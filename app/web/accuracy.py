@@ -1,4 +1,4 @@
-"""Measured errors of a template's levels as a table: what a level costs, how far off its results may be."""
+"""A table of a template's levels: cost and measured errors."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class _Measured(BaseModel):
 
 
 def table(measured: Accuracy) -> Table:
-    """The levels of the answer to `GET …/accuracy`, with the outputs that were measured."""
+    """Return the levels of the answer to `GET …/accuracy`, with the outputs that were measured."""
     levels = [_level(name, _Measured.model_validate(level)) for name, level in measured.levels.items()]
     outputs = list(dict.fromkeys(name for level in levels for name in level.errors))
     return Table(levels, outputs[:SHOWN])

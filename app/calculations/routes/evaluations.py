@@ -8,7 +8,7 @@ from fastapi import APIRouter, Header, Path, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheAnswering, TheJobs, TheStore
-from app.api.stored import UNAVAILABLE, rebuilding
+from app.api.file_answers import UNAVAILABLE, rebuilding
 from app.api.waiting import LATER, accepted, finished
 from app.calculations.array_files import MEDIA_TYPES
 from app.calculations.jobs import ANSWERS, CalculationJobs
@@ -87,7 +87,7 @@ async def _calculated_again(
 
 
 def _calculation(jobs: Jobs, id: str) -> Job:
-    """The job, if its result is an answer; raises JobNotFound."""
+    """Return the job, if its result is an answer; raises JobNotFound."""
     row = jobs.get(id)
     if row.kind not in ANSWERS:
         raise JobNotFound(id)
@@ -95,6 +95,6 @@ def _calculation(jobs: Jobs, id: str) -> Job:
 
 
 def stored_answer(store: Artifacts, row: Job) -> Pieces:
-    """The answer from the store; raises ArtifactMissing, ArtifactDamaged."""
+    """Return the answer from the store; raises ArtifactMissing, ArtifactDamaged."""
     assert row.result is not None
     return Pieces.of(store.read(row.result.rpartition("sha256=")[2]))

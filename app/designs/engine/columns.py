@@ -42,33 +42,42 @@ class Column:
 
     @property
     def places(self) -> tuple[int, ...]:
-        """The shape of the value in one row."""
+        """Return the shape of the value in one row."""
         return np.shape(self.value)[int(self.is_row) :]
 
     def of(self, rows: Indices | slice) -> Column:
-        """The column of some of the rows."""
+        """Return the column of some of the rows."""
         return Column(self.value[rows], is_row=True) if self.is_row else self  # type: ignore[index]
 
     def padded(self, rank: int) -> Value:
-        """The value as an array that broadcasts with values of a larger rank."""
+        """Return the value as an array that broadcasts with values of a larger rank."""
         if not self.is_row or rank <= self.rank:
             return self.value
         value = np.asarray(self.value)
         return value.reshape(len(value), *(1,) * (rank - self.rank), *value.shape[1:])
 
     def spread(self, count: int) -> Array:
-        """The value of every row; a view, where one value serves all of them."""
+        """Return the value of every row; a view, where one value serves all of them."""
         value = np.asarray(self.value, dtype=float)
-        return value if self.is_row else np.broadcast_to(value, (count, *value.shape))
+        if self.is_row:
+            return value
+        return value[None] if count == 1 else np.broadcast_to(value, (count, *value.shape))
 
     def finite_rows(self) -> Mask:
-        """The rows in which the value is finite at all its places."""
+        """Return the rows in which the value is finite at all its places."""
         finite: Mask = np.asarray(np.isfinite(self.value))
         whole: Mask = np.all(finite, axis=tuple(range(1, finite.ndim)))
         return whole
 
+    def unknown_rows(self, count: int) -> Mask:
+        """Return the rows in which the value is NaN at any of its places."""
+        unknown = np.asarray(np.isnan(self.value))
+        if not self.is_row:
+            return np.full(count, unknown.any())
+        return np.any(unknown, axis=tuple(range(1, unknown.ndim))) if unknown.ndim > 1 else unknown
+
     def without(self, refused: Mask) -> Column:
-        """The column with NaN in the rows that are refused."""
+        """Return the column with NaN in the rows that are refused."""
         if not refused.any():
             return self
         where = refused.reshape(-1, *(1,) * self.rank)
@@ -76,7 +85,7 @@ class Column:
 
 
 def aligned(columns: Mapping[str, Column]) -> tuple[dict[str, Value], bool]:
-    """Values that broadcast row by row, and whether any of them has rows.
+    """Return values that broadcast row by row, and whether any of them has rows.
 
     Axes within a row broadcast from the last one, as they would in a design without rows.
     """
@@ -86,7 +95,7 @@ def aligned(columns: Mapping[str, Column]) -> tuple[dict[str, Value], bool]:
 
 
 def stacked(items: Sequence[Column]) -> Column:
-    """A list of single values, of which some may differ from row to row, as one value of rank 1."""
+    """Return a list of single values, of which some may differ from row to row, as one value of rank 1."""
     if not any(item.is_row for item in items):
         return Column(np.array([item.value for item in items], dtype=float))
     values = np.broadcast_arrays(*(item.value for item in items))
@@ -94,7 +103,7 @@ def stacked(items: Sequence[Column]) -> Column:
 
 
 def scattered(count: int, parts: Iterable[tuple[Indices | slice, Column]]) -> Column:
-    """One column of so many rows from columns of parts of the rows; NaN in the others.
+    """Return one column of so many rows from columns of parts of the rows; NaN in the others.
 
     Raises
     ------
@@ -128,27 +137,27 @@ class RowEstimate:
 
     @classmethod
     def exact(cls, column: Column, axes: int = 0) -> RowEstimate:
-        """A value that is what it is."""
+        """Return a value that is what it is."""
         return cls(Estimate(column.value, axes=axes), column.is_row)
 
     @property
     def value(self) -> Column:
-        """The value."""
+        """Return the value."""
         return Column(self.one.value, self.is_row)
 
     @property
     def error(self) -> Column:
-        """The relative error; 0 if exact, NaN where it is not known."""
+        """Return the relative error; 0 if exact, NaN where it is not known."""
         return Column(self.one.error, self.is_row_error)
 
     @property
     def has_rows(self) -> bool:
-        """Whether anything of it differs from row to row."""
+        """Return whether anything of it differs from row to row."""
         return self.is_row or self.is_row_error
 
     @property
     def is_stated(self) -> bool:
-        """Whether anybody measured the error of the model, known or not."""
+        """Return whether anybody measured the error of the model, known or not."""
         return self.one.is_stated or (not self.has_rows and bool(np.isnan(self.one.error).any()))
 
     @property
@@ -157,7 +166,7 @@ class RowEstimate:
         return max(self.value.rank - self.one.axes, 0)
 
     def padded(self, rank: int) -> Estimate:
-        """As an estimate whose arrays broadcast with those of a larger rank."""
+        """Return an estimate whose arrays broadcast with those of a larger rank."""
         if not (self.is_row or self.is_row_error or self.is_row_scale):
             return self.one
         one, value = self.one, self.value
@@ -167,7 +176,7 @@ class RowEstimate:
         return Estimate(value.padded(rank + one.axes), error, one.is_stated, axes, scale)
 
     def bounds(self) -> tuple[Column, Column]:
-        """Both ends of the band; the value itself where its error is not known."""
+        """Return both ends of the band; the value itself where its error is not known."""
         one = self.one
         error = one.error if isinstance(one.error, float) else np.nan_to_num(one.error, nan=0.0)
         scale = None if one.scale is None else np.nan_to_num(one.scale, nan=0.0)
@@ -176,21 +185,19 @@ class RowEstimate:
         return Column(low, self.has_rows), Column(high, self.has_rows)
 
     def missing(self, count: int) -> Mask:
-        """The rows that have no value at some place."""
-        missing: Mask = np.any(np.isnan(self.value.spread(count).reshape(count, -1)), axis=1)
-        return missing
+        """Return the rows that have no value at some place."""
+        return self.value.unknown_rows(count)
 
     def unknown(self, count: int) -> Mask:
-        """The rows whose error is not known at some point."""
-        unknown: Mask = np.any(np.isnan(self.error.spread(count).reshape(count, -1)), axis=1)
-        return unknown
+        """Return the rows whose error is not known at some point."""
+        return self.error.unknown_rows(count)
 
     def unstated(self) -> RowEstimate:
-        """The same, its error not stated."""
+        """Return the same, its error not stated."""
         return replace(self, one=replace(self.one, is_stated=False))
 
     def without_error(self, unknown: Mask) -> RowEstimate:
-        """The same, its error not known in some rows, and not stated."""
+        """Return the same, its error not known in some rows, and not stated."""
         if not self.has_rows and unknown.all():
             return replace(self, one=replace(self.one, error=float("nan"), is_stated=False))
         error = np.where(unknown, np.nan, self.error.padded(0) if self.is_row_error else self.one.error)

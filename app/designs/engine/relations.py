@@ -32,7 +32,7 @@ _ADD, _SUBTRACT = OPERATORS["add"], OPERATORS["subtract"]
 
 
 def related(relation: Relation, uses: Mapping[str, Column]) -> Column:
-    """The value of a relation in all rows; NaN where an index is no place of its array.
+    """Return the value of a relation in all rows; NaN where an index is no place of its array.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def _with_lists(relation: Relation, columns: Mapping[str, Column]) -> Column:
 
 
 def wrong_index(relation: Relation, uses: Mapping[str, Column], row: int) -> FaultyText | None:
-    """Why a row has no value, if that is because of an index."""
+    """Return why a row has no value, if that is because of an index."""
     alone = {name: np.asarray(c.value)[row] if c.is_row else c.value for name, c in uses.items()}
     try:
         for item in relation.items:
@@ -85,7 +85,7 @@ def _item(item: Item, uses: Mapping[str, Column]) -> Column:
 
 
 def column_of(node: Node, columns: Mapping[str, Column]) -> Column:
-    """The value of a tree in all rows, from the columns of its names and of items by their text.
+    """Return the value of a tree in all rows, from the columns of its names and of items by their text.
 
     Raises
     ------
@@ -134,7 +134,7 @@ def rank_of(node: Node, ranks: Mapping[str, int]) -> int:
 
 
 def tolerance_of(graph: Graph, cell: Cell, typed: Mapping[str, Typed]) -> Tolerance | None:
-    """The tolerance that a cell has by its relation; None if it has none.
+    """Return the tolerance that a cell has by its relation; None if it has none.
 
     `typed` are the values of cells as they were read. A zone of ISO 286 is that of its own nominal size:
     where a constant is added, the limits stay and the zone goes.
@@ -154,7 +154,10 @@ def tolerance_of(graph: Graph, cell: Cell, typed: Mapping[str, Typed]) -> Tolera
 
 
 def _term(tree: Node) -> tuple[str, bool] | None:
-    """The only name of a relation, and whether a constant is added to it; None of any other relation."""
+    """Return the only name of a relation, and whether a constant is added to it.
+
+    None of any other relation.
+    """
     match tree:
         case Name(name=name):
             return name, False

@@ -45,7 +45,10 @@ async def solve_design(
 async def answer_asked(
     asking: Asking[A], asked: Asked, threads: Threads, request: Request, client: str, prefer: str | None
 ) -> Response:
-    """The answer to a question about a design; 202 with its job where it takes longer than is waited for."""
+    """Return the answer to a question about a design.
+
+    202 with its job where it takes longer than is waited for.
+    """
     seconds = patience(prefer, asking.steps.deadline)
     answer, job = await threads.run_within(seconds, request, asking.answer, asked, client)
     return accepted(job) if answer is None else written(answer)

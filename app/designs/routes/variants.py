@@ -27,7 +27,7 @@ from app.api.dependencies import (
     TheVariantDetails,
     Units,
 )
-from app.api.stored import UNAVAILABLE, lost
+from app.api.file_answers import UNAVAILABLE, lost
 from app.api.waiting import LATER, accepted, finished, later, patience, written
 from app.catalogue.catalogues import Catalogues
 from app.designs.bodies import Note
@@ -41,7 +41,7 @@ from app.designs.variants import views
 from app.designs.variants.detail import WantedVariant
 from app.designs.variants.files import STEP, Entry, entries, variant_model
 from app.designs.variants.names import MOST_VARIANTS
-from app.designs.variants.saving import replace_variants as replaced
+from app.designs.variants.save import replace_variants as replaced
 from app.http.archives import MEDIA_TYPE, archived, distinct
 from app.http.attachments import is_at_hand, named, unchanged
 from app.http.clients import TheClient
@@ -149,7 +149,7 @@ async def replace_variants(
 
 
 async def answer_table(designs: Designs, jobs: Jobs, saved: Saved, prefer: str | None) -> Response:
-    """The table as it was saved: 200, or 202 while solids are built."""
+    """Return the table as it was saved: 200, or 202 while solids are built."""
     is_done = not saved.is_deferred and await finished(jobs, saved.job, prefer)
     return await run_in_threadpool(_table, designs, saved, is_done)
 
@@ -280,7 +280,7 @@ def _file(store: Artifacts, entry: Entry) -> bytes:
 
 
 def _tag(names: Sequence[str], ready: Sequence[Entry]) -> str:
-    """A strong ETag: the ZIP is a pure function of these."""
+    """Return a strong ETag: the ZIP is a pure function of these."""
     parts = (
         f"{name}\0{entry.sha256}\0{entry.stamp.date}\0{entry.stamp.material}\n"
         for name, entry in zip(names, ready, strict=True)

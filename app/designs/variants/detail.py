@@ -20,7 +20,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.graph import raise_if
 from app.designs.long_answers import LongAnswers
 from app.designs.schemas.variants import VariantDetail
-from app.designs.stored_solids import analysed, built
+from app.designs.solid_records import analysed, built
 from app.designs.variants.names import BASE
 from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available, together
@@ -56,7 +56,7 @@ class VariantDetails(LongAnswers):
     kind = VARIANT
 
     def answer(self, wanted: WantedVariant, client: str) -> tuple[VariantDetail | None, str | None]:
-        """The variant, or the job that calculates it where its caller does not wait so long.
+        """Return the variant, or the job that calculates it where its caller does not wait so long.
 
         Raises
         ------
@@ -74,7 +74,7 @@ class VariantDetails(LongAnswers):
         return None, self.queued(payload, None, client)
 
     def calculated(self, payload: Mapping[str, object], body: object) -> VariantDetail:
-        """The whole answer to what a job holds."""
+        """Return the whole answer to what a job holds."""
         wanted = _WANTED.validate_python(payload)
         return _shown(wanted, *self._calculated(wanted))
 
@@ -90,7 +90,7 @@ class VariantDetails(LongAnswers):
 
 
 def _alone(document: Document, wanted: WantedVariant) -> Document:
-    """The document with one of its variants only."""
+    """Return the document with one of its variants only."""
     variants = {BASE: {}, **document.variants}
     if wanted.variant not in variants:
         there = f"there are {', '.join(variants)}"
@@ -119,7 +119,10 @@ def _shown(wanted: WantedVariant, number: int, outcome: Outcome) -> VariantDetai
 
 
 def _outputs(calculation: Calculation) -> Iterator[tuple[str, Output]]:
-    """Every output of every step by its name in relations; null with its reason where the step waits."""
+    """Yield every output of every step by its name in relations.
+
+    Null with its reason where the step waits.
+    """
     for block in calculation.graph.blocks.values():
         if block.is_model:
             continue

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Header, Path, Query, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheAnalyses, TheCatalogues, TheHealing, TheJobs, TheStore, Units
-from app.api.stored import UNAVAILABLE, UNCHANGED, StoredFile, lost
+from app.api.file_answers import UNAVAILABLE, UNCHANGED, StoredFile, lost
 from app.api.waiting import accepted, finished, later, written
 from app.catalogue.routes.templates import Number
 from app.http import problems
@@ -154,7 +154,7 @@ def _converted(read: Callable[[str], bytes], sha256: str, units: System, headers
 
 
 def _checked(cls: type[CadModel], kind: str, body: AnalysisIn) -> tuple[str, ...]:
-    """The outputs to find, if nothing in the body is wrong beside its parameters."""
+    """Return the outputs to find, if nothing in the body is wrong beside its parameters."""
     asked = [name for name in KINDS[kind] if name not in ON_REQUEST] if body.outputs is None else body.outputs
     names = ", ".join(offered(kind))
     wrong = faults(kind, body)

@@ -20,7 +20,7 @@ LONGEST_PLACE = 200  # characters of where in a document something is wrong
 
 
 def read_document(raw: Mapping[str, Raw]) -> Document:
-    """A document from JSON.
+    """Return a document from JSON.
 
     Raises
     ------
@@ -39,7 +39,10 @@ def _fault(error: Mapping[str, Json]) -> Fault:
 
 
 def resolved(document: Document, catalogues: Catalogues) -> Document:
-    """The document with every version pinned: latest is resolved once, when a step or model comes in."""
+    """Return the document with every version pinned.
+
+    Latest is resolved once, when a step or model comes in.
+    """
     versions = [step.version for step in document.steps.values()]
     versions += [model.version for model in document.models.values()]
     if all(isinstance(version, int) for version in versions):
@@ -55,7 +58,7 @@ def resolved(document: Document, catalogues: Catalogues) -> Document:
 
 
 def starts(document: Document) -> dict[Reference, float]:
-    """The SI values with which the iterations of a document begin.
+    """Return the SI values with which the iterations of a document begin.
 
     Raises
     ------
@@ -74,7 +77,7 @@ def starts(document: Document) -> dict[Reference, float]:
 
 
 def settled(results: Mapping[str, list[Mapping[str, Raw]]] | None) -> dict[Reference, float]:
-    """The values [SI] with which the iterations of a revision ended, by its results."""
+    """Return the values [SI] with which the iterations of a revision ended, by its results."""
     rounds = (results or {}).get("iterations", [])
     values = {str(one["through"]): (float(str(one["assumed"])), str(one["unit"])) for one in rounds}
     return {Reference.parse(name): float(unit(scale).to_si(value)) for name, (value, scale) in values.items()}
