@@ -9,7 +9,7 @@ from app.calculations.jobs import IMPACT
 from app.calculations.steps import present_caller
 from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document
-from app.designs.filtering import DesignFilter
+from app.designs.filters import DesignFilter
 from app.designs.labels import key_of
 from app.designs.tasks import CatalogueTask
 from app.impact import repository
