@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import templates
+from benchmarks.in_line_four import IN_LINE_FOUR
 from cad.cranks.outline import Outline, reach
 from cad.lists import LONGEST_TEXT, listed, written
 from cad.models.crankshaft_v1 import Crankshaft as OneThrow
