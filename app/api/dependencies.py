@@ -23,20 +23,24 @@ from app.approvals.service import Approving
 from app.brought.service import ModelImports
 from app.calculations.steps import Caller, call_as
 from app.catalogue.catalogues import Catalogues
-from app.designs.asking import Asking
-from app.designs.decisions import Decisions
+from app.designs import decisions
 from app.designs.labels import Labelling
-from app.designs.previewing import Previews
+from app.designs.preview import Previewed
+from app.designs.questions import Asked, Questions
 from app.designs.service import Designs
-from app.designs.variants.detail import VariantDetails
+from app.designs.variants.detail import WantedVariant
 from app.identity.service import Identity
-from app.impact.service import Impacts
+from app.impact import survey
 from app.jobs.service import Jobs
 from app.presentation.units import System
 from app.reports.paper import Press
 from app.reports.service import Reports
+from app.schemas.decisions import Decision
+from app.schemas.designs import Preview
+from app.schemas.impact import Impact
 from app.schemas.solve import DesignSolution
 from app.schemas.tolerances import ToleranceAnalysis
+from app.schemas.variants import VariantDetail
 from app.settings import Settings
 from app.solids.analyses import Analyses
 from app.solids.healing import Healing
@@ -77,12 +81,12 @@ TheLabelling = Annotated[Labelling, Depends(_part("labelling"))]
 TheStudies = Annotated[Studies, Depends(_part("studies"))]
 TheImports = Annotated[Imports, Depends(_part("imports"))]
 TheWorksheets = Annotated[Worksheets, Depends(_part("worksheets"))]
-ThePreviews = Annotated[Previews, Depends(_part("previews"))]
-TheDecisions = Annotated[Decisions, Depends(_part("decisions"))]
-TheSolving = Annotated[Asking[DesignSolution], Depends(_part("solving"))]
-TheTolerances = Annotated[Asking[ToleranceAnalysis], Depends(_part("tolerances"))]
-TheVariantDetails = Annotated[VariantDetails, Depends(_part("variant_details"))]
-TheImpacts = Annotated[Impacts, Depends(_part("impacts"))]
+ThePreviews = Annotated[Questions[Previewed, Preview], Depends(_part("previews"))]
+TheDecisions = Annotated[Questions[decisions.Asked, Decision], Depends(_part("decisions"))]
+TheSolving = Annotated[Questions[Asked, DesignSolution], Depends(_part("solving"))]
+TheTolerances = Annotated[Questions[Asked, ToleranceAnalysis], Depends(_part("tolerances"))]
+TheVariantDetails = Annotated[Questions[WantedVariant, VariantDetail], Depends(_part("variant_details"))]
+TheImpacts = Annotated[Questions[survey.Asked, Impact], Depends(_part("impacts"))]
 TheModels = Annotated[Models, Depends(_part("models"))]
 TheModelImports = Annotated[ModelImports, Depends(_part("model_imports"))]
 TheAnalyses = Annotated[Analyses, Depends(_part("analyses"))]

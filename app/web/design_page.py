@@ -17,7 +17,7 @@ from app.api.routes.revisions import list_revisions
 from app.api.routes.solid_fields import list_solid_fields
 from app.api.routes.templates import list_templates
 from app.api.routes.variants import variants_of
-from app.designs.previewing import Change
+from app.designs.preview import Previewed
 from app.identity.acting import acting
 from app.schemas.analyses import Analysis
 from app.schemas.designs import (
@@ -183,9 +183,9 @@ async def _form(request: Request, services: PageServices, design: Design, refusa
         await described_models(services, design),
     )
     has_parameters = bool(design.parameters)  # only with the worksheet a preview has their values
-    change = Change(id, {}, worksheet=has_parameters, system=units_of(request))
+    change = Previewed(id, {}, worksheet=has_parameters, system=units_of(request))
     has_values = has_parameters or bool(design.models)  # the page shows nothing else of a preview
-    preview = await services.calculate(within, services.previews.quick, change) if has_values else None
+    preview = await services.calculate(within, services.previews.known, change) if has_values else None
     before = await _before(request, services, design)
     tables = await library(services) if templates else []
     verdict = _verdict(revision, design, templates)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pydantic import JsonValue
 
 from app.api.routes.designs import list_designs
-from app.designs.previewing import Change
+from app.designs.preview import Previewed
 from app.presentation import numbers
 from app.schemas.designs import Design, DesignSummary, Preview
 from app.schemas.worksheets import Sheet, SheetCheck
@@ -53,7 +53,7 @@ async def tried_in(services: PageServices, id: str, sheet: Sheet, checked: Sheet
         design = await services.run(services.designs.show, id)
         name, is_added = _place(design, sheet)
         step = _step(sheet, checked, is_added=is_added)
-        change = Change(id, {"steps": {name: step}}, worksheet=False, system="si")
+        change = Previewed(id, {"steps": {name: step}}, worksheet=False, system="si")
         preview, _ = await services.calculate(PATIENCE, services.previews.answer, change, services.client)
     except Refused as refused:
         if refused.status not in REFUSED:

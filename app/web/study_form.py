@@ -10,7 +10,7 @@ from fastapi import Request, Response
 from pydantic import JsonValue
 
 from app.api.routes.variants import variants_of
-from app.designs.previewing import Change
+from app.designs.preview import Previewed
 from app.designs.variants.names import BASE, natural
 from app.presentation.typed import text_of, value_of
 from app.reference import Reference
@@ -157,7 +157,9 @@ async def study_form(
     network = await services.run(services.designs.network, id)
     revision = await services.calculate(None, services.reports.worksheet, id, design.revision, "si")
     preview = (
-        await services.calculate(inf, services.previews.answer, Change(id, {}, False, "si"), services.client)
+        await services.calculate(
+            inf, services.previews.answer, Previewed(id, {}, False, "si"), services.client
+        )
     )[0]
     places, named = varied(design, network), outputs(network)
     aside = set_aside(design, network, places, present(revision, preview))

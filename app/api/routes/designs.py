@@ -33,7 +33,7 @@ from app.api.waiting import accepted, later, written
 from app.designs import repository, views
 from app.designs.filtering import TEMPLATE, DesignFilter
 from app.designs.labels import key_of, tags_of
-from app.designs.previewing import Change
+from app.designs.preview import Previewed
 from app.designs.releases import released_of
 from app.designs.schemas import LONGEST_NOTE, PATCH, CopyIn, DesignIn
 from app.designs.service import Saved
@@ -195,9 +195,9 @@ async def preview_design(
     prefer: Prefer = None,
 ) -> Response:
     """Preview the effect of a change on outputs and model parameters; nothing is saved."""
-    change = Change(id, noted(body)[0], worksheet, units)
+    change = Previewed(id, noted(body)[0], worksheet, units)
     if within is not None:
-        return written(await threads.run_within(within, request, previews.quick, change))
+        return written(await threads.run_within(within, request, previews.known, change))
     answer, job = await threads.run_within(seconds_waited(prefer), request, previews.answer, change, client)
     return accepted(job, answer) if job else written(answer)
 

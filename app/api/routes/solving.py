@@ -11,7 +11,7 @@ from app.api.gate.roles import needs
 from app.api.reading import StrictRoute
 from app.api.threads import Threads
 from app.api.waiting import LATER, accepted, patience, written
-from app.designs.asking import A, Asked, Asking
+from app.designs.questions import A, Asked, Questions
 from app.designs.solved import SolveDesignIn
 from app.schemas.problems import refusals
 from app.schemas.solve import DesignSolution
@@ -43,9 +43,14 @@ async def solve_design(
 
 
 async def answer_asked(
-    asking: Asking[A], asked: Asked, threads: Threads, request: Request, client: str, prefer: str | None
+    questions: Questions[Asked, A],
+    asked: Asked,
+    threads: Threads,
+    request: Request,
+    client: str,
+    prefer: str | None,
 ) -> Response:
     """The answer to a question about a design; 202 with its job where it takes longer than is waited for."""
-    seconds = patience(prefer, asking.steps.deadline)
-    answer, job = await threads.run_within(seconds, request, asking.answer, asked, client)
+    seconds = patience(prefer, questions.steps.deadline)
+    answer, job = await threads.run_within(seconds, request, questions.answer, asked, client)
     return accepted(job) if answer is None else written(answer)

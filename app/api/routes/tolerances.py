@@ -11,7 +11,7 @@ from app.api.gate.roles import needs
 from app.api.reading import StrictRoute
 from app.api.routes.solving import answer_asked
 from app.api.waiting import LATER
-from app.designs.asking import Asked
+from app.designs.questions import Asked
 from app.schemas.problems import refusals
 from app.schemas.tolerances import ToleranceAnalysis
 from app.tolerances.schemas import ToleranceIn
