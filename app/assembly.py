@@ -70,7 +70,7 @@ if TYPE_CHECKING:
     from app.observation.traces import Traces
 
 NETWORK = (
-    "app.designs.net",
+    "app.designs.engine.net",
     "app.impact.process",
     "app.studies.planning",
     "app.studies.searching",
@@ -122,7 +122,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     about = database, catalogues, store, jobs, calculations.steps
     previews = Questions(PREVIEW, Previewed, preview, *about)
     decisions = Questions(DECISION, decisions_of.Asked, decisions_of.decided, *about)
-    impacts = Questions(IMPACT, survey.Asked, survey.impact, *about)
+    impacts = Questions(IMPACT, survey.Asked, survey.impact, *about, survey.check)
     solving = Questions(SOLUTION, Asked, in_a_process(SOLUTION, solved), *about)
     tolerances = Questions(TOLERANCE, Asked, in_a_process(TOLERANCE, analysed), *about)
     variant_details = Questions(VARIANT, WantedVariant, detailed, *about)

@@ -22,7 +22,7 @@ import numpy as np
 from app.catalogue.catalogues import Catalogues
 from app.catalogue.finding import find_templates
 from app.designs.document import Document
-from app.designs.net import Net
+from app.designs.engine.net import Net
 from app.reference import Reference
 from app.studies.methods.answers import Answer, Columns, Held, Objective, Problem
 from app.studies.methods.optimise import Optimum, optimise

@@ -1,4 +1,4 @@
-"""The calculations: knows no HTTP, no database, no CAD. `get` is the way in from Python."""
+"""The calculations, without HTTP, database or CAD. From Python, call `get`."""
 
 from templates.door import Calculation, NoValue, Version, get
 from templates.library.choices import register_choices

@@ -18,7 +18,8 @@ from patience import patient
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "contributing.md").read_text(encoding="utf-8")
 OUTPUT, FORMAT, FILTER = "one more output, as a new version", "a new file format", "one more filter on a list"
-RECIPES = (OUTPUT, FORMAT, FILTER)
+FIELD, SECTION = "a field of a resource", "a section of a page"
+RECIPES = (OUTPUT, FORMAT, FILTER, FIELD, SECTION)
 BLOCK = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 LONGEST = patient(240.0)  # one command [s]
 
@@ -35,7 +36,7 @@ class Block:
     def is_edit(self):
         """Whether it changes files only, by tools that every machine has."""
         commands = {line.split(" ")[0] for line in self.text.splitlines()}
-        return self.language in ("diff", "python") or commands <= {"cd", "cp", "sed"}
+        return self.language in ("diff", "python", "html") or commands <= {"cd", "cp", "sed"}
 
 
 def recipe(title):
@@ -83,6 +84,13 @@ def count_passed(printed):
     summary = printed.strip().splitlines()[-1]
     assert not re.search("failed|error|skipped", summary), summary
     return int(re.search(r"(\d+) passed", summary)[1])
+
+
+def program_files(blocks):
+    """Return the files of the program that a recipe changes or writes, without its tests."""
+    text = "\n".join(block.text for block in blocks if block.language == "diff")
+    files = {*re.findall("^--- a/(.*)$", text, re.MULTILINE), *(block.file for block in blocks if block.file)}
+    return {file for file in files if not file.startswith("tests/")}
 
 
 def going_through_templates(copy):
@@ -148,3 +156,20 @@ def test_a_list_has_one_more_filter(copy):
     script = "import sys; sys.path.append('docs'); from handbook.rest import interface; "
     script += "print(interface()['paths']['/api/v1/designs']['get'])"
     assert "changed_since" in run([sys.executable, "-c", script], copy)
+
+
+def test_a_field_takes_four_files_and_a_section_three():
+    assert len(program_files(recipe(FIELD))) == 4
+    assert len(program_files(recipe(SECTION))) == 3
+
+
+@pytest.mark.slow
+def test_a_comment_has_one_more_field(copy):
+    *_, tests = carry_out(recipe(FIELD), copy)
+    assert count_passed(tests) > 40
+
+
+@pytest.mark.slow
+def test_a_page_has_one_more_section(copy):
+    *_, tests = carry_out(recipe(SECTION), copy)
+    assert count_passed(tests) > 5

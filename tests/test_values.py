@@ -12,7 +12,7 @@ import templates
 
 GROWING = {
     "Ledger",
-    "Shifting",
+    "Shifts",
     "Calculation",
     "Caller",
     "Graph",
@@ -21,12 +21,8 @@ GROWING = {
     "Restored",
     "Meetings",
     "_Rows",
-    "Deciding",
-    "_Climb",
-    "DecidedRows",
+    "Climb",
     "StepRows",
-    "RowPass",
-    "RowShifting",
     "Table",
     "_Run",
     "Analysis",

@@ -42,7 +42,9 @@ async def answer_saved(
     done = not saved.is_deferred and await finished(jobs, saved.job, prefer)
     status = (201 if saved.created else 200) if done else 202
     place = f"/api/v1/jobs/{saved.job}" if saved.job and not done else f"/api/v1/designs/{saved.design}"
-    design = saved.answer or await run_in_threadpool(designs.show, saved.design, saved.revision)
+    design = saved.answer
+    if design is None:
+        design = await run_in_threadpool(designs.show, saved.design, saved.revision)
     if proposals is not None:
         design = MappedDesign(**dict(design), proposals=list(proposals))
     return shown(design, status, {"Location": place})

@@ -1,4 +1,4 @@
-"""The content that a signature covers: document, results, files, signer, time, and the step before."""
+"""The content that a signature covers: document, results, files, signer, time and previous step."""
 
 from __future__ import annotations
 

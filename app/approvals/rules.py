@@ -1,4 +1,4 @@
-"""Who may take which step, and when: three principals, one after another."""
+"""The rules of signing: which principal may take which step, and in which order."""
 
 from __future__ import annotations
 

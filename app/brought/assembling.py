@@ -1,4 +1,4 @@
-"""From a manifest to the description of an assembly: every fixed part is found, pinned and packed with it.
+"""Build the description of an assembly from its manifest: find, pin and pack each fixed part.
 
 The package holds the STEP file of every fixed part. So an assembly can be built again whatever happens to the
 models and designs from which the parts came.

@@ -1,4 +1,4 @@
-"""A manifest of an assembly: the model that it stands on, and fixed parts beside that, with their places."""
+"""The manifest of an assembly: its base model, and the fixed parts with their positions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From a file to the description of a model: its parameters, and how each of them shows on the solid."""
+"""Describe a model from its file: its parameters, and how each of them is measured on the solid."""
 
 from __future__ import annotations
 

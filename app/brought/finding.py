@@ -1,4 +1,4 @@
-"""Where FreeCAD is on this machine: the Python that it is built for, and the folders of its modules."""
+"""Find FreeCAD on this machine: the Python that it is built for, and the folders of its modules."""
 
 from __future__ import annotations
 

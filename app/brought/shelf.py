@@ -1,4 +1,4 @@
-"""Keeps the brought models among the models of the catalogue, as the database has them."""
+"""Keep the imported models of the database in the catalogue."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Warm processes of FreeCAD: one for each file that was drawn lately, so that the next drawing is quick.
+"""Idle FreeCAD processes, one for each file drawn recently, so that its next drawing is quick.
 
 FreeCAD takes seconds to start, and a tenth of one to draw. A process serves one file alone: what a file does
 to it harms nobody else. It is given up after a number of drawings, after any failure, and when others need

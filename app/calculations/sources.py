@@ -1,4 +1,4 @@
-"""How a process finds a template: by the file, or the worksheet, that declares it, as the server read it."""
+"""The sources from which a process loads a template: the file or worksheet, as the server read it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The check of one file of a team, in a process of its own: it may not end, crash, or want all memory.
+"""Check one file of a team in a process of its own, since it may hang, crash or exhaust memory.
 
 What passes is loaded by the server from the very bytes that were checked.
 """

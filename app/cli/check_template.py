@@ -1,4 +1,4 @@
-"""`crankwright check-template FILE`: what the service would say of a file, before it is put into a folder."""
+"""`crankwright check-template FILE`: report a file's faults as the service would, before it is installed."""
 
 from __future__ import annotations
 

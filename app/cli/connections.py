@@ -1,4 +1,4 @@
-"""How commands reach the service: one that runs, or one that is started on a data folder."""
+"""Connect commands to a running service, or to one started on a data folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The paper's demonstration, through the real interface: what Mathcad and Creo do together there.
+"""Demonstrate through the interface what Mathcad and Creo do together in the paper.
 
 A ball bearing of 50 mm; SCALE = 1 as a worksheet input; D = SCALE · 48 mm as the worksheet's bearing
 diameter; a relation ties the model's inner diameter to it; regenerate: the bearing measures 48 mm.

@@ -1,4 +1,4 @@
-"""`crankwright impact`: what a version of a template does to the designs that use another one."""
+"""`crankwright impact`: show the effect of a template's version on designs that use another one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`crankwright keys …`: principals and their keys, in the database itself: nobody locks themselves out.
+"""`crankwright keys …`: manage principals and keys in the database itself, even if all keys are lost.
 
 A service may run meanwhile; it takes notice within a few seconds.
 """

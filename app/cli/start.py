@@ -1,4 +1,4 @@
-"""What a command does before it imports its module, so that it is ready soon and stays small.
+"""Prepare a command before its module is imported, to start quickly and use little memory.
 
 - Pint comes without Dask, which it would import for arrays that neither a command nor the server has, and
   which takes longer than Pint itself. Dask cannot hold the quantities of such a Pint, so a notebook imports

@@ -1,4 +1,4 @@
-"""`crankwright worker` and `crankwright scheduler`: the machines of a team, and what knows them."""
+"""`crankwright worker` and `crankwright scheduler`: the machines of a team and their scheduler."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`crankwright worksheet …`: worksheets as text files, which read well in git, and their life in the service.
+"""`crankwright worksheet …`: worksheets as text files, and their states in the service.
 
 A file is named `<id>.sheet`, or `<id>_v<n>.sheet` if it is one version of several. It holds the text as it
 was written, byte by byte.

@@ -1,4 +1,4 @@
-"""The two clients: all that can be asked of a service, by calls that return or by calls that are awaited.
+"""The two clients, synchronous and asynchronous, with a method for each request.
 
 Their methods are the `operations`; how a request is sent is in `app.client.connections`.
 """

@@ -1,4 +1,4 @@
-"""Exchanges with the service, whoever sends them.
+"""Exchanges with the service: generators of requests, independent of the client that sends them.
 
 An exchange is a generator. It yields requests, receives their responses and returns a model; it knows nothing
 of sockets, so that `Client` and `AsyncClient` run the same exchanges.

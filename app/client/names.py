@@ -1,4 +1,4 @@
-"""The name under which the service counts a client's requests, and the key that says whose they are."""
+"""The client name under which the service counts requests, and the key that authenticates them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Questions about designs: which value gives an output, what tolerances do, what a version moves."""
+"""Questions about designs: solve for an input, analyse tolerances, impact of a version."""
 
 from __future__ import annotations
 

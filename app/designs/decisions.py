@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 
 from app.calculations.criteria import rendered
 from app.catalogue.catalogues import Catalogues
-from app.designs import deciding, repository
-from app.designs.calculate import calculate
-from app.designs.calculation import Calculation
-from app.designs.deciding import Deciding
+from app.designs import repository
 from app.designs.document import Document
+from app.designs.engine.calculate import calculate
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.decision import Climb, ClimbResult, Trial
+from app.designs.engine.verdicts import Verdicts
 from app.designs.graph import build_graph, raise_if
-from app.designs.judging import Judging
 from app.designs.questions import Reply
 from app.designs.starting import settled, starts
 from app.designs.stored_solids import analysed, built
@@ -68,13 +68,13 @@ def decided(asked: Asked, database: Database, catalogues: Catalogues) -> Reply[A
         If a criterion is named that the design does not have.
     """
     number, calculation = _calculated(asked, database, catalogues)
-    names = Judging(calculation).names()
+    names = Verdicts(calculation).names()
     unknown = (name for name in asked.criteria or () if name not in names)
     raise_if([fault.within("criteria") for fault in unknown_names(unknown, names, "criterion")])
     if calculation.deferred:
         decision = _shown(number, asked, _pending(calculation))
     else:
-        decision = _shown(number, asked, Deciding(calculation, asked.criteria, asked.budget).decide())
+        decision = _shown(number, asked, Climb(calculation, asked.criteria, asked.budget).decide())
     is_whole = decision.stopped != "pending"
     return Reply(decision, None if is_whole else replace(asked, revision=number))
 
@@ -96,13 +96,13 @@ def _calculated(asked: Asked, database: Database, catalogues: Catalogues) -> tup
     return row.number, calculation
 
 
-def _pending(calculation: Calculation) -> deciding.Decision:
+def _pending(calculation: Calculation) -> ClimbResult:
     """The answer while the design itself is still calculated."""
-    judgements = sorted(Judging(calculation).all(), key=lambda judgement: judgement.name)
-    return deciding.Decision(judgements, (), (), (), "pending")
+    judgements = sorted(Verdicts(calculation).all(), key=lambda judgement: judgement.name)
+    return ClimbResult(judgements, (), (), (), "pending")
 
 
-def _shown(number: int, asked: Asked, decision: deciding.Decision) -> Decision:
+def _shown(number: int, asked: Asked, decision: ClimbResult) -> Decision:
     judged = {"criteria": [], **rendered(decision.criteria)}
     return Decision(
         revision=number,
@@ -117,7 +117,7 @@ def _shown(number: int, asked: Asked, decision: deciding.Decision) -> Decision:
     ).in_units(asked.units)
 
 
-def _tried(trial: deciding.Trial) -> Tried:
+def _tried(trial: Trial) -> Tried:
     tried: JsonObject = {"step": trial.step, "level": trial.level}
     if trial.reason is not None:
         tried["reason"] = trial.reason

@@ -1,4 +1,4 @@
-"""Where a model parameter comes from: dimension ← relation ← output ← formula ← inputs."""
+"""Explain a model parameter: dimension ← relation ← output ← formula ← inputs."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from app.calculations import rendering
 from app.designs.analyses import measured_unit
-from app.designs.calculate import Calculation
+from app.designs.engine.calculation import Calculation
 from app.designs.network import Block, Cell, Solid, SolidAnalysis
 from app.plain import JsonObject
 from app.reference import Reference
@@ -96,8 +96,8 @@ class Explainer:
         """The value with its unit; null while it waits for a solid or is not set."""
         if reference.output is None:
             kind = f"{self.graph.kinds[reference.block].base:~C}" or "1"
-            si = self.calculation.values.get(reference.block)
-            return None if si is None else {"value": np.asarray(si).tolist(), "unit": kind}
+            column = self.calculation.values.get(reference.block)
+            return None if column is None else {"value": np.asarray(column.value).tolist(), "unit": kind}
         try:
             si = self.calculation.value(reference)
         except (KeyError, AttributeError, FaultyText):

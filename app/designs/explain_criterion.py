@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from app.calculations.criteria import criterion as rendered
-from app.designs.calculation import Calculation
 from app.designs.document import Document
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.verdicts import Verdicts
 from app.designs.explain import Explainer, explain, full_name, model_parameters, shown
-from app.designs.judging import Judging
 from app.designs.subjects import Subject
 from app.plain import JsonObject
 from app.reference import Reference
@@ -27,7 +27,7 @@ def explain_any(document: Document, calculation: Calculation, name: str) -> Json
     NotFound
         If nothing is called so.
     """
-    parameters, criteria = model_parameters(calculation), list(Judging(calculation).names())
+    parameters, criteria = model_parameters(calculation), list(Verdicts(calculation).names())
     if (parameter := full_name(calculation, name)) in parameters:
         return explain(calculation, parameter)
     if name.removeprefix(PREFIX) in criteria:
@@ -50,10 +50,10 @@ def explain_criterion(document: Document, calculation: Calculation, name: str) -
 
     A criterion whose step leaves out an output that it needs was not judged, and has no `criterion`.
     """
-    judging = Judging(calculation)
+    verdicts = Verdicts(calculation)
     name = name.removeprefix(PREFIX)
-    judgement = next(iter(judging.some([name])), None)
-    sides = _Sides(document, calculation, judging.subject(name))
+    judgement = next(iter(verdicts.some([name])), None)
+    sides = _Sides(document, calculation, verdicts.subject(name))
     judged = {} if judgement is None else {"criterion": rendered(judgement)}
     return {"name": name, "kind": "criterion", **judged, "because": list(sides.all())}
 

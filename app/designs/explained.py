@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from app.catalogue.catalogues import Catalogues
-from app.designs.calculation import Calculation
 from app.designs.document import Document
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.verdicts import Verdicts
 from app.designs.explain_criterion import explain_any
-from app.designs.judging import Judging
 from app.designs.sensitivities import Asked, sensitivities
 from app.presentation.units import System
 from app.schemas.designs import Explanation
@@ -25,7 +25,7 @@ def explained(
         If nothing is called so.
     """
     chain = Explanation.model_validate(explain_any(document, calculation, name))
-    subject = Judging(calculation).subject(chain.name) if chain.kind == "criterion" else None
+    subject = Verdicts(calculation).subject(chain.name) if chain.kind == "criterion" else None
     slopes = sensitivities(document, calculation, catalogues, Asked(chain.name, subject, system))
     reason = {} if slopes.reason is None else {"reason": slopes.reason}
     return chain.in_units(system).model_copy(update={"sensitivities": list(slopes.items), **reason})

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from app.designs.analyses import is_table
-from app.designs.calculation import Calculation
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.needs import Needs, is_member, needs
+from app.designs.engine.row_design import Wanted
 from app.designs.network import Block, Cell, Graph
-from app.designs.row_design import Wanted
-from app.designs.rows_needed import Needs, is_member, needs
 from app.reference import Reference
 from templates.core.errors import FaultyText
 
@@ -45,7 +45,8 @@ def _inputs(graph: Graph, reference: Reference) -> list[Reference]:
 
 
 def _is_single(calculation: Calculation, cell: Cell) -> bool:
-    return isinstance(calculation.values.get(cell.name), float)
+    column = calculation.values.get(cell.name)
+    return column is not None and isinstance(column.value, float)
 
 
 def through_solids(graph: Graph, wanted: Wanted) -> Mapping[Reference, Block]:

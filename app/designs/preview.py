@@ -10,10 +10,11 @@ import numpy as np
 from app.calculations.criteria import rendered
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, results, tolerances
-from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document, merge
+from app.designs.engine.calculate import calculate
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph, raise_if
-from app.designs.judging import judged
 from app.designs.questions import Reply
 from app.designs.reading import read_document, resolved
 from app.designs.starting import starts
@@ -40,8 +41,8 @@ from templates.core.judging.judgement import Judgement
 class Previewed:
     """A change that is to be previewed, and how.
 
-    The patch is one of the newest revision, if none is named. With `worksheet`, the answer has every step as a
-    revision would hold it, its formulas written out.
+    The patch is one of the newest revision, if none is named. With `worksheet`, the answer has every step as
+    a revision would hold it, its formulas written out.
     """
 
     design: str
@@ -166,7 +167,7 @@ def _values(new: Calculation) -> dict[str, Shown]:
     names = (name for name in new.graph.parameters if name in new.values)
     return {
         name: Shown(
-            value=np.asarray(new.values[name]).tolist(), unit=f"{new.graph.kinds[name].base:~C}" or "1"
+            value=np.asarray(new.values[name].value).tolist(), unit=f"{new.graph.kinds[name].base:~C}" or "1"
         )
         for name in names
     }

@@ -1,8 +1,8 @@
 """A question about designs is answered at once if that is cheap, else by a job.
 
-`Questions` does this for previews, decisions, solutions, analyses of tolerances, single variants and the impact
-of versions. What was begun for a client who waits no longer goes on: the job takes it over and keeps the
-answer as an artifact, and the client comes back for it.
+`Questions` does this for previews, decisions, solutions, analyses of tolerances, single variants and the
+impact of versions. What was begun for a client who waits no longer goes on: the job takes it over and keeps
+the answer as an artifact, and the client comes back for it.
 """
 
 from __future__ import annotations
@@ -49,6 +49,7 @@ class Reply(Generic[Q, A]):
 
 Calculate = Callable[[Q, Database, Catalogues], Reply[Q, A]]
 """Answers a question for the caller of the present context, as far as that caller waits."""
+Check = Callable[[Q, Database, Catalogues], None]
 
 
 class Questions(Generic[Q, A]):
@@ -62,6 +63,8 @@ class Questions(Generic[Q, A]):
         The type of the questions: a dataclass of what JSON holds.
     calculate
         Answers a question.
+    check
+        Raises what refuses a question, as far as shows without calculating.
     """
 
     def __init__(
@@ -74,8 +77,9 @@ class Questions(Generic[Q, A]):
         store: Artifacts,
         jobs: Jobs,
         steps: Steps,
+        check: Check[Q] = lambda *asked: None,
     ) -> None:
-        self.kind, self._calculate = kind, calculate
+        self.kind, self._calculate, self._check = kind, calculate, check
         self._asked: TypeAdapter[Q] = TypeAdapter(asked)
         self.database, self.catalogues, self.store = database, catalogues, store
         self.jobs, self.steps = jobs, steps
@@ -92,6 +96,31 @@ class Questions(Generic[Q, A]):
         """
         reply = self._reply(question)
         return reply.answer, None if reply.rest is None else self.queued(reply.rest, client)
+
+    def in_parts(self, question: Q, client: str) -> tuple[A, str | None]:
+        """As `answer`, of a kind whose answer is never empty.
+
+        Raises
+        ------
+        InvalidInputs, NotFound, QueueFull, TooManyCalculations
+            As `answer`.
+        """
+        answer, job = self.answer(question, client)
+        assert answer is not None, "its kind has answers in parts"
+        return answer, job
+
+    def requested(self, question: Q, client: str) -> str:
+        """Return the job that answers a question, for a kind that always takes long.
+
+        Raises
+        ------
+        Exception
+            What the check of this kind raises.
+        QueueFull
+            Too many jobs are waiting.
+        """
+        self._check(question, self.database, self.catalogues)
+        return self.queued(question, client)
 
     def known(self, question: Q) -> A:
         """Return the answer as far as it is known while its caller waits; no job is made for the rest."""

@@ -7,8 +7,8 @@ from hashlib import sha256
 from typing import NamedTuple
 
 from app.calculations.cache import Cache
-from app.designs.calculate import Calculation
 from app.designs.document import Document
+from app.designs.engine.calculation import Calculation
 from app.plain import Json
 from app.storage.tables import canonical_json
 

@@ -11,8 +11,9 @@ from app.calculations.steps import Steps, calling
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository
 from app.designs.analyses import measured_unit
-from app.designs.calculate import Calculation, calculate, resume
 from app.designs.document import Document, Iteration
+from app.designs.engine.calculate import calculate, resume
+from app.designs.engine.calculation import Calculation
 from app.designs.errors import NotConverged
 from app.designs.graph import Graph, build_graph, raise_if
 from app.designs.naming import named

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 from app.calculations import rendering
 from app.calculations.criteria import rendered
-from app.designs.calculate import Calculation
-from app.designs.judging import judged
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.verdicts import judged
 from app.designs.network import Block
 from app.designs.worksheet import remember
 from app.plain import JsonObject, Raw

@@ -16,11 +16,11 @@ import numpy as np
 from app.calculations.cost import EXPENSIVE
 from app.catalogue.catalogues import Catalogues
 from app.designs.analyses import is_table
-from app.designs.calculation import Calculation
 from app.designs.document import Document
-from app.designs.net import Net, Table
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.net import Net, Table
+from app.designs.engine.row_design import MOST_VALUES, Wanted
 from app.designs.origins import literals_behind, measures_behind, through_solids
-from app.designs.row_design import MOST_VALUES, Wanted
 from app.designs.size import MOST_OPERATIONS
 from app.designs.slopes import Local, Slopes, slope_in, slopes_at
 from app.designs.subjects import Subject

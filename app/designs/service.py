@@ -12,9 +12,10 @@ from app.calculations.steps import begun_steps
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, views
 from app.designs.automap import proposals
-from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document, merge
 from app.designs.drives import network
+from app.designs.engine.calculate import calculate
+from app.designs.engine.calculation import Calculation
 from app.designs.errors import StaleRevision
 from app.designs.explained import explained
 from app.designs.graph import Graph, build_graph, raise_if

@@ -8,11 +8,11 @@ import numpy as np
 from pydantic import ConfigDict, Field, StringConstraints
 
 from app.catalogue.catalogues import Catalogues
-from app.designs.calculate import calculate
 from app.designs.document import Document, Place
+from app.designs.engine.calculate import calculate
+from app.designs.engine.net import Net
+from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph
-from app.designs.judging import judged
-from app.designs.net import Net
 from app.designs.overriding import changed
 from app.designs.solving import DesignRoots, Wanted, roots_of_design
 from app.designs.starting import starts

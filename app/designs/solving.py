@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from app.designs.net import Net, Table
+from app.designs.engine.net import Net, Table
 from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs

@@ -5,7 +5,7 @@ They are looked up when asked for: a step may take minutes, and no connection is
 
 from __future__ import annotations
 
-from app.designs.calculate import Analysed, Measured, Measures
+from app.designs.engine.calculation import Analysed, Measured, Measures
 from app.solids import analysis_rows as analyses
 from app.solids import rows
 from app.solids.outputs import Outputs

@@ -16,7 +16,7 @@ from app.calculations.errors import StepDeferred
 from app.calculations.rendering import identity
 from app.calculations.steps import evaluated_step
 from app.calculations.worksheet import formulas
-from app.designs.calculate import Calculation
+from app.designs.engine.calculation import Calculation
 from app.plain import JsonObject, Raw
 from app.presentation.units import System
 from app.schemas.designs import PreviewedStep, Revision, RevisionStep, RevisionWorksheet

@@ -1,4 +1,4 @@
-"""On whose behalf the program acts: set for each request and each job, read where something is recorded.
+"""The acting principal: set for each request and job, read wherever an action is recorded.
 
 Units of work run in the context of their caller, so a row that is written there has the right author.
 """

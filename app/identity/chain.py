@@ -1,4 +1,4 @@
-"""The chain of the audit: every sealed row has the number after, and the hash of, the row before.
+"""The hash chain of the audit: each sealed row has the next number and the hash of the previous row.
 
 A hash is the SHA-256 of what a row says, its number and the hash before, as canonical JSON. Whoever changes,
 takes out or puts in a row has to write all that follow again, and then meets no hash that was exported.

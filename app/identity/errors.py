@@ -1,4 +1,4 @@
-"""Why a request is not carried out for the one who sends it."""
+"""Errors of identity: a request is refused because of who sends it."""
 
 from __future__ import annotations
 

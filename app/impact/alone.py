@@ -7,10 +7,11 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from app.catalogue.catalogues import Catalogues
-from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document
+from app.designs.engine.calculate import calculate
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph
-from app.designs.judging import judged
 from app.designs.network import Block, Cell
 from app.designs.starting import starts
 from app.impact.outcome import Judged, Outcome

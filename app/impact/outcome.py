@@ -1,4 +1,4 @@
-"""The result of a design with one version of a template, however it was calculated."""
+"""The result of a design with one version of a template, calculated alone or in a batch."""
 
 from __future__ import annotations
 

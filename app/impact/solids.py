@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from app.designs.calculation import Measures
+from app.designs.engine.calculation import Measures
 from app.solids.outputs import Outputs
 from app.solids.questions import Question, under_load
 from cad.model import CadModel

@@ -1,4 +1,4 @@
-"""Some designs as they are sent to a calculation process, with all that they are made of."""
+"""A batch of designs as a calculation process receives it, with everything that it needs."""
 
 from __future__ import annotations
 

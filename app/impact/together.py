@@ -12,15 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.catalogue.catalogues import Catalogues
-from app.designs.columns import Indices
 from app.designs.document import Document
-from app.designs.net import Net
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.columns import Indices
+from app.designs.engine.needs import is_member
+from app.designs.engine.net import Net
+from app.designs.engine.row_design import RowDesign, Rows, Wanted
+from app.designs.engine.steps import LevelMoved, StepRows
+from app.designs.engine.verdicts import Verdicts
 from app.designs.network import Block, Graph
-from app.designs.row_design import RowDesign, Rows, Wanted
-from app.designs.row_judging import RowJudging
-from app.designs.row_pass import RowPass
-from app.designs.rows_needed import is_member
-from app.designs.step_rows import LevelMoved, StepRows
 from app.designs.subjects import Subject
 from app.impact.outcome import Judged, Outcome
 from app.reference import Reference
@@ -88,7 +88,7 @@ class Together:
         cells = {Reference(name) for name in self.design.graph.parameters}
         return Wanted(judged.references | cells, judged.inside | set(self.parameters))
 
-    def _of_chunk(self, rows: Rows, part: RowPass) -> list[Outcome] | None:
+    def _of_chunk(self, rows: Rows, part: Calculation) -> list[Outcome] | None:
         """Return the outcomes of one array call; rows that start at different levels are calculated apart."""
         groups = _by_levels(part)
         if len(groups) == 1:
@@ -101,12 +101,12 @@ class Together:
             apart |= dict(zip(indices.tolist(), outcomes, strict=True))
         return [apart[row] for row in range(part.count)]
 
-    def _read(self, part: RowPass) -> Iterator[Outcome]:
+    def _read(self, part: Calculation) -> Iterator[Outcome]:
         """Yield the outcome of each row of an array call."""
-        values = {str(r): part.value(r).spread(part.count) for r in self.outputs}
+        values = {str(r): part.column(r).spread(part.count) for r in self.outputs}
         parameters = {str(r): self._parameter(part, r) for r in self.parameters}
-        judging = RowJudging(part)
-        verdicts = {name: judging.judged(subject) for name, subject in self.subjects.items()}
+        judging = Verdicts(part)
+        verdicts = {name: judging.rows(subject) for name, subject in self.subjects.items()}
         for row in range(part.count):
             refusal = part.for_all or part.refusals.get(row)
             if refusal is not None:
@@ -126,9 +126,9 @@ class Together:
                 },
             )
 
-    def _parameter(self, part: RowPass, reference: Reference) -> Array:
+    def _parameter(self, part: Calculation, reference: Reference) -> Array:
         """Return a parameter of a model as the model takes it."""
-        return part.steps[reference.block].values[reference.member].spread(part.count)
+        return part.taken(reference).spread(part.count)
 
 
 def _chooses_by_tolerance(block: Block) -> bool:
@@ -177,7 +177,7 @@ def _is_incomplete(block: Block) -> bool:
     )
 
 
-def _by_levels(part: RowPass) -> list[Indices]:
+def _by_levels(part: Calculation) -> list[Indices]:
     """Return the rows in groups that start at the same levels when each stands alone."""
     keys: list[list[str]] = [[] for _ in range(part.count)]
     for step in part.steps.values():

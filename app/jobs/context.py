@@ -1,4 +1,4 @@
-"""The tools of a handler while its job runs."""
+"""The context of a running job: progress, cancellation and the worker."""
 
 import logging
 import threading

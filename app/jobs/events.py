@@ -1,4 +1,4 @@
-"""News of designs and jobs: written with the change itself, and heard by those who listen to a topic.
+"""Events of designs and jobs: stored with the change itself, and sent to the subscribers of a topic.
 
 The rows are the truth. What a subscriber is sent is a hint with its event at hand; see `Subscription`.
 """

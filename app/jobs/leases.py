@@ -1,4 +1,4 @@
-"""Leases of jobs where several servers share a database: a server that dies leaves its jobs to the others."""
+"""Leases of jobs on a shared database: other servers take over the jobs of a server that died."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Progress of running jobs, beyond the server that runs them: their rows, and what other servers read there.
+"""Progress of running jobs for other servers: stored in their rows, and read from there.
 
 Progress is not an event that is kept: only the latest counts, and it costs one small write now and then.
 """

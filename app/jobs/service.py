@@ -1,4 +1,4 @@
-"""The operations on jobs for the rest of the server."""
+"""The service of jobs: queue, show, wait for and cancel them."""
 
 from __future__ import annotations
 

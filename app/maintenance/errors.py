@@ -1,4 +1,4 @@
-"""Why a command of maintenance cannot do its work."""
+"""Errors of the maintenance commands."""
 
 
 class CannotRun(Exception):

@@ -1,4 +1,4 @@
-"""A data folder as maintenance sees it: perhaps in use by a running service, so it is only read."""
+"""Read a data folder for maintenance, without writing: a running service may use it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""PostgreSQL as maintenance sees it: dumps of one moment, restores into an empty database, rows."""
+"""Maintenance of PostgreSQL: consistent dumps, restores into an empty database, reading rows."""
 
 from __future__ import annotations
 

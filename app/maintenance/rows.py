@@ -1,4 +1,4 @@
-"""Which files the rows of a database name, and which rows lead nowhere. Plain SQL over a snapshot."""
+"""Find the files that database rows name, and rows with broken references, by SQL on a snapshot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names that users gave, beside words of the program: signs that turn the direction of reading stay inside.
+"""Isolate user-given names on pages, so that right-to-left marks do not affect the text around them.
 
 U+202E and its kin are legal in names. Shown raw they turn round what follows. `balanced` is for text in an
 element that isolates (`<bdi>`), `bare` for where no element can stand: titles, and paper.

@@ -1,4 +1,4 @@
-"""A long array in the cell of a table: least and largest value, where they are, and a line of its course."""
+"""A long array in a table cell: least and largest value, their places, and a sparkline."""
 
 from __future__ import annotations
 

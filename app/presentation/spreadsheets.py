@@ -1,4 +1,4 @@
-"""Texts in spreadsheets: what a program could take for a formula is stored so that it stays a text.
+"""Escape texts for spreadsheets, so that none is taken for a formula.
 
 openpyxl has 180 modules. It is imported where an XLSX file is read or written, here and elsewhere.
 """

@@ -1,4 +1,4 @@
-"""Values as a report shows them: a number in two parts that meet at the decimal point, and its unit."""
+"""Values in a report: a number split at the decimal point for alignment, and its unit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The press: reports and drawings are typeset in a process each, which can be stopped, and few at a time."""
+"""Typeset reports and drawings, each in a process that can be stopped, a few at a time."""
 
 from __future__ import annotations
 

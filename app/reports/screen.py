@@ -1,4 +1,4 @@
-"""The report as a page: the frame and style of the other pages, all that is quoted escaped."""
+"""The report as an HTML page, in the frame and style of the other pages, with all values escaped."""
 
 from __future__ import annotations
 

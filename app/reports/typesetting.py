@@ -1,4 +1,4 @@
-"""Typst at work: a report, as plain data, becomes PDF. Imported by worker processes, so it imports little.
+"""Typeset a report as PDF by Typst. Worker processes import this module, so it imports little.
 
 The typesetter gets a fixed document, `report.typ`, and the report as data. Nothing that a user wrote is ever
 read as markup: texts come from the data as strings, formulas as MathML whose elements the document knows.

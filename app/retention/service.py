@@ -1,4 +1,4 @@
-"""The thread that deletes what nobody has wanted for long, in small units of work, while the service runs."""
+"""The thread that deletes old data in small units of work while the service runs."""
 
 from __future__ import annotations
 

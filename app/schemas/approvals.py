@@ -1,12 +1,15 @@
-"""Approvals of revisions and comments on them, as the interface shows them."""
+"""Approvals of revisions and comments on them, as the interface takes and shows them."""
 
 from __future__ import annotations
 
-from typing import Literal, get_args
+import re
+from typing import Annotated, Literal, Self, get_args
 
-from pydantic import ConfigDict, Field
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, model_validator
 
 from app.schemas.answers import Answer, Page
+from app.schemas.bounded import Bounded
+from app.schemas.texts import BLANK
 
 Step = Literal["calculated", "checked", "released", "withdrawn"]
 ORDER: tuple[Step, ...] = get_args(Step)
@@ -15,6 +18,36 @@ ApprovalState = Literal["unsigned", "calculated", "checked", "released", "withdr
 """The last step that was taken; `unsigned` before the first."""
 Files = dict[str, dict[str, str]]
 """SHA-256 of files of solids, by the name of the model and the kind of the file."""
+
+LONGEST_TEXT = 4000  # letters of a comment or a reason
+LONGEST_SUBJECT = 140
+_CONTROL = r"\x00-\x08\x0b\x0c\x0e-\x1f\x7f"
+PLAIN = f"^[^{_CONTROL}]*$"
+"""Lines of text, without control characters."""
+
+WRITTEN = rf"^[^{_CONTROL}]*[^{_CONTROL}{BLANK}][^{_CONTROL}]*$"
+"""Lines of text with at least one letter."""
+
+
+def _written(text: object) -> object:
+    """Return whatever it is, unless it is a text without a letter or with control characters.
+
+    Raises ValueError.
+    """
+    if isinstance(text, str) and not re.search(WRITTEN, text):
+        plain = re.search(PLAIN, text)
+        raise ValueError(
+            "the text needs at least one letter" if plain else "leave out the control characters"
+        )
+    return text
+
+
+Text = Annotated[
+    str,
+    Field(min_length=1, max_length=LONGEST_TEXT, pattern=WRITTEN),
+    BeforeValidator(_written),
+    AfterValidator(str.strip),
+]
 
 
 class Signed(Answer):
@@ -101,3 +134,46 @@ class Comment(Answer):
 
 class CommentList(Page[Comment]):
     """A page of comments, newest first."""
+
+
+class ApprovalIn(Bounded):
+    """A step of the approval of a revision."""
+
+    model_config = ConfigDict(
+        strict=True,
+        extra="forbid",
+        json_schema_extra={
+            "examples": [{"step": "calculated"}],
+        },
+    )
+
+    step: Step
+    reason: Text | None = Field(None, description="of a withdrawal, which needs one; nothing else has one")
+
+    @model_validator(mode="after")
+    def with_its_reason(self) -> Self:
+        """A withdrawal and its reason; raises ValueError."""
+        if (self.step == "withdrawn") != (self.reason is not None):
+            raise ValueError("a withdrawal needs a `reason`, and no other step has one")
+        return self
+
+
+class CommentIn(Bounded):
+    """A new comment on a revision."""
+
+    model_config = ConfigDict(
+        strict=True,
+        extra="forbid",
+        json_schema_extra={
+            "examples": [{"text": "Why 22 mm? The case allows 24.", "subject": "film.bearing_width"}]
+        },
+    )
+
+    text: Text
+    subject: str | None = Field(
+        None,
+        min_length=1,
+        max_length=LONGEST_SUBJECT,
+        description="a name in the design: a parameter, a block, or a value of one such as "
+        "`film.bearing_width`",
+    )

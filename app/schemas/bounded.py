@@ -1,4 +1,4 @@
-"""Objects of JSON with a bounded number of names: of a million wrong ones nobody wants a million errors.
+"""JSON objects with a bounded number of names, so that a large wrong object gives few errors.
 
 Pydantic looks at every entry of an object before it counts them, and describes each that is wrong.
 """

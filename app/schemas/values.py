@@ -1,4 +1,4 @@
-"""Describe, in the description of the interface, values that a user gives.
+"""Input values in the description of the interface.
 
 Only its form: which units fit, and which names a choice has, is in the schema of each template and model.
 """

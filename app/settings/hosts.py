@@ -1,4 +1,4 @@
-"""Host names by which clients may reach the service: loopback, the bound address, what the operator allows.
+"""Allowed host names of the service: loopback, the bound address, and those that the operator adds.
 
 A page of another site can have its own name resolved to 127.0.0.1 (DNS rebinding). The browser then takes the
 service for that site, and only the name in the header `Host` gives it away.

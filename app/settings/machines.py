@@ -1,4 +1,4 @@
-"""Choose by CRANKWRIGHT_ENGINE where jobs run: this machine or those of a Dask scheduler; export traces.
+"""Settings of the machines: CRANKWRIGHT_ENGINE chooses where jobs run; export of traces.
 
 What Dask sends is pickle, so whoever can connect can run code: beyond this machine, TLS proves who connects.
 """

@@ -1,4 +1,4 @@
-"""How long nobody has wanted a build: one that no revision uses is deleted after a time, see `app.retention`.
+"""Ages of unused builds: a build that no revision uses is deleted after a time, see `app.retention`.
 
 Whoever wants a build renews its age in the unit of work that counts on it, or learns there that it is gone.
 """

@@ -1,4 +1,4 @@
-"""Files that rows name and that are missing or damaged: which job makes them again."""
+"""Rebuild missing or damaged files: the jobs that make them again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a STEP file states beside its shape, compared with what its build states."""
+"""Compare the statements of a STEP file (volumes, tolerances, attributes) with those of its build."""
 
 from __future__ import annotations
 

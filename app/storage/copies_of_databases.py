@@ -1,4 +1,4 @@
-"""Two copies of one database that share a store must not collect each other's files.
+"""Detect a copy of the database that shares the file store: neither may delete the other's files.
 
 A backup and a clone keep the identity by which a store knows its database (`app.storage.ownership`), so that
 does not tell copies apart. What each collection leaves behind does: a number chosen at random, in the

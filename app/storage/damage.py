@@ -1,4 +1,4 @@
-"""Damage of the database that shows while it is in use: from then on nothing is written."""
+"""Detect damage of the database in use; from then on nothing is written."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Keeps what removes a file apart from what puts one, in one process or among several."""
+"""Locks that keep removals of files apart from puts, in one process or among several."""
 
 from __future__ import annotations
 

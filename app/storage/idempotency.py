@@ -1,4 +1,4 @@
-"""Requests that may be sent again: one Idempotency-Key, one change.
+"""Idempotent requests: a repeated Idempotency-Key makes one change only.
 
 The key is kept in the transaction of the change itself, so that after a crash a repeated request finds
 either the change or nothing. Where several servers share a database it is inserted before anything else: of

@@ -1,4 +1,4 @@
-"""Names and times of stored things.
+"""Ids and times of stored objects.
 
 Identities and ages come from counters in the database, not from the wall clock, which may jump either way.
 On PostgreSQL identities come from a sequence: to raise a row in every unit would let one unit run at a time.

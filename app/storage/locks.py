@@ -1,4 +1,4 @@
-"""Locks of names, for units of work that look before they write, where no row is there to be locked."""
+"""Locks on names, for units of work that read before they write, where there is no row to lock."""
 
 from __future__ import annotations
 

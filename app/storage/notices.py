@@ -1,4 +1,4 @@
-"""Hints between the servers of a team: PostgreSQL's NOTIFY, sent after the commit and heard on a connection.
+"""Notifications between the servers of a team: PostgreSQL's NOTIFY, sent after the commit.
 
 A hint is a short text, such as the topic of an event or `queue:regenerate`. Rows are the truth: a lost hint
 costs the time to the next look at the database, not what it was about. NOTIFY within a transaction would hold

@@ -1,4 +1,4 @@
-"""One store of files belongs to one database: another's sweep would delete what it does not know.
+"""Ownership of a file store by one database: another database's sweep would delete unknown files.
 
 A database that several servers, or a bucket, use has an identity; the store holds it under the name `OWNER`.
 """

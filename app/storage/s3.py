@@ -1,4 +1,4 @@
-"""Requests to a bucket of S3: what goes wrong is a missing object, or a bucket that cannot be used now."""
+"""Requests to an S3 bucket; each error becomes a missing object or an unavailable bucket."""
 
 from __future__ import annotations
 

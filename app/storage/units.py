@@ -1,4 +1,4 @@
-"""Units of work: functions that run in one transaction, and what they may say about themselves."""
+"""Units of work: functions that run in one transaction, and their attributes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rows that several servers may insert at the same time: the database decides, not a look beforehand."""
+"""Upserts: rows that several servers may insert at the same time, without reading first."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Read the question of a study against the design: places with their units, rows by number, objectives."""
+"""Validate the request of a study against its design: places with units, rows, objectives."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from math import prod
 
 import numpy as np
 
-from app.designs.net import Net
+from app.designs.engine.net import Net
 from app.designs.slopes import Local
 from app.plain import Raw
 from app.reference import Reference

@@ -7,7 +7,7 @@ from itertools import islice
 
 import numpy as np
 
-from app.designs.net import Net
+from app.designs.engine.net import Net
 from app.designs.variant_sheets.grid import MOST_FAULTS, refuse
 from app.plain import Raw
 from app.reference import Reference

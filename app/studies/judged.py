@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.designs.net import Net, Table
+from app.designs.engine.net import Net, Table
 from app.studies.archive import AnyArray
 from app.studies.signs import criterion_of
 from templates.core.arrays import Array

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.designs.analyses import is_measured, is_table
-from app.designs.calculate import Calculation
+from app.designs.engine.calculation import Calculation
 from app.designs.service import Designs
 from app.plain import JsonObject
 from app.reference import Reference

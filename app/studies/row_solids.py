@@ -14,11 +14,11 @@ import numpy as np
 
 from app.designs.analyses import axes_of, is_table
 from app.designs.document import Document
-from app.designs.net import Net, Refusal
+from app.designs.engine.needs import needs, varying
+from app.designs.engine.net import Net, Refusal
+from app.designs.engine.refusals import refusal_of
+from app.designs.engine.row_design import Levels, Rows, Wanted
 from app.designs.network import Block
-from app.designs.row_design import Levels, Rows, Wanted
-from app.designs.row_refusals import refusal_of
-from app.designs.rows_needed import needs, varying
 from app.designs.subjects import subjects
 from app.reference import Reference
 from app.studies.schemas import StudyIn

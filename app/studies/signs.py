@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.designs.net import Net
+from app.designs.engine.net import Net
 from app.designs.subjects import subjects
 from templates.core.judging.criterion import Criterion
 

@@ -13,12 +13,12 @@ from dataclasses import dataclass, field
 
 from app.catalogue.catalogues import Catalogues
 from app.designs.analyses import measured_unit
-from app.designs.calculation import NOT_MEASURED
 from app.designs.document import Document
+from app.designs.engine.calculation import NOT_MEASURED
+from app.designs.engine.net import Refusal
+from app.designs.engine.refusals import refusal_of
 from app.designs.graph import build_graph, raise_if
-from app.designs.net import Refusal
 from app.designs.network import Graph
-from app.designs.row_refusals import refusal_of
 from app.designs.stored_solids import analysed, built
 from app.jobs.service import JobContext
 from app.reference import Reference

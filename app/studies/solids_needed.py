@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from app.designs.engine.needs import solids_in_the_way
 from app.designs.network import Block
-from app.designs.rows_needed import solids_in_the_way
 from app.studies.chunks import Levels, placed
 from app.studies.task import Prepared
 from templates.core.arrays import Array

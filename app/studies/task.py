@@ -10,8 +10,8 @@ from pydantic_core import from_json
 
 from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document
+from app.designs.engine.net import Net
 from app.designs.graph import raise_if
-from app.designs.net import Net
 from app.designs.tasks import DesignTask
 from app.plain import JsonObject
 from app.reference import Reference

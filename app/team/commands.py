@@ -1,4 +1,4 @@
-"""Commands of Crankwright's own as parts of a team: they can be killed, and started again on their ports."""
+"""Crankwright commands as parts of a team, which can be killed and restarted on their ports."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A PostgreSQL of its own on loopback, in a folder that goes with it: for trials and tests, never for data.
+"""A temporary PostgreSQL on loopback, for trials and tests, never for data.
 
 PostgreSQL refuses to run as root: started by root it runs as `nobody`, to whom its folder then belongs.
 """

@@ -1,4 +1,4 @@
-"""Processes that are waited for, stopped by their number, and die with the process that started them."""
+"""Child processes that are stopped by their id, and die with the process that started them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Becomes another program that dies with the process which started it: `python -m app.team.tied …`.
+"""Run another program that dies with its parent process: `python -m app.team.tied …`.
 
 The program and all of its process group hang on a pipe (`app.workers.lifeline`) whose other end the starter
 keeps, so that they end with it even after `kill -9`.

@@ -12,9 +12,9 @@ from functools import cached_property
 import numpy as np
 
 from app.designs.document import Document
+from app.designs.engine.needs import needs
+from app.designs.engine.net import Net, Refusal, Table
 from app.designs.graph import Catalogues, Graph, build_graph, raise_if
-from app.designs.net import Net, Refusal, Table
-from app.designs.rows_needed import needs
 from app.reference import Reference
 from app.schemas.answers import Warning
 from app.tolerances.criteria import Demanded, demanded

@@ -1,4 +1,4 @@
-"""Actions of forms: each calls the REST interface, then shows the page with the result.
+"""Actions of forms about designs: each calls a service, then shows the page with the result.
 
 Without a script in the browser these are all actions there are; with one, `static/design.js` saves by itself.
 `app.api.gate.guard` refuses a form of another site: a browser would send it without asking anyone.
@@ -6,39 +6,31 @@ Without a script in the browser these are all actions there are; with one, `stat
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import JsonValue
 
-from app.api.gate.access import FORM_TOKEN
-from app.api.reading import FORM_TYPES, NotForm, check_type
 from app.api.routes.designs import document_of
+from app.designs.labels import LabelsIn
 from app.designs.schemas import DesignIn
 from app.presentation.typed import value_of
 from app.reference import Reference
 from app.schemas.designs import Design
 from app.web.blocks import Refusal
-from app.web.declaring import change_of
+from app.web.declarations import change_of
 from app.web.design_page import design_page
-from app.web.forms import Patch, fields, inner, kept, patch_of
+from app.web.forms import Patch, fields, forms_only, inner, kept, patch_of
 from app.web.gallery import GALLERY
 from app.web.new_step import NewStep, address, beside, new_step, step_page, versioned
-from app.web.rendering import go
+from app.web.responses import go
 from app.web.routes import Id, Number
 from app.web.services import PageServices, Refused, ThePageServices
-from app.web.session import check_form_token
 
 STALE = 412
 ILL_NAMED = 422
 NOTHING: Mapping[str, str] = {}
-
-
-async def forms_only(request: Request) -> None:
-    """Let bodies through only if they are forms, in a session those of its own pages."""
-    check_type(request, FORM_TYPES, NotForm)
-    if request.scope.get(FORM_TOKEN):
-        check_form_token(request, await fields(request))
 
 
 router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
@@ -242,3 +234,39 @@ def _block(typed: Mapping[str, str]) -> Patch:
             return {"models": {name or id: {"id": id, "version": version}}}
     group, _, removed = typed.get("remove", "").partition(".")
     return {group: {removed: None}}
+
+
+_LIST = re.compile(r"/(designs(\?[!-~]*)?)?")
+"""An address of a list of designs on this service."""
+
+
+@router.post("/designs/{id}/rename")
+async def rename(id: Id, request: Request, services: ThePageServices) -> Response:
+    """Another name; the results stay."""
+    typed = await fields(request)
+    await services.change(id, typed.get("revision", ""), {"name": typed.get("name", "").strip()})
+    return _back(typed)
+
+
+@router.post("/designs/{id}/labels")
+async def label(id: Id, request: Request, services: ThePageServices) -> Response:
+    """Tags more or less, into the archive or out of it."""
+    typed = await fields(request)
+    await _label(services, id, typed)
+    return _back(typed)
+
+
+async def _label(services: PageServices, id: str, typed: dict[str, str]) -> None:
+    change: dict[str, JsonValue] = {}
+    for field in ("add_tags", "remove_tags"):
+        if tags := [tag.strip() for tag in typed.get(field, "").split(",") if tag.strip()]:
+            change[field] = [*tags]
+    if "archived" in typed:
+        change["archived"] = typed["archived"] == "true"
+    await services.run(services.labelling.label, id, services.read(LabelsIn, change))
+
+
+def _back(typed: dict[str, str]) -> Response:
+    """To the list from which a form was sent."""
+    back = typed.get("back", "/")
+    return go(back if _LIST.fullmatch(back) else "/")

@@ -7,11 +7,10 @@ from typing import NamedTuple
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from app.approvals.schemas import ApprovalIn, CommentIn
-from app.web.actions import forms_only
+from app.schemas.approvals import ApprovalIn, CommentIn
 from app.web.design_page import design_page
-from app.web.forms import fields
-from app.web.rendering import go
+from app.web.forms import fields, forms_only
+from app.web.responses import go
 from app.web.revision_page import revision_page
 from app.web.routes import Id, Number
 from app.web.services import PageServices, Refused, ThePageServices

@@ -15,18 +15,16 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from app.web import (
     actions,
     approval_page,
-    audit_page,
-    beside_page,
+    assembly_page,
     impact_page,
     import_page,
     model_import_page,
-    organising,
     problems,
     provider_page,
     routes,
     sign_in,
     study_routes,
-    tables,
+    table_columns,
     upgrade_page,
     variant_forms,
     worksheet_routes,
@@ -81,15 +79,13 @@ def install(app: FastAPI) -> None:
     """Add the pages; call it after the interface is complete."""
     app.include_router(model_import_page.router)  # before the models: `import` is not one
     app.include_router(model_import_page.forms)
-    app.include_router(beside_page.router)
-    app.include_router(beside_page.forms)
+    app.include_router(assembly_page.router)
+    app.include_router(assembly_page.forms)
     app.include_router(routes.router)
-    app.include_router(organising.router)
     app.include_router(actions.router)
     app.include_router(approval_page.router)
-    app.include_router(audit_page.router)
     app.include_router(variant_forms.router)
-    app.include_router(tables.router)
+    app.include_router(table_columns.router)
     app.include_router(study_routes.router)
     app.include_router(study_routes.forms)
     app.include_router(import_page.router)  # before the worksheets: `import` is not an id of one

@@ -10,7 +10,7 @@ from fastapi import Request, Response
 from app.api.routes.comparisons import compare_revisions
 from app.api.routes.designs import list_designs
 from app.schemas.designs import Design
-from app.web.rendering import show, units_of
+from app.web.responses import show, units_of
 from app.web.services import PageServices, Refused
 
 MOST_NUMBERS = 100  # of revisions in a picker

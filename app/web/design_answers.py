@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 from fastapi import Request
 
+from app.api.routes.approvals import list_all_comments, list_comments
 from app.api.routes.models import show_model
-from app.api.routes.templates import show_template
+from app.api.routes.templates import list_template_versions, show_template
+from app.schemas.approvals import Approvals, CommentList
 from app.schemas.designs import Design, RevisionWorksheet
 from app.schemas.jobs import Job
 from app.schemas.templates import CadModel, Template
-from app.web.rendering import units_of
+from app.web.responses import units_of
 from app.web.services import PageServices
 
 
@@ -57,3 +60,45 @@ async def described_models(services: PageServices, design: Design | RevisionWork
         for id, version in dict.fromkeys(places.values())
     }
     return {name: versions[place] for name, place in places.items()}
+
+
+class Upgrade(NamedTuple):
+    """A step for which there is a newer version, or of which the version is withdrawn."""
+
+    step: str
+    template: str
+    version: int
+    newest: int
+    withdrawn: str
+
+
+async def upgrades_of(services: PageServices, templates: Mapping[str, Template]) -> list[Upgrade]:
+    """The steps of a design, by name with their templates, that do not use the latest version."""
+    old = {name: template for name, template in templates.items() if not template.latest}
+    newest = {id: await _newest(services, id) for id in {template.id for template in old.values()}}
+    return [
+        Upgrade(name, template.id, template.version, newest[template.id], template.withdrawn or "")
+        for name, template in old.items()
+    ]
+
+
+async def _newest(services: PageServices, id: str) -> int:
+    versions = (await services.run(list_template_versions, id, services.catalogues)).items
+    return next(item.version for item in versions if item.latest)
+
+
+ON_DESIGN = 10  # comments on the page of a design; that of a revision has all, page by page
+
+
+async def approval_of(services: PageServices, id: str, number: int) -> Approvals:
+    """The approval of a revision."""
+    return await services.run(services.approving.show, id, number)
+
+
+async def comments_of(
+    services: PageServices, id: str, number: int | None, limit: int, cursor: str = ""
+) -> CommentList:
+    """Comments on a revision, or on all of a design."""
+    if number:
+        return await services.run(list_comments, id, number, services.comments, limit, cursor or None)
+    return await services.run(list_all_comments, id, services.comments, limit, cursor or None)

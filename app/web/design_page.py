@@ -33,7 +33,6 @@ from app.schemas.templates import CadModel as Model
 from app.schemas.templates import Template, TemplateSummary
 from app.schemas.variants import VariantsOut
 from app.web import sheet
-from app.web.approvals import ON_DESIGN, approval_of, comments_of
 from app.web.blocks import (
     ModelBlock,
     Refusal,
@@ -45,15 +44,23 @@ from app.web.blocks import (
     with_fields,
     with_result,
 )
-from app.web.chosen_variant import chosen_variant
-from app.web.declaring import analysis_lines, errors_of, iteration_lines, measures
-from app.web.design_answers import described_models, revision_of, steps_of_design, templates_of
+from app.web.declarations import analysis_lines, errors_of, iteration_lines, measures
+from app.web.design_answers import (
+    ON_DESIGN,
+    approval_of,
+    comments_of,
+    described_models,
+    revision_of,
+    steps_of_design,
+    templates_of,
+    upgrades_of,
+)
 from app.web.flow import drawing
 from app.web.forms import texts
 from app.web.limits import library
 from app.web.model_page import finished_analyses
-from app.web.names import names_json, values_of
-from app.web.rendering import show, units_of
+from app.web.places import names_json, values_of
+from app.web.responses import show, units_of
 from app.web.sections import (
     MOST_IN_FULL,
     asked_step,
@@ -66,7 +73,7 @@ from app.web.sections import (
 from app.web.services import PageServices
 from app.web.study_page import studies_of
 from app.web.tolerances_page import toleranced
-from app.web.upgrades import upgrades_of
+from app.web.variant_detail import chosen_variant
 from app.web.variants import RefusedTable, places_of, variants_table
 from app.web.verdict import Banner, banner, opened, with_keys
 from cad.export import MEDIA_TYPES

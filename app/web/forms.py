@@ -17,9 +17,11 @@ from urllib.parse import parse_qsl
 from fastapi import Request
 from pydantic import JsonValue, TypeAdapter
 
-from app.api.reading import BodyTooLarge
+from app.api.gate.access import FORM_TOKEN
+from app.api.reading import FORM_TYPES, BodyTooLarge, NotForm, check_type
 from app.presentation.typed import text_of, value_of
 from app.schemas.designs import Design
+from app.web.session import check_form_token
 
 OPTIONS = ("level", "tolerance")  # of a step, beside its inputs
 LIMITS = "limits."  # of its criteria: how the rest of their controls' names begins
@@ -59,6 +61,13 @@ async def fields(request: Request) -> dict[str, str]:
         return dict(parse_qsl(body, keep_blank_values=True, max_num_fields=MOST_FIELDS))
     except ValueError:
         raise BodyTooLarge(f"a form has at most {MOST_FIELDS} fields") from None
+
+
+async def forms_only(request: Request) -> None:
+    """Let bodies through only if they are forms, in a session those of its own pages."""
+    check_type(request, FORM_TYPES, NotForm)
+    if request.scope.get(FORM_TOKEN):
+        check_form_token(request, await fields(request))
 
 
 def patch_of(design: Names, typed: Mapping[str, str]) -> Patch:

@@ -14,10 +14,9 @@ from app.impact.survey import Asked
 from app.presentation import numbers
 from app.schemas.answers import Quantity
 from app.schemas.impact import DesignImpact, Impact
-from app.web.actions import forms_only
 from app.web.answers import stored
-from app.web.forms import fields
-from app.web.rendering import go, show, units_of
+from app.web.forms import fields, forms_only
+from app.web.responses import go, show, units_of
 from app.web.routes import Id, Number, Text
 from app.web.services import PageServices, Refused, ThePageServices
 

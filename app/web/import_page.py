@@ -11,7 +11,7 @@ from app.api.routes.worksheet_imports import FileName, NewId, read_import
 from app.schemas.worksheet_imports import ImportedRegion
 from app.web.design_answers import job_of
 from app.web.multipart import forms_with_files, parts_of
-from app.web.rendering import go, show
+from app.web.responses import go, show
 from app.web.routes import Id, Text
 from app.web.services import PageServices, Refused, ThePageServices
 

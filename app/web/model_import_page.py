@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from app.api.routes.brought_models import FileName, NewId, list_programs
 from app.web.design_answers import job_of
 from app.web.multipart import forms_with_files, parts_of
-from app.web.rendering import go, show
+from app.web.responses import go, show
 from app.web.routes import Text
 from app.web.services import PageServices, Refused, ThePageServices
 

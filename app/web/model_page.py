@@ -18,7 +18,7 @@ from app.schemas.solids import Build
 from app.schemas.templates import CadModel as Model
 from app.schemas.values import Given
 from app.web import sheet
-from app.web.rendering import show, units_of
+from app.web.responses import show, units_of
 from app.web.services import PageServices, Refused, refusals
 from cad.export import MEDIA_TYPES
 from cad.model import CadModel

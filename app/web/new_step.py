@@ -21,7 +21,7 @@ from app.web import sheet
 from app.web.blocks import Refusal
 from app.web.forms import LIMITS, OPTIONS, option_of
 from app.web.limits import library, limit_fields, with_rows
-from app.web.rendering import show
+from app.web.responses import show
 from app.web.services import PageServices
 
 _NUMBER = re.compile(r"[0-9]{1,6}")

@@ -1,7 +1,8 @@
-"""The values of a design that may be varied, and what is calculated of it, for forms that ask about them."""
+"""The values of a design that may be varied, what is calculated of it, and the names in its relations."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import inf
@@ -9,7 +10,7 @@ from math import inf
 from app.presentation import numbers
 from app.presentation.typed import text_of
 from app.reference import Reference
-from app.schemas.designs import Design, Preview, RevisionWorksheet
+from app.schemas.designs import Design, ModelMeasurements, Preview, RevisionWorksheet
 from app.schemas.networks import DesignNetwork, NetworkName
 
 
@@ -122,3 +123,41 @@ def _is_single(text: str) -> bool:
     """Return whether a text is one number with its unit, and no relation, list or choice."""
     head = text.lstrip("+-.")
     return head[:1].isdigit() and "," not in text
+
+
+def names_json(network: DesignNetwork, values: Mapping[str, str]) -> str:
+    """Every name with its role, words, unit, dimension and value, for `static/names.js`."""
+    return json.dumps([{**name.plain(), "value": values.get(name.name, "")} for name in network.names])
+
+
+def values_of(
+    revision: RevisionWorksheet, preview: Preview | None, measured: Mapping[str, ModelMeasurements]
+) -> dict[str, str]:
+    """The values of parameters, inputs, outputs and measures as texts; no text where none is calculated."""
+    quantities: dict[str, object] = dict((preview.parameters if preview else None) or {})
+    for block, step in revision.steps.items():
+        quantities |= {f"{block}.{name}": value for name, value in {**step.inputs, **step.outputs}.items()}
+    for block, model in revision.models.items():
+        quantities |= {f"{block}.{name}": value for name, value in model.parameters.items()}
+    for block, part in measured.items():
+        quantities |= {f"{block}.{name}": value for name, value in _measures(part).items()}
+    return {name: numbers.in_line(value) for name, value in quantities.items()}
+
+
+def _measures(part: ModelMeasurements) -> dict[str, object]:
+    """The measures of a solid, by their names in relations, as far as the page has them."""
+    kinds = {
+        f"{kind}.{name}": output
+        for kind, analysis in part.analyses.items()
+        for name, output in analysis.outputs.items()
+        if name != "surface"
+    }
+    box = {"low": part.bounding_box.low, "high": part.bounding_box.high, "centre": part.centre}
+    places = {
+        f"{side}_{axis}": {"value": value, "unit": place.unit}
+        for side, place in box.items()
+        for axis, value in zip("xyz", place.value, strict=True)
+    }
+    tensor = {f"inertia_{axes}": getattr(part.inertia, axes) for axes in type(part.inertia).model_fields}
+    polar = {"polar_inertia": part.polar_inertia} if part.polar_inertia else {}
+    return {"mass": part.mass, "volume": part.volume, **places, **tensor, **polar, **kinds}

@@ -14,7 +14,7 @@ from starlette.exceptions import HTTPException
 
 from app.identity.errors import NotSignedIn, RoleNeeded
 from app.schemas.problems import MEDIA_TYPE, Problem
-from app.web.rendering import go, show
+from app.web.responses import go, show
 from app.web.services import Refused
 
 BASE = "/api/v1"

@@ -11,7 +11,7 @@ from starlette.concurrency import run_in_threadpool
 from app.api.dependencies import TheIdentity, services_of
 from app.api.gate.roles import public
 from app.identity.oidc import Begun, Provider, ProviderRefused, begin
-from app.web.rendering import go, show
+from app.web.responses import go, show
 from app.web.session import keep_signed_in
 from app.web.sign_in import own, sent
 

@@ -1,18 +1,24 @@
-"""The page of one revision of a design."""
+"""The page of one revision of a design, and how it differs from another.
+
+If a template or model of it cannot be used now, the page shows what is stored, and why that is all.
+"""
 
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Iterator
+from typing import NamedTuple
 
 from fastapi import Request, Response
 
-from app.schemas.designs import RevisionWorksheet
-from app.web.approvals import approval_of, comments_of
+from app.api.routes.revisions import show_revision
+from app.presentation import numbers
+from app.schemas.answers import Answer
+from app.schemas.designs import Revision, RevisionWorksheet
 from app.web.blocks import models_of, steps_of
-from app.web.design_answers import described_models, revision_of, templates_of
-from app.web.differences import differences
-from app.web.rendering import show
-from app.web.services import PageServices
+from app.web.design_answers import approval_of, comments_of, described_models, revision_of, templates_of
+from app.web.responses import show
+from app.web.services import PageServices, Refused
 from cad.export import MEDIA_TYPES
 
 
@@ -55,3 +61,65 @@ async def revision_page(
 def _steps_of_revision(revision: RevisionWorksheet) -> dict[str, tuple[str, int]]:
     """Id and version of the template of every step."""
     return {name: (step.template.id, step.template.version) for name, step in revision.steps.items()}
+
+
+class Difference(NamedTuple):
+    """One value that differs; empty where a revision has none."""
+
+    name: str
+    old: str
+    new: str
+
+
+def differences(old: Revision, new: Revision) -> list[Difference]:
+    """Every parameter, input, output and model parameter that differs, in the order of the newer revision."""
+    before, after = dict(_values(old)), dict(_values(new))
+    names = dict.fromkeys([*after, *before])
+    return [
+        Difference(name, numbers.in_line(before.get(name)), numbers.in_line(after.get(name)))
+        for name in names
+        if before.get(name) != after.get(name)
+    ]
+
+
+def _values(revision: Revision) -> Iterator[tuple[str, object]]:
+    yield from revision.parameters.items()
+    for name, step in revision.steps.items():
+        for part in (step.inputs, step.outputs):
+            yield from ((f"{name}.{tail}", _comparable(value)) for tail, value in part.items())
+    for name, model in revision.models.items():
+        yield from ((f"{name}.{tail}", _comparable(value)) for tail, value in model.parameters.items())
+        yield from ((f"{name}.{tail} (relation)", value) for tail, value in model.relations.items())
+
+
+def _comparable(value: object) -> object:
+    """A quantity as plain data, without where it came from; a value as typed as it is."""
+    if not isinstance(value, Answer):
+        return value
+    return {name: part for name, part in value.plain().items() if name != "from"}
+
+
+REASONS = ("/problems/quarantined", "/problems/unknown-template")
+
+
+def is_unusable(refused: Refused) -> bool:
+    """Return whether the interface refused because a version is quarantined, or its file was taken away."""
+    return refused.problem.type in REASONS
+
+
+async def stored_page(
+    request: Request, services: PageServices, id: str, number: int | None, reason: str
+) -> Response:
+    """One revision, the newest if none is named, as it is stored."""
+    design = await services.run(services.designs.show, id)
+    shown = number or design.revision
+    revision = await services.run(show_revision, id, shown, services.database)
+    return show(
+        request,
+        "stored.html",
+        design=design,
+        revision=revision,
+        reason=reason,
+        kinds=list(MEDIA_TYPES),
+        base=f"/api/v1/designs/{id}/revisions/{shown}",
+    )

@@ -10,6 +10,8 @@ from urllib.parse import urlencode
 from fastapi import APIRouter, Path, Query, Request, Response
 from pydantic import BaseModel
 
+from app.api.gate.roles import needs
+from app.api.routes.audit import list_audit, show_head
 from app.api.routes.catalogue import list_catalogue_faults
 from app.api.routes.designs import (
     Archived,
@@ -31,11 +33,10 @@ from app.web.design_page import design_page, step_section
 from app.web.gallery import offered
 from app.web.model_page import model_page
 from app.web.new_step import beside, new_step, step_page
-from app.web.rendering import go, show, units_of
-from app.web.revision_page import revision_page
+from app.web.responses import go, show, units_of
+from app.web.revision_page import is_unusable, revision_page, stored_page
 from app.web.sensitivities import sensitivity_lines
 from app.web.services import PageServices, Refused, ThePageServices
-from app.web.stored_page import is_unusable, stored_page
 from app.web.template_page import template_page
 from app.web.template_solve_page import template_solve_page
 from app.web.tolerances_page import tolerances_page
@@ -297,3 +298,26 @@ async def _newest(services: ThePageServices, group: str, id: str) -> str:
     list_versions = {"templates": list_template_versions, "models": list_model_versions}[group]
     versions = await services.run(list_versions, id, services.catalogues)
     return f"/{group}/{id}/{next(item.version for item in versions.items if item.latest)}"
+
+
+@router.get("/audit", dependencies=[needs("admin")])
+async def audit(
+    request: Request,
+    services: ThePageServices,
+    cursor: Text = "",
+    object: Text = "",
+    principal: Text = "",
+    action: Annotated[str, Query(max_length=100)] = "",
+) -> Response:
+    """Changes, page by page: all, or those that fit what was typed into the filter."""
+    typed = {"object": object.strip(), "principal": principal.strip(), "action": action.strip()}
+    wanted = {name: text for name, text in typed.items() if text}  # a form sends empty fields too
+    page = await services.run(list_audit, services.database, 50, cursor or None, **wanted)
+    return show(
+        request,
+        "audit.html",
+        entries=page.items,
+        head=await services.run(show_head, services.database),
+        wanted=wanted,
+        older=urlencode({**wanted, "cursor": page.next}) if page.next else None,
+    )

@@ -16,7 +16,7 @@ from markupsafe import Markup
 from app.presentation.criteria import Line
 from app.schemas.designs import Design
 from app.web.blocks import Refusal, StepBlock
-from app.web.rendering import jinja
+from app.web.responses import jinja
 from app.web.variants import VariantsTable
 from app.web.verdict import Banner, opened
 

@@ -54,7 +54,7 @@ async def tried_in(services: PageServices, id: str, sheet: Sheet, checked: Sheet
         name, is_added = _place(design, sheet)
         step = _step(sheet, checked, is_added=is_added)
         change = Previewed(id, {"steps": {name: step}}, worksheet=False, system="si")
-        preview, _ = await services.calculate(PATIENCE, services.previews.answer, change, services.client)
+        preview, _ = await services.calculate(PATIENCE, services.previews.in_parts, change, services.client)
     except Refused as refused:
         if refused.status not in REFUSED:
             raise

@@ -19,9 +19,8 @@ from app.api.routes import principals as routes
 from app.identity.errors import NotSignedIn
 from app.identity.keys import key_prefix
 from app.schemas.identity import Key, KeyIn, NewKey
-from app.web.actions import forms_only
-from app.web.forms import fields
-from app.web.rendering import go, show
+from app.web.forms import fields, forms_only
+from app.web.responses import go, show
 from app.web.services import PageServices, ThePageServices
 from app.web.session import keep_signed_in
 

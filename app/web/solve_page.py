@@ -9,7 +9,7 @@ from urllib.parse import urlencode
 
 from fastapi import Request, Response
 
-from app.designs import asking
+from app.designs import questions
 from app.designs.solved import SolveDesignIn
 from app.presentation import numbers
 from app.presentation.typed import value_of
@@ -17,7 +17,7 @@ from app.schemas.designs import Design
 from app.schemas.solve import DesignRoot, DesignSolution
 from app.web.answers import Answered, stored
 from app.web.places import PlaceOption, outputs, related, suggested, times, varied
-from app.web.rendering import go, show, units_of
+from app.web.responses import go, show, units_of
 from app.web.services import PageServices
 from app.web.solution import PATIENCE, Drawing, Reply, ShownRoot, replied
 
@@ -115,7 +115,7 @@ async def _solved(
 ) -> Answered[DesignSolution]:
     """The solution, or the job that calculates it where the page does not wait so long."""
     body = services.read(SolveDesignIn, question.body())
-    wanted = asking.Asked(
+    wanted = questions.Asked(
         id, body.model_dump_json(exclude_unset=True, by_alias=True), units=units_of(request)
     )
     answer, job = await services.calculate(PATIENCE, services.solving.answer, wanted, services.client)

@@ -19,7 +19,7 @@ from app.schemas.designs import Design, RevisionWorksheet
 from app.schemas.networks import NetworkName
 from app.schemas.studies import StudyEstimate
 from app.web.places import outputs, present, set_aside, suggested, varied
-from app.web.rendering import show
+from app.web.responses import show
 from app.web.services import PageServices, Refused
 
 LINES = 4
@@ -158,7 +158,7 @@ async def study_form(
     revision = await services.calculate(None, services.reports.worksheet, id, design.revision, "si")
     preview = (
         await services.calculate(
-            inf, services.previews.answer, Previewed(id, {}, False, "si"), services.client
+            inf, services.previews.in_parts, Previewed(id, {}, False, "si"), services.client
         )
     )[0]
     places, named = varied(design, network), outputs(network)

@@ -14,7 +14,7 @@ from app.presentation.units import System
 from app.reference import Reference
 from app.schemas.criteria import Criterion
 from app.schemas.studies import Best, Index, Study
-from app.web.rendering import show, units_of
+from app.web.responses import show, units_of
 from app.web.services import PageServices, Refused
 
 SHOWN = 20  # rows in the table

@@ -6,9 +6,8 @@ from fastapi import APIRouter, Depends, Request, Response
 
 from app.api.routes.studies import begun, estimate_study, show_study
 from app.studies.schemas import ChooseIn, StudyIn
-from app.web.actions import forms_only
-from app.web.forms import fields
-from app.web.rendering import go, show
+from app.web.forms import fields, forms_only
+from app.web.responses import go, show
 from app.web.routes import Id
 from app.web.services import Refused, ThePageServices, tag_of
 from app.web.solve_page import solve_page

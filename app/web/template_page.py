@@ -22,7 +22,7 @@ from app.web.accuracy import table
 from app.web.answers import TemplateQuestion, calculated
 from app.web.forms import OPTIONS, option_of
 from app.web.limits import is_limit, library, limit_fields, limits_of, with_rows
-from app.web.rendering import show, units_of
+from app.web.responses import show, units_of
 from app.web.services import PageServices, Refused
 from templates.core.language import template as language
 

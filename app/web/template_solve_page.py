@@ -19,7 +19,7 @@ from app.schemas.evaluations import Solution
 from app.schemas.templates import Template
 from app.web.answers import Answered, TemplateQuestion, calculated, stored
 from app.web.places import PlaceOption, suggested
-from app.web.rendering import go, show, units_of
+from app.web.responses import go, show, units_of
 from app.web.services import PageServices
 from app.web.solution import PATIENCE, Drawing, Reply, ShownRoot, replied
 from app.web.template_page import inputs_of, typed_in

@@ -14,7 +14,7 @@ from app.schemas.designs import Design
 from app.schemas.tolerances import OutputScatter, ToleranceAnalysis, Yield
 from app.tolerances.schemas import ToleranceIn
 from app.web.answers import stored
-from app.web.rendering import show, units_of
+from app.web.responses import show, units_of
 from app.web.services import PageServices, Refused
 from templates.core.units.tolerance import is_toleranced
 

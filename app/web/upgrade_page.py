@@ -16,9 +16,8 @@ from app.schemas.analyses import AnalysisOutput
 from app.schemas.answers import Quantity
 from app.schemas.designs import Design, Preview
 from app.schemas.evaluations import Output
-from app.web.actions import forms_only
-from app.web.forms import Patch, fields
-from app.web.rendering import go, show, units_of
+from app.web.forms import Patch, fields, forms_only
+from app.web.responses import go, show, units_of
 from app.web.routes import Id, Text
 from app.web.services import PageServices, Refused, ThePageServices
 from templates.core.units.units import compatible, unit

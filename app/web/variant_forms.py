@@ -15,7 +15,7 @@ from app.schemas.problems import Fault
 from app.web.design_page import design_page
 from app.web.forms import fields
 from app.web.multipart import forms_with_files, parts_of
-from app.web.rendering import go
+from app.web.responses import go
 from app.web.routes import Id
 from app.web.services import PageServices, Refused, ThePageServices, tag_of
 from app.web.variant_cells import CsvFile, csv_of, grid_of_form, with_units

@@ -10,7 +10,7 @@ from fastapi import Request, Response
 from app.api.routes.models import list_models
 from app.api.routes.worksheets import list_worksheets
 from app.schemas.worksheets import SheetCheck, SheetFault, SheetLine, SheetSummary
-from app.web.rendering import show
+from app.web.responses import show
 from app.web.services import PageServices
 from app.web.sheet_preview import offered, tried_in
 from app.web.stages import begins_next, newest_released, stages

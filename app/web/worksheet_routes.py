@@ -10,9 +10,8 @@ from fastapi import APIRouter, Depends, Query, Request, Response
 from pydantic import JsonValue
 
 from app.api.gate.roles import needs
-from app.web.actions import forms_only
-from app.web.forms import fields
-from app.web.rendering import go
+from app.web.forms import fields, forms_only
+from app.web.responses import go
 from app.web.routes import Id, Text
 from app.web.services import PageServices, Refused, ThePageServices
 from app.web.worksheet_page import Unsaved, editor_page, list_page, start_page

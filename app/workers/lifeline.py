@@ -1,4 +1,4 @@
-"""A pipe to which nothing is written: when its server's end closes, the kernel kills whoever hangs on it.
+"""A pipe that ties child processes to the server: when its end closes, the kernel kills them.
 
 However the server dies, the kernel closes its end and sends SIGKILL in the same moment. So it matters neither
 what the process is doing (importing for seconds, forking, stopped by a debugger, in a call that keeps the

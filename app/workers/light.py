@@ -1,3 +1,3 @@
-"""What the processes import that check files of a team, named where nothing is imported for it."""
+"""The modules to import in processes that check a team's files."""
 
 CHECKS = ("cad.model", "app.catalogue.checking")

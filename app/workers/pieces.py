@@ -1,4 +1,4 @@
-"""Large bytes in pieces: nothing that is done with one of them keeps the other threads waiting.
+"""Large bytes in pieces, each small enough not to block the other threads.
 
 To copy, join or pickle ten megabytes holds the interpreter for some ten milliseconds.
 """

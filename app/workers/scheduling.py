@@ -1,4 +1,4 @@
-"""Priorities on a core: the server, whose work takes milliseconds, before processes that take seconds.
+"""Process priorities: the server, whose work takes milliseconds, before processes that take seconds.
 
 Linux weighs niceness only among the processes of one session where `sched_autogroup_enabled` is set, which is
 usual. And since 6.6 it lets a process that wakes up wait for the end of the other's slice (milliseconds),

@@ -1,4 +1,4 @@
-"""Makes the tables of the library choices for limits: `"limits": {"bearing_material": "tin_bronze"}`."""
+"""Offer the tables of the library as choices for limits: `"limits": {"bearing_material": "tin_bronze"}`."""
 
 from __future__ import annotations
 

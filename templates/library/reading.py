@@ -1,4 +1,4 @@
-"""Reads a table of the library from its CSV file, and refuses one that is not whole.
+"""Read a table of the library from its CSV file, and refuse an incomplete one.
 
 A file has comments (`#`), then a head: `id`, `words`, one column `NAME [UNIT]` for each quantity, `source`,
 `note` and `confirmed`; `source of NAME` names the source of one value where it is not that of the row.

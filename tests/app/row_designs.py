@@ -5,10 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from app.designs.calculate import calculate
 from app.designs.document import Document
+from app.designs.engine.calculate import calculate
+from app.designs.engine.net import Net
 from app.designs.graph import Catalogues, build_graph
-from app.designs.net import Net
 from app.reference import Reference
 from cad.catalogue import models
 from templates.core.errors import InvalidInputs

@@ -10,8 +10,8 @@ from app.calculations.cache import Cache
 from app.calculations.sizes import size_of
 from app.catalogue.finding import find_templates
 from app.designs import memory as designs
+from app.designs.engine.memory import Memory
 from app.designs.graph import Block
-from app.designs.memory import Memory
 from app.designs.worksheet import _evaluated
 from app.schemas.designs import RevisionStep
 from templates.core.language.evaluate import evaluate

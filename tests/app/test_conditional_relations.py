@@ -7,11 +7,11 @@ import pytest
 from row_designs import BEARING, CATALOGUES, CURVES, FILM, assert_equal_to_designs, calculated, net_of, ref
 from row_designs import spread as nearby
 
-from app.designs.calculate import calculate
 from app.designs.document import Document
+from app.designs.engine.calculate import calculate
+from app.designs.engine.verdicts import Verdicts
 from app.designs.explained import explained
 from app.designs.graph import build_graph
-from app.designs.judging import Judging
 
 THIN = "= if film.minimum_film_thickness < 3 um then 22 mm else 20 mm"
 SHELL = {"id": "plain_bearing", "version": 1, "parameters": {"inner_diameter": "= diameter", "width": THIN}}
@@ -162,7 +162,7 @@ class TestErrors:
         test = f"film.minimum_film_thickness < {share * film * 1e6:.9f} um"
         wanted = f"= if {test} then 18 mm else 22 mm"
         criteria = {"narrow": {"require": "wanted <= 20 mm"}}
-        judging = Judging(calculated(bearing({"wanted": wanted}, criteria=criteria)))
+        judging = Verdicts(calculated(bearing({"wanted": wanted}, criteria=criteria)))
         (judged,) = judging.some(["narrow"])
         assert judged.verdict == verdict
 

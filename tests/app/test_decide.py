@@ -5,9 +5,9 @@ import pytest
 from patience import until
 from serving import API, created, faults, problem
 
-from app.designs.calculate import calculate
-from app.designs.deciding import Deciding
 from app.designs.document import Document
+from app.designs.engine.calculate import calculate
+from app.designs.engine.decision import Climb
 from app.designs.graph import Catalogues, build_graph
 from app.designs.service import resolved
 from cad.catalogue import models
@@ -29,7 +29,7 @@ def decided(raw, criteria=("own",), budget=60.0):
     graph, graph_faults = build_graph(resolved(Document.model_validate(raw), CATALOGUES), CATALOGUES)
     assert not graph_faults
     calculation = calculate(graph, lambda shape: None, lambda *question: None)
-    return Deciding(calculation, criteria, budget).decide()
+    return Climb(calculation, criteria, budget).decide()
 
 
 def own(decision):

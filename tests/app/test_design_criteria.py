@@ -4,10 +4,10 @@ import pytest
 
 from app.calculations.criteria import rendered
 from app.designs import results
-from app.designs.calculate import calculate
 from app.designs.document import Document, merge
+from app.designs.engine.calculate import calculate
+from app.designs.engine.verdicts import judged
 from app.designs.graph import Catalogues, build_graph
-from app.designs.judging import judged
 from app.designs.service import resolved
 from cad.catalogue import models
 from templates.door import built_in

@@ -6,8 +6,8 @@ import pytest
 
 from app.calculations.cache import Cache
 from app.catalogue.finding import find_templates
+from app.designs.engine.memory import Memory
 from app.designs.graph import Block
-from app.designs.memory import Memory
 from app.designs.recent import Prepared, Recent
 from app.designs.regeneration import Regeneration
 from app.designs.service import Designs

@@ -18,9 +18,9 @@ from row_designs import (
     spread,
 )
 
-from app.designs.columns import Column, aligned, scattered
 from app.designs.document import Document
-from app.designs.net import Net
+from app.designs.engine.columns import Column, aligned, scattered
+from app.designs.engine.net import Net
 from templates.core.errors import InvalidInputs
 from templates.door import built_in
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from row_designs import BEARING, CURVES, FILM, alone, calculated, net_of, ref, spread
 
-from app.designs.judging import judged
+from app.designs.engine.verdicts import judged
 from templates.core.errors import InvalidInputs
 from templates.core.judging.comparison import MET, NOT_CHECKED, NOT_MET, UNDECIDED, WORST_FIRST
 from templates.core.language.criteria import Evaluated, estimate_of

@@ -1,12 +1,10 @@
 """Names of designs as references, the order of a network, and calculations that are continued."""
 
-import dataclasses
-
 import pytest
 
 from app.catalogue.finding import find_templates
-from app.designs.calculate import calculate, resume
 from app.designs.document import Document
+from app.designs.engine.calculate import calculate, resume
 from app.designs.graph import Catalogues, build_graph
 from app.designs.network import Block, Solid, SolidAnalysis
 from app.reference import Reference
@@ -57,7 +55,7 @@ def test_a_name_is_parsed_and_written(name, reference, member):
 
 
 def test_a_reference_is_not_changed():
-    with pytest.raises(dataclasses.FrozenInstanceError):
+    with pytest.raises(AttributeError):
         Reference("film").block = "other"
 
 
@@ -93,6 +91,6 @@ def test_a_continued_calculation_is_that_of_all_at_once(graph):
     whole = calculate(graph, measured, lambda *_: FOUND)
     assert last.values == whole.values
     assert last.shapes["shell"].inputs_si() == whole.shapes["shell"].inputs_si()
-    assert last.values["shell.inner_diameter"] == pytest.approx(0.027)
+    assert last.values["shell.inner_diameter"].value == pytest.approx(0.027)
     assert last.pending == whole.pending == {graph.blocks["shell"].solid}
     assert first.pending > last.pending  # the earlier one is as it was

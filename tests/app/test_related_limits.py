@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from test_design_criteria import CATALOGUES, calculated, document, faults_of, film, graph_of, verdicts
 
-from app.designs.calculate import calculate
 from app.designs.document import Document, merge
 from app.designs.drives import network_of
-from app.designs.judging import _operations
-from app.designs.net import Net
-from app.designs.shifting import Upstream
+from app.designs.engine.calculate import calculate
+from app.designs.engine.estimates import RowEstimate
+from app.designs.engine.net import Net
+from app.designs.engine.shifts import Upstream
+from app.designs.engine.verdicts import _operations
 from app.reference import Reference
 from templates.core.judging.bands import Estimate
 from templates.core.judging.comparison import WORST_FIRST
@@ -37,7 +38,7 @@ def test_analytic_a_criterion_is_compared_once_and_shifted_twice_by_each_error()
     """100 points, three operations on each: as they are, and up and down for one estimate and two outputs."""
     criterion = SimpleNamespace(value=SimpleNamespace(parts=2), limit=SimpleNamespace(parts=1))
     upstream = Upstream(uncertain=frozenset(map(Reference.parse, ("warm.clearance", "loads.force"))))
-    estimates = {"film": Estimate(np.ones(100), np.zeros(100))}
+    estimates = {"film": RowEstimate(Estimate(np.ones(100), np.zeros(100)))}
     assert _operations(criterion, estimates, upstream) == 100 * 3 * (1 + 2 * (1 + 2))
 
 

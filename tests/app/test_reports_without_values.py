@@ -12,8 +12,8 @@ import pytest
 from newest import older_slow
 
 from app.designs import results
-from app.designs.calculate import calculate
 from app.designs.document import Document
+from app.designs.engine.calculate import calculate
 from app.designs.graph import Catalogues, build_graph
 from app.designs.service import resolved
 from app.designs.worksheet import worksheet

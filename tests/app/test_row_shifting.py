@@ -7,18 +7,17 @@ import pytest
 from row_designs import BEARING, CURVES, FILM, LOSS
 from test_net_judging import assert_judged_as_designs, chained
 
-from app.designs import row_shifting, shifting
-from app.designs.columns import Column
-from app.designs.row_estimates import RowEstimate
-from app.designs.row_shifting import Origins, RowShifting
+from app.designs.engine import shifts
+from app.designs.engine.estimates import RowEstimate
+from app.designs.engine.shifts import Origins, Shifts
+from templates.core.judging.bands import Estimate
 
 VARIED = ("clearance", "load")
 
 
 def expensive(monkeypatch, seconds):
     """Have steps count as expensive that take longer than so many seconds."""
-    monkeypatch.setattr(row_shifting, "EXPENSIVE", seconds)
-    monkeypatch.setattr(shifting, "EXPENSIVE", seconds)
+    monkeypatch.setattr(shifts, "EXPENSIVE", seconds)
 
 
 @pytest.mark.parametrize("seconds", [0.0, 1e9])
@@ -56,6 +55,5 @@ def test_property_a_long_chain_of_relations_is_followed():
 @pytest.mark.parametrize("error", [0.0, float("nan")])
 def test_an_output_without_an_error_is_not_calculated_again(error):
     """Of an unknown error there is no end either."""
-    estimate = RowEstimate(Column(1.0, is_row=False), Column(error, is_row=False))
-    exact = RowShifting(SimpleNamespace(), _estimates={FILM: estimate, LOSS: estimate})
-    assert exact.shifts({}, Origins(frozenset({FILM, LOSS}))) == ([], True)
+    exact = Shifts(SimpleNamespace(count=1), lambda _: RowEstimate(Estimate(1.0, error)))
+    assert not exact.known(Origins(frozenset({FILM, LOSS}))).uncertain

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from test_design_criteria import FILM, OIL_FILM, document, film, graph_of, verdicts
 
-from app.designs.calculate import calculate
-from app.designs.judging import judged
+from app.designs.engine.calculate import calculate
+from app.designs.engine.verdicts import judged
 from templates.core.language.evaluate import evaluate
 from templates.door import built_in
 

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from row_designs import BEARING, CATALOGUES, CURVES, net_of, ref
 
 from app.calculations.criteria import rendered
-from app.designs.calculate import calculate
 from app.designs.document import Document, merge
+from app.designs.engine.calculate import calculate
+from app.designs.engine.memory import memory
+from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph
-from app.designs.judging import judged
-from app.designs.memory import memory
 from app.designs.starting import starts
 from app.designs.variants.calculating import checked
 from app.designs.variants.judging import merged
@@ -242,7 +242,7 @@ class TestItems:
     def test_each_variant_takes_its_own_item(self):
         design = self.indexed("bearing", {f"main_{n}": {"bearing": f"{n}"} for n in range(1, 6)})
         outcomes = together(design, UNBUILT)
-        loads = [outcome.calculation.values["film.radial_load"] for outcome in outcomes]
+        loads = [outcome.calculation.values["film.radial_load"].value for outcome in outcomes]
         assert loads == pytest.approx([20e3, 22e3, 24e3, 22e3, 20e3], rel=SAME)
         assert_as_alone(design)
 

@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from app.catalogue.catalogues import Catalogues
-from app.designs.calculate import calculate
 from app.designs.document import Document
+from app.designs.engine.calculate import calculate
+from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph
-from app.designs.judging import judged
 from app.designs.service import resolved
 from cad.catalogue import models
 from templates.door import built_in

@@ -11,7 +11,7 @@ from serving import API
 from app.presentation.criteria import compared, line, margin, step_of, title, tone
 from app.schemas.criteria import Criterion, Verdict
 from app.web import verdict as verdict_of_page
-from app.web.rendering import jinja
+from app.web.responses import jinja
 from app.web.verdict import banner, key_outputs
 
 LONGEST = 3000  # pixels of a page with two steps, 1440 wide

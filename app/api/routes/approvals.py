@@ -12,8 +12,7 @@ from app.api.paging import Cursor, Limit, page
 from app.api.reading import PreconditionRequired, StrictRoute
 from app.api.waiting import written
 from app.approvals.comments import shown
-from app.approvals.schemas import ApprovalIn, CommentIn
-from app.schemas.approvals import Approvals, Comment, CommentList, Released
+from app.schemas.approvals import ApprovalIn, Approvals, Comment, CommentIn, CommentList, Released
 from app.schemas.problems import refusals
 
 router = APIRouter(prefix="/api/v1/designs/{id}", tags=["approval"], route_class=StrictRoute)

@@ -198,7 +198,7 @@ async def preview_design(
     change = Previewed(id, noted(body)[0], worksheet, units)
     if within is not None:
         return written(await threads.run_within(within, request, previews.known, change))
-    answer, job = await threads.run_within(seconds_waited(prefer), request, previews.answer, change, client)
+    answer, job = await threads.run_within(seconds_waited(prefer), request, previews.in_parts, change, client)
     return accepted(job, answer) if job else written(answer)
 
 

@@ -16,7 +16,7 @@ from app.api.routes.evaluations import stored_answer
 from app.api.routes.templates import Id, Number
 from app.api.waiting import LATER, accepted, finished
 from app.impact.schemas import ImpactIn
-from app.impact.survey import Asked, check
+from app.impact.survey import Asked
 from app.schemas.impact import Impact
 from app.schemas.problems import refusals
 
@@ -45,8 +45,7 @@ async def show_impact(
     The worst of the designs that move come first. 202 with a job where it takes longer than is waited for.
     """
     asked = Asked(id, number, body or ImpactIn(), units)
-    await run_in_threadpool(check, asked, impacts.database, impacts.catalogues)
-    job = await run_in_threadpool(impacts.queued, asked, client)
+    job = await run_in_threadpool(impacts.requested, asked, client)
     if not await finished(jobs, job, prefer):
         return accepted(job)
     row = await run_in_threadpool(jobs.get, job)

@@ -1,1 +1,1 @@
-"""Creo as a program that draws: a running session, driven through CREOSON's JSON interface."""
+"""Draw models by a running Creo session, through CREOSON's JSON interface."""

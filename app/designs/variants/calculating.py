@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import chain
 
-from app.designs.calculation import Calculation
 from app.designs.document import Document
+from app.designs.engine.calculation import Calculation
 from app.designs.variants.outcome import Outcome
 from app.designs.variants.table import faulty_cells, sound
 from app.designs.variants.together import Available, row_arrays, together

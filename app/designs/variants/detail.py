@@ -12,8 +12,8 @@ from app.calculations import rendering
 from app.calculations.criteria import rendered
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository
-from app.designs.calculation import Calculation
 from app.designs.document import Document
+from app.designs.engine.calculation import Calculation
 from app.designs.graph import raise_if
 from app.designs.questions import Reply
 from app.designs.stored_solids import analysed, built

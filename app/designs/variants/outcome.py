@@ -9,9 +9,9 @@ import numpy as np
 
 from app.calculations import rendering
 from app.designs import results
-from app.designs.calculation import Calculation
 from app.designs.document import Document
-from app.designs.judging import judged
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.verdicts import judged
 from app.designs.network import Graph
 from app.designs.results import ModelState
 from app.designs.variants.names import dotted

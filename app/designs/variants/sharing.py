@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from app.calculations.errors import StepDeferred
-from app.designs.calculation import DEFERRED, Prepared
-from app.designs.memory import memory
+from app.designs.engine.calculation import DEFERRED, Prepared
+from app.designs.engine.memory import memory
 from app.designs.network import Block, Graph
 from app.plain import Raw
 from templates.core.arrays import Array

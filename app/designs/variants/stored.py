@@ -7,8 +7,8 @@ from itertools import chain
 
 from app.calculations.criteria import rendered
 from app.designs import results
-from app.designs.calculation import Calculation
-from app.designs.judging import judged
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.verdicts import judged
 from app.designs.results import ModelState
 from app.designs.variants.judging import merged
 from app.designs.variants.names import BASE

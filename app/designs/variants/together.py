@@ -12,9 +12,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from app.catalogue.catalogues import Catalogues
-from app.designs.calculate import calculate_nodes
-from app.designs.calculation import Analysed, Calculation, Measured
 from app.designs.document import Document
+from app.designs.engine.calculate import calculate_nodes
+from app.designs.engine.calculation import Analysed, Calculation, Measured
 from app.designs.graph import build_graph
 from app.designs.network import Block, Node
 from app.designs.size import MOST_OPERATIONS

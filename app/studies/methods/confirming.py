@@ -1,4 +1,4 @@
-"""A promise of the coarse level beside what the fine level has at the same place."""
+"""Compare the result promised by the coarse level with that of the fine level at the same place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Several objectives: the places where none gets better unless another gets worse, found by NSGA-II of pymoo.
+"""The Pareto front of several objectives, found by pymoo's NSGA-II.
 
 The front is searched at the coarse level, where places spread over it are polished too. The fine level
 confirms them, which corrects the coarse level for the next round, as for one objective.

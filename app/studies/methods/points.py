@@ -1,4 +1,4 @@
-"""The rows of a study: any chunk is computed without the others, and is the same whichever chunk it is in."""
+"""The rows of a study; each chunk is computed independently, and a row does not depend on its chunk."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Polishing a place: SciPy's SLSQP, with values and slopes at a place by one call of 1 + 2 n rows.
+"""Local optimisation by SciPy's SLSQP; one call of 1 + 2 n rows gives value and slopes.
 
 References
 ----------

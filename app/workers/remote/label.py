@@ -1,4 +1,4 @@
-"""By what a server and a machine see that they run the same program: jobs go to such machines only.
+"""The label of a program, by which jobs go only to machines that run the same program.
 
 While a team upgrades, servers and machines of both versions share one scheduler and do not disturb each
 other.

@@ -1,4 +1,4 @@
-"""Dask as this program uses it: its own certificates, no web pages, no retries, no profile of each thread."""
+"""Configuration of Dask: own certificates, no web pages, no retries, no profiling of threads."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tasks that no machine works on, by what the scheduler says of them at each look.
+"""Find tasks that no machine works on, from the scheduler's repeated reports.
 
 Dask keeps a task whose machine has gone before it came there, in case that machine returns. Ours never do: a
 machine that connects again has another address. So such a task would be waited for without end.

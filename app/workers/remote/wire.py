@@ -1,4 +1,4 @@
-"""Data on the wire: packed requests and outcomes, which the scheduler and Dask's workers never open.
+"""Packed requests and outcomes, which the scheduler and Dask's workers pass on unopened.
 
 The scheduler imports this module, so it needs this program too; of another version is enough.
 """

@@ -1,4 +1,4 @@
-"""Find what expressions measure: the language of worksheets is asked, so that its own check decides."""
+"""Find the units of expressions by the language of worksheets itself."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Frozen versions: the digest of the code, some inputs, every result; a change beneath shows in the results.
+"""Golden records of frozen versions: the digest of the code, some inputs and every result.
 
 `crankwright freeze` writes the record of a released version once; a test compares for ever after. A file that
 exists is never overwritten: a change to a released version is a new version.

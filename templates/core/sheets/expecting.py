@@ -1,4 +1,4 @@
-"""From a `test` statement to what it gives and expects."""
+"""Read a `test` statement: the values that it gives and those that it expects."""
 
 from __future__ import annotations
 

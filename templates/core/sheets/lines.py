@@ -1,4 +1,4 @@
-"""From the text of a worksheet to its statements: what is indented goes on, `#` and `>` begin prose."""
+"""Split the text of a worksheet into statements: an indented line continues, `#` and `>` begin prose."""
 
 from __future__ import annotations
 

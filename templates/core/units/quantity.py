@@ -1,4 +1,4 @@
-"""Quantities, handled once at the edge: from what a user types to SI floats or arrays.
+"""Quantities: convert what a user types to SI floats or arrays, once.
 
 What is typed is untrusted. Every refusal is a `FaultyText` with a code and a remedy; it quotes no more than
 a few characters of the text, and is fit for JSON (no lone surrogates).

@@ -1,4 +1,4 @@
-"""A tree walked with the values of its names: what a relation comes to."""
+"""Evaluate the tree of a relation with the values of its names."""
 
 from __future__ import annotations
 

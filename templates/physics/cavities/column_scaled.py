@@ -1,4 +1,4 @@
-"""Sums of two sparse matrices whose columns are scaled again and again: the pattern is made once."""
+"""Sums of two sparse matrices with scaled columns; the sparsity pattern is computed once."""
 
 from __future__ import annotations
 

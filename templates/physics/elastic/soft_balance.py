@@ -1,4 +1,4 @@
-r"""The film that bears a load while bearing and oil give way to its pressure: Newton's method on all at once.
+r"""The film under a load with elastic bearing and pressure-dependent oil, by one Newton method for all.
 
 Unknown are the pressure at the nodes, which of them are in the film (P ≥ 0, loss ≥ 0, P · loss = 0), and the
 eccentricity. The ring couples every node with every other, but by few harmonics, so its part of the matrix

@@ -1,4 +1,4 @@
-"""What a whole engine does over its cycle: torque, energy areas, shaking force and couple, roll moment."""
+"""Curves of a whole engine over its cycle: torque, energy areas, shaking force and couple, roll moment."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-r"""Where the pins of a crankshaft stand and when its cylinders fire: from either, for any layout.
+r"""Angles of a crankshaft's pins and its firing angles: each from the other, for any layout.
 
 Seen from the flywheel, x is up, y left, and the shaft turns from x to y; a reference line on the shaft stands
 at theta. Cylinder j stands at its bank angle beta_j from x, its pin at psi_j from the line, and it fires at

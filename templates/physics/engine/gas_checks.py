@@ -1,4 +1,4 @@
-"""Whether the data of a gas cycle are whole and in order: for rules of templates."""
+"""Check the data of a gas cycle for completeness and order, for rules of templates."""
 
 from __future__ import annotations
 

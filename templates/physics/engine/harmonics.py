@@ -1,4 +1,4 @@
-r"""Unbalance of any engine, order by order: what turns with the crank and what turns against it.
+r"""Unbalance of any engine by orders: the parts that turn with the crank and against it.
 
 The force of order h on the frame is f e^{ihθ} + b e^{−ihθ}, complex, x + i y. With w the amplitude of the
 force of a cylinder's piston, f = ½ Σ w e^{i(β+h(ψ−β))} and b = ½ Σ w* e^{i(β−h(ψ−β))}; couples are the same

@@ -1,4 +1,4 @@
-r"""Slider-crank: where piston and rod are and how they move, per unit of crank radius and of crank speed.
+r"""Slider-crank: positions and motion of piston and rod, per unit of crank radius and crank speed.
 
 The axis of the cylinder meets that of the crankshaft. x points from the crankshaft to the cylinder head, y to
 where the crankpin moves first; theta counts from top dead centre, n = l/r, sin(phi) = sin(theta)/n. The rod

@@ -1,4 +1,4 @@
-r"""From counted cycles to damage: equivalent reversed amplitudes, Miner's sum, the point that governs.
+r"""Damage of counted cycles: equivalent reversed amplitudes, Miner's sum, the governing point.
 
 References
 ----------

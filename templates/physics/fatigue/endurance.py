@@ -1,4 +1,4 @@
-r"""What a steel part bears for ever, and between 1000 cycles and there: Marin's factors, notch sensitivity.
+r"""Endurance limit and finite-life strength of a steel part: Marin's factors, notch sensitivity.
 
 The factors are those of the 10th edition of Shigley; the 11th has others. None is taken above 1 (the book's
 size factor reaches 1.11 below 7.6 mm).

@@ -1,4 +1,4 @@
-"""The smallest circle about plane paths, many at once: half of what a shear stress does on a plane.
+"""The smallest circle about plane paths, many at once; its radius is the shear amplitude on a plane.
 
 A circle is held by two or three of its points. Begin with the two points farthest apart among a few; as long
 as a point lies outside, the new circle is the smallest one about the held points and that one. The radius

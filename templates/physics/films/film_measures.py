@@ -1,4 +1,4 @@
-"""What a static film does, integrated from its pressure field: load, friction, flow, peak.
+"""Integral measures of a static film from its pressure field: load, friction, flow, peak.
 
 Convention for friction: shear acts over the full circle, as in DIN 31652 and ISO 7902; beside it
 stands the friction with shear by streamers only where the film has ruptured.

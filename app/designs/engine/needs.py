@@ -95,7 +95,7 @@ class Varying:
 
     because: Mapping[Node, Node | None]
 
-    def __contains__(self, node: Node) -> bool:
+    def __contains__(self, node: object) -> bool:
         return node in self.because
 
     def chain(self, node: Node) -> list[Node]:

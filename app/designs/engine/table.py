@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.designs.columns import Column
-from app.designs.row_judging import JudgedColumn, RowCodes, RowJudging
-from app.designs.row_pass import RowPass
-from app.designs.row_refusals import Refusal
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.columns import Column
+from app.designs.engine.refusals import Refusal
+from app.designs.engine.verdicts import JudgedColumn, RowCodes, Verdicts
 from app.designs.subjects import Subject
 from app.reference import Reference
 from templates.core.arrays import Array
@@ -54,29 +54,30 @@ class Table:
         """A table to which chunks are added; of no rows it has its columns already."""
         return cls(count) if count else cls(0, {reference: np.empty(0) for reference in wanted})
 
-    def add(self, start: int, rows: RowPass, wanted: Iterable[Reference]) -> None:
+    def add(self, start: int, rows: Calculation, wanted: Iterable[Reference]) -> None:
         """Take over a chunk that begins at a row."""
         chunk = slice(start, start + rows.count)
         for reference in wanted:
-            column = rows.value(reference)
+            column = rows.column(reference)
             self.columns[reference] = self._filled(self.columns.get(reference), chunk, column, reference)
-            step = rows.steps.get(reference.block)
-            if step is not None and reference.member in step.errors:
-                error = step.errors[reference.member]
+            if rows.is_output(reference):
+                step, output = rows.step(reference.block), reference.member
+                error = step.error(output) if step else Column(np.nan)
                 self.errors[reference] = self._filled(self.errors.get(reference), chunk, error, reference)
-                if reference.member in step.absent:
-                    self.absent.setdefault(reference, step.absent[reference.member])
-        steps = (step for step in rows.steps.values() if not step.block.is_model)
-        self.levels |= {step.block.name: step.level for step in steps}
+                if step and (absence := step.absence(output)):
+                    self.absent.setdefault(reference, absence)
+        needed = rows.needs.members if rows.needs else ()
+        steps = (name for name in needed if not rows.graph.blocks[name].is_model)
+        self.levels |= dict.fromkeys(steps) | rows.levels_used()
         self.refusals |= _refusals(rows, start)
 
     def judge(
-        self, start: int, rows: RowPass, subjects: Mapping[str, Subject], *, with_columns: bool
+        self, start: int, rows: Calculation, subjects: Mapping[str, Subject], *, with_columns: bool
     ) -> None:
         """Judge a chunk that begins at a row."""
-        judging, chunk = RowJudging(rows), slice(start, start + rows.count)
+        verdicts, chunk = Verdicts(rows), slice(start, start + rows.count)
         for name, subject in subjects.items():
-            codes, column = judging.judged(subject)
+            codes, column = verdicts.rows(subject)
             if name not in self.verdicts:
                 self.verdicts[name] = np.empty(self.count, dtype=np.int8)
             self.verdicts[name][chunk] = codes
@@ -97,7 +98,7 @@ class Table:
         return whole
 
 
-def _refusals(rows: RowPass, start: int) -> Mapping[int, Refusal]:
+def _refusals(rows: Calculation, start: int) -> Mapping[int, Refusal]:
     if rows.for_all is not None:
         return dict.fromkeys(range(start, start + rows.count), rows.for_all)
     return {start + row: refusal for row, refusal in rows.refusals.items()}

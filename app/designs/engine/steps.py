@@ -9,16 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
-from app.designs.columns import Column, Indices, scattered
+from app.calculations.size import shape
+from app.designs.engine.columns import Column, Indices, scattered
+from app.designs.engine.refusals import Refusal, is_of_all_rows, masked, refusal_of
 from app.designs.network import Block
-from app.designs.row_refusals import Refusal, is_of_all_rows, masked, refusal_of
+from app.plain import Raw
 from templates.core.arrays import Mask
 from templates.core.errors import InvalidInputs
 from templates.core.language.answer import Answer
-from templates.core.language.evaluate import answers_at_level
+from templates.core.language.evaluate import Evaluation, answers_at_level
 from templates.core.language.intake import is_single
 from templates.core.language.levels import at_level
 from templates.core.language.spec import Curve, Profile, Table
@@ -28,8 +31,8 @@ from templates.core.units.units import Value
 
 NO_VALUE = "there is no value here"
 
-Given = Mapping[str, Column | Typed | str]
-"""Inputs of a step by name: those of relations and rows as columns, literals as they were read."""
+Given = Mapping[str, Column | Raw]
+"""Inputs of a step by name: those that differ from row to row as columns, all others as they were read."""
 
 
 class LevelMoved(Exception):
@@ -49,6 +52,11 @@ class Part:
     answers: Mapping[str, Answer]
     errors: Mapping[str, Value | None]
 
+    @cached_property
+    def is_array(self) -> bool:
+        """Whether its template has a point for each of its rows."""
+        return self.template.shape_of_points() == self.rows.shape
+
 
 @dataclass
 class StepRows:
@@ -60,14 +68,10 @@ class StepRows:
         Whether any input differs from row to row. If not, there is one row, which stands for all.
     level
         At which it was evaluated.
-    values
-        Columns [SI] of the members that were asked for.
-    errors
-        Relative errors of outputs; NaN where none is stated.
     refusals
         By row.
-    absent
-        Outputs that do not exist in some rows that are not refused, and the first reason.
+    evaluation
+        Of a step that is one for all rows.
     """
 
     block: Block
@@ -75,16 +79,79 @@ class StepRows:
     has_rows: bool
     level: str | None = None
     parts: list[Part] = field(default_factory=list)
-    values: dict[str, Column] = field(default_factory=dict)
-    errors: dict[str, Column] = field(default_factory=dict)
     refusals: dict[int, Refusal] = field(default_factory=dict)
-    absent: dict[str, str] = field(default_factory=dict)
+    evaluation: Evaluation | None = None
+    _columns: dict[str, Column] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, block: Block, evaluation: Evaluation) -> StepRows:
+        """A step of which nothing differs from row to row."""
+        part = Part(_ONE_ROW, evaluation.template, evaluation.outputs, evaluation.error)
+        level = evaluation.level if isinstance(evaluation.level, str) else None
+        return cls(block, 1, has_rows=False, level=level, parts=[part], evaluation=evaluation)
 
     def refused(self) -> Mask:
         """Which rows are refused."""
         refused = np.zeros(self.count, dtype=bool)
         refused[list(self.refusals)] = True
         return refused
+
+    def column(self, name: str) -> Column:
+        """The values [SI] of an input or output; NaN where there is none."""
+        if name not in self._columns:
+            self._columns[name] = self._joined([(part.rows, self._value(part, name)) for part in self.parts])
+        return self._columns[name]
+
+    def error(self, output: str) -> Column:
+        """The relative errors of an output; NaN where none is stated."""
+        return self._joined([(part.rows, self._error(part, output)) for part in self.parts])
+
+    def absence(self, output: str) -> str | None:
+        """Why an output does not exist in rows that are not refused: the first reason."""
+        for part in self.parts:
+            answer = part.answers[output]
+            if answer.value is None:
+                return answer.reason or NO_VALUE
+            if answer.reasons is not None:
+                reasons = np.broadcast_to(answer.reasons, part.rows.shape)
+                for row, reason in zip(part.rows.tolist(), reasons.tolist(), strict=True):
+                    if reason is not None and row not in self.refusals:
+                        return str(reason)
+        return None
+
+    def _joined(self, columns: list[tuple[Indices, Column]]) -> Column:
+        """One column of all parts, without the rows that are refused."""
+        if not columns:
+            return Column(np.nan)
+        if len(columns) == 1 and columns[0][0].size == self.count:
+            whole = columns[0][1]
+        else:
+            whole = scattered(self.count, columns)
+        return whole.without(self.refused()) if self.refusals else whole
+
+    def _value(self, part: Part, name: str) -> Column:
+        template, answer = part.template, part.answers.get(name)
+        if answer is not None and answer.value is None:
+            return Column(np.nan)
+        declared = template.formulas.get(name) or template.inputs[name]
+        with np.errstate(all="ignore"):
+            si = getattr(template, declared.attribute)
+        if answer is not None and answer.reasons is not None:
+            si = np.where(np.isnan(answer.value), np.nan, si)
+        axes = declared.axes if isinstance(declared, Profile) else int(isinstance(declared, Curve))
+        return Column(si, is_row=self.has_row_axis(part) and np.ndim(si) > axes)
+
+    def _error(self, part: Part, output: str) -> Column:
+        error = part.errors.get(output)
+        error = np.nan if error is None else error
+        return Column(error, is_row=self.has_row_axis(part) and bool(np.ndim(error)))
+
+    def has_row_axis(self, part: Part) -> bool:
+        """Return whether the values of a part may have an axis of rows: a single row is a single value."""
+        return self.has_rows and part.is_array
+
+
+_ONE_ROW = np.arange(1)
 
 
 def step_rows(
@@ -105,16 +172,13 @@ def step_rows(
         If no level is given and rows start at different ones.
     """
     columns = {name: value for name, value in given.items() if isinstance(value, Column)}
-    has_rows = any(column.is_row for column in columns.values())
-    step = StepRows(block, count if has_rows else 1, has_rows, level or started)
-    count = step.count
+    step = StepRows(block, count, has_rows=True, level=level or started)
     has_inputs = np.ones(count, dtype=bool)
     for column in columns.values():
-        has_inputs &= column.finite_rows() if column.is_row else bool(np.isfinite(column.value).all())
+        has_inputs &= column.finite_rows()
     evaluator = _Evaluator(step, given, tuple(members), is_level_given=level is not None)
     for rows in _grouped(block, columns, np.flatnonzero(has_inputs)):
         evaluator.evaluate(rows)
-    _collect(step, members)
     return step
 
 
@@ -123,7 +187,7 @@ def _grouped(block: Block, columns: Mapping[str, Column], rows: Indices) -> Iter
     shared = [
         np.asarray(column.value)[rows].reshape(len(rows), -1)
         for name, column in columns.items()
-        if column.is_row and _is_one_for_all(block, name)
+        if _is_one_for_all(block, name)
     ]
     if not shared:
         yield from [rows] if rows.size else []
@@ -160,12 +224,11 @@ class _Evaluator:
                 self.step.refusals |= dict.fromkeys(rows.tolist(), refusal)
         else:
             self.step.parts.append(part)
-            if self.step.has_rows:
-                self.step.refusals |= masked(self.step.block.name, part.template, part.rows)
+            self.step.refusals |= masked(self.step.block.name, part.template, part.rows)
 
     def _varied(self) -> list[str]:
         """The inputs that differ from row to row."""
-        return [n for n, value in self.given.items() if isinstance(value, Column) and value.is_row]
+        return [name for name, value in self.given.items() if isinstance(value, Column)]
 
     def _part(self, rows: Indices) -> Part:
         cls = self.step.block.cls
@@ -187,18 +250,17 @@ class _Evaluator:
             raise LevelMoved(step.block.name, step.level, started)
         return step.level
 
-    def _input(self, name: str, rows: Indices) -> Typed | str:
+    def _input(self, name: str, rows: Indices) -> Raw:
         """An input as its template takes it; of a single row as a single value, so that it speaks of it."""
         value = self.given[name]
         if not isinstance(value, Column):
             return value
-        declared, si = self.step.block.cls.inputs[name], value.value
-        if value.is_row:
-            si = np.asarray(si)[rows]
-            if rows.size == 1 or _is_one_for_all(self.step.block, name):
-                si = si[0] if value.rank else float(si[0])
-            elif isinstance(declared, Curve) and not value.rank:
-                si = np.broadcast_to(si[:, None], (len(si), self._places(declared)))
+        declared = self.step.block.cls.inputs[name]
+        si: Value = np.asarray(value.value)[rows]
+        if rows.size == 1 or _is_one_for_all(self.step.block, name):
+            si = np.asarray(value.value)[rows[0]]
+        elif isinstance(declared, Curve) and not value.rank:
+            si = np.broadcast_to(np.asarray(si)[:, None], (rows.size, self._places(declared)))
         return Typed(None, declared.meaning.unit, si if np.ndim(si) else float(si), {})
 
     def _places(self, declared: Curve) -> int:
@@ -206,66 +268,7 @@ class _Evaluator:
         lengths = [1]
         for name, value in self.given.items():
             other = self.step.block.cls.inputs[name]
-            if isinstance(other, Curve) and other.along == declared.along and not isinstance(value, str):
-                si = value.value if isinstance(value, Column) else value.si
-                rank = value.rank if isinstance(value, Column) else np.ndim(si)
-                lengths += [np.shape(si)[-1]] if rank else []
+            if isinstance(other, Curve) and other.along == declared.along:
+                places = value.places if isinstance(value, Column) else shape(value)
+                lengths += places[-1:]
         return max(lengths)
-
-
-def _collect(step: StepRows, members: Sequence[str]) -> None:
-    """Columns of the members and of their errors from all parts."""
-    for name in members:
-        step.values[name] = _joined(step, [(part.rows, _value(step, part, name)) for part in step.parts])
-        if name in step.block.cls.formulas:
-            step.errors[name] = _joined(step, [(part.rows, _error(step, part, name)) for part in step.parts])
-            _note_absence(step, name)
-
-
-def _joined(step: StepRows, columns: list[tuple[Indices, Column]]) -> Column:
-    """One column of all parts, without the rows that are refused."""
-    if not columns:
-        return Column(np.nan)
-    if len(columns) == 1 and columns[0][0].size == step.count:
-        whole = columns[0][1]
-    else:
-        whole = scattered(step.count, columns)
-    return whole.without(step.refused()) if step.refusals else whole
-
-
-def _value(step: StepRows, part: Part, name: str) -> Column:
-    """The values [SI] of an input or output; NaN where there is none."""
-    template, answer = part.template, part.answers.get(name)
-    if answer is not None and answer.value is None:
-        return Column(np.nan)
-    declared = template.formulas.get(name) or template.inputs[name]
-    si = getattr(template, declared.attribute)
-    if answer is not None and answer.reasons is not None:
-        si = np.where(np.isnan(answer.value), np.nan, si)
-    axes = declared.axes if isinstance(declared, Profile) else int(isinstance(declared, Curve))
-    return Column(si, is_row=_has_rows(step, part) and np.ndim(si) > axes)
-
-
-def _error(step: StepRows, part: Part, name: str) -> Column:
-    error = part.errors.get(name)
-    error = np.nan if error is None else error
-    return Column(error, is_row=_has_rows(step, part) and bool(np.ndim(error)))
-
-
-def _has_rows(step: StepRows, part: Part) -> bool:
-    """Return whether the values of a part may have an axis of rows: a single row is a single value."""
-    return step.has_rows and part.template.shape_of_points() == part.rows.shape
-
-
-def _note_absence(step: StepRows, name: str) -> None:
-    """Why an output does not exist in rows that are not refused: the first reason."""
-    for part in step.parts:
-        answer = part.answers[name]
-        if answer.value is None:
-            step.absent.setdefault(name, answer.reason or NO_VALUE)
-        elif answer.reasons is not None:
-            reasons = np.broadcast_to(answer.reasons, part.rows.shape)
-            for row, reason in zip(part.rows.tolist(), reasons.tolist(), strict=True):
-                if reason is not None and row not in step.refusals:
-                    step.absent.setdefault(name, reason)
-                    break

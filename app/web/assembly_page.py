@@ -16,11 +16,10 @@ from pydantic import JsonValue, TypeAdapter
 from app.api.routes.models import list_models, show_model
 from app.schemas.designs import Design, DesignModel
 from app.schemas.templates import TemplateSummary
-from app.web.actions import forms_only
 from app.web.design_answers import job_of
-from app.web.forms import fields
+from app.web.forms import fields, forms_only
 from app.web.model_import_page import MISSED, begun_import
-from app.web.rendering import go, show
+from app.web.responses import go, show
 from app.web.routes import Id
 from app.web.services import PageServices, Refused, ThePageServices
 

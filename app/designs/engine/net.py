@@ -15,15 +15,15 @@ from app.calculations.cost import array_seconds
 from app.catalogue.catalogues import Catalogues
 from app.designs.analyses import measured_unit
 from app.designs.document import Document
+from app.designs.engine.levels import Levelling
+from app.designs.engine.needs import is_member, solids_in_the_way
+from app.designs.engine.places import Ranks, checked_rows, place_faults, with_places
+from app.designs.engine.refusals import Refusal
+from app.designs.engine.row_design import MOST_ROWS, Levels, RowDesign, Rows, Wanted
+from app.designs.engine.table import Table
+from app.designs.engine.verdicts import JudgedColumn
 from app.designs.graph import build_graph, raise_if
 from app.designs.network import Graph
-from app.designs.row_design import MOST_ROWS, Levels, RowDesign, Rows, Wanted
-from app.designs.row_judging import JudgedColumn
-from app.designs.row_levels import Levelling
-from app.designs.row_places import Ranks, checked_rows, place_faults, with_places
-from app.designs.row_refusals import Refusal
-from app.designs.row_table import Table
-from app.designs.rows_needed import is_member, solids_in_the_way
 from app.designs.subjects import Subject, subjects
 from app.reference import Reference
 from templates.core.arrays import Array
@@ -241,7 +241,7 @@ class Net:
     def nominal(self, reference: Reference) -> Value:
         """The value [SI] of a name as the document has it; NaN where it has none, or waits for a solid."""
         raise_if(list(self.design.faults([reference], {})))
-        return self.written.nominal(Wanted.of([reference]), {}).value(reference).value
+        return self.written.nominal(Wanted.of([reference]), {}).column(reference).value
 
     def checked(self, rows: Rows, levels: Levels | None = None) -> tuple[int, dict[Reference, Array]]:
         """The number of rows, and their columns as arrays.

@@ -16,11 +16,10 @@ from typing import Literal
 import numpy as np
 
 from app.calculations.cost import estimated_seconds
-from app.designs.calculate import recalculated
-from app.designs.calculation import Calculation
-from app.designs.judging import Judging
+from app.designs.engine.calculate import recalculated
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.verdicts import Verdicts
 from app.designs.network import Block
-from app.designs.shifting import levels_of
 from app.reference import Reference
 from templates.core.judging.judgement import Judgement
 from templates.core.judging.summary import worst_first
@@ -42,7 +41,7 @@ class Trial:
 
 
 @dataclass(frozen=True)
-class Decision:
+class ClimbResult:
     """Criteria as far as they could be decided, worst first, and what that took."""
 
     criteria: Sequence[Judgement]
@@ -74,7 +73,7 @@ class _Move:
 
 
 @dataclass
-class Deciding:
+class Climb:
     """One design whose criteria are decided; `budget` is in s."""
 
     calculation: Calculation
@@ -84,11 +83,11 @@ class Deciding:
     skipped: dict[tuple[str, str], Trial] = field(default_factory=dict)
     _tried: set[tuple[str, str]] = field(default_factory=set)
 
-    def decide(self) -> Decision:
+    def decide(self) -> ClimbResult:
         """Climb until there is nothing more to do."""
         start = time.monotonic()
-        judging = Judging(self.calculation)
-        judgements = {judgement.name: judgement for judgement in judging.all()}
+        verdicts = Verdicts(self.calculation)
+        judgements = {judgement.name: judgement for judgement in verdicts.all()}
         asked = tuple(n for n, j in judgements.items() if j.verdict == "undecided" and self._is_wanted(n))
         stopped: Stop | None = None
         while stopped is None:
@@ -97,7 +96,7 @@ class Deciding:
             if stopped is None:
                 judgements |= self._judged(open_now)
         ordered = worst_first(judgements.values())
-        return Decision(ordered, asked, tuple(self.trials), tuple(self.skipped.values()), stopped)
+        return ClimbResult(ordered, asked, tuple(self.trials), tuple(self.skipped.values()), stopped)
 
     def _is_wanted(self, name: str) -> bool:
         return self.wanted is None or name in self.wanted
@@ -119,8 +118,8 @@ class Deciding:
 
     def _moves(self, open_now: Sequence[str]) -> Iterator[_Move]:
         """For every uncertain output behind the open criteria its next levels, cheapest first."""
-        judging = Judging(self.calculation)
-        for reference in sorted({r for name in open_now for r in judging.uncertain(name)}, key=str):
+        verdicts = Verdicts(self.calculation)
+        for reference in sorted({r for name in open_now for r in verdicts.uncertain(name)}, key=str):
             block = self.calculation.graph.blocks[reference.block]
             self._note_levels(block, reference)
             yield from self._moves_of(block, reference, open_now)
@@ -158,8 +157,8 @@ class Deciding:
 
     def _needed(self, block: Block, open_now: Sequence[str]) -> tuple[str, ...]:
         """The outputs of a step that the open criteria and relations use."""
-        judging = Judging(self.calculation)
-        named = (r for name in open_now for r in judging.references(name).values() if r.block == block.name)
+        verdicts = Verdicts(self.calculation)
+        named = (r for name in open_now for r in verdicts.references(name).values() if r.block == block.name)
         used = (*named, *self.calculation.graph.used.get(block.name, ()))
         return tuple(sorted({r.member for r in used if r.member in block.cls.formulas}))
 
@@ -174,7 +173,7 @@ class Deciding:
         self._tried.add((name, level))
         self.skipped.pop((name, level), None)
         needed = {name: self._needed(move.block, open_now)}
-        levels = {**levels_of(self.calculation), name: level}
+        levels = {**self.calculation.levels_used(), name: level}
         finer = recalculated(self.calculation, {}, levels, again=[name], outputs=needed)
         rows = math.prod(self.calculation.evaluations[name].template.shape_of_points())
         trial = Trial(name, level, rows, time.perf_counter() - start)
@@ -193,7 +192,7 @@ class Deciding:
 
     def _judged(self, names: Sequence[str]) -> dict[str, Judgement]:
         """The criteria of these names, judged again."""
-        return {judgement.name: judgement for judgement in Judging(self.calculation).some(names)}
+        return {judgement.name: judgement for judgement in Verdicts(self.calculation).some(names)}
 
 
 def _largest(error: object) -> float:

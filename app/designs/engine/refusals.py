@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.designs.columns import Indices
+from app.designs.engine.columns import Indices
 from templates.core.errors import Fault, FaultyText
 from templates.core.language.causes import BROKEN
 from templates.core.language.ledger import Mask

@@ -1,4 +1,7 @@
-"""Columns of a pasted table become texts of fields: proposed by name, shifted by an angle, one cycle each."""
+"""Columns of a pasted table become texts of fields: proposed by name, shifted by an angle, one cycle each.
+
+`/tables`: the dialog of a page sends what was pasted and shows the result; nothing is stored.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
 
+from fastapi import APIRouter
+from starlette.concurrency import run_in_threadpool
+
+from app.api.gate.roles import needs
+from app.api.reading import StrictRoute
 from app.calculations.tables import TableColumn, read_table
 from app.reference import Reference
 from app.schemas.tables import ChosenColumn, PastedTable, ReadColumn, ReadTable, TableField
@@ -206,3 +214,22 @@ def refused(error: InvalidInputs) -> ReadTable:
     """The faults of a text that is not a table, as a page shows them."""
     faults = [f"{fault.name}: {fault.detail}" for fault in error.faults]
     return ReadTable(columns=[], first=[], rows=0, faults=faults)
+
+
+router = APIRouter(include_in_schema=False, route_class=StrictRoute)
+
+
+@router.post("/tables", dependencies=[needs("viewer")])
+async def read_pasted_table(pasted: PastedTable) -> ReadTable:
+    """The columns of a pasted table, and the texts of the fields that take them.
+
+    A text that is not a table is not an error: the page shows what is wrong with it while it is typed.
+    """
+    return await run_in_threadpool(_read, pasted)
+
+
+def _read(pasted: PastedTable) -> ReadTable:
+    try:
+        return paste(pasted)
+    except InvalidInputs as error:
+        return refused(error)

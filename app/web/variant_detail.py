@@ -16,7 +16,7 @@ from app.schemas.designs import Design
 from app.schemas.variants import VariantDetail
 from app.web.answers import Answered, stored
 from app.web.blocks import StepBlock
-from app.web.rendering import units_of
+from app.web.responses import units_of
 from app.web.services import PageServices, Refused
 from app.web.solution import PATIENCE
 

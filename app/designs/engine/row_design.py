@@ -10,10 +10,11 @@ from typing import TypeVar
 
 import numpy as np
 
+from app.designs.engine.calculate import constants, rows
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.needs import Needs, Varying, needs, varying
+from app.designs.engine.steps import LevelMoved
 from app.designs.network import LIMITS, Block, Graph
-from app.designs.row_pass import Question, RowPass
-from app.designs.rows_needed import Needs, Varying, needs, varying
-from app.designs.step_rows import LevelMoved
 from app.designs.subjects import Subject
 from app.reference import Reference
 from templates.core.arrays import Array
@@ -61,7 +62,7 @@ class RowDesign:
     graph: Graph
     varied: frozenset[Reference]
     measured: Mapping[Reference, float]
-    _prepared: dict[object, tuple[Question, RowPass]] = field(default_factory=dict)
+    _prepared: dict[object, Calculation] = field(default_factory=dict)
 
     @cached_property
     def moving(self) -> Varying:
@@ -108,26 +109,27 @@ class RowDesign:
             return None
         return block.cls.inputs.get(reference.member) or block.cls.formulas.get(reference.member)
 
-    def question(self, wanted: Wanted, levels: Levels) -> tuple[Question, RowPass]:
-        """Prepare a calculation: its question, and the part that all rows share; kept for the next call."""
+    def constants(self, wanted: Wanted, levels: Levels) -> Calculation:
+        """Calculate what all rows share; kept for the next call."""
         pinned = self._pinned(wanted, levels)
         key = wanted, pinned
         if key not in self._prepared:
             if len(self._prepared) >= MOST_PREPARED:
                 self._prepared.clear()
-            due = self.needs(wanted)
-            question = Question(self.graph, due, self.moving, self.measured, dict(pinned))
-            self._prepared[key] = question, RowPass.constants(question)
-        return self._prepared[key]
+            due, known = self.needs(wanted), self.measured
+            shared = Calculation(self.graph, known, needs=due, moving=self.moving, levels=dict(pinned))
+            self._prepared[key] = constants(shared)
+        shared = self._prepared[key]
+        return replace(shared, started=dict(shared.started))  # no row has started at any level yet
 
     def passes(
         self,
-        rows: Rows,
+        given: Rows,
         count: int,
         wanted: Wanted,
         levels: Levels,
         chunk: int = MOST_ROWS,
-    ) -> Iterator[tuple[int, RowPass]]:
+    ) -> Iterator[tuple[int, Calculation]]:
         """The rows in chunks, each with the number of its first row.
 
         Raises
@@ -135,12 +137,12 @@ class RowDesign:
         LevelMoved
             If rows of a step whose level is not given start at different ones.
         """
-        constants = self.question(wanted, levels)[1].of_one_call()
+        shared = self.constants(wanted, levels)
         size = self.rows_at_once(wanted, levels, chunk)
         for start in range(0, count, size):
-            part = {reference: array[start : start + size] for reference, array in rows.items()}
+            part = {reference: array[start : start + size] for reference, array in given.items()}
             begun = time.thread_time()
-            result = constants.rows(min(size, count - start), part)
+            result = rows(shared, min(size, count - start), part)
             if result.count >= min(size, FEWEST_TIMED):
                 self._keep_pace(wanted, levels, (time.thread_time() - begun) / result.count)
             yield start, result
@@ -170,10 +172,10 @@ class RowDesign:
                     ladder = self.graph.blocks[moved.step].cls.levels
                     pinned[moved.step] = max(moved.before, moved.level, key=ladder.index)
 
-    def nominal(self, wanted: Wanted, levels: Levels) -> RowPass:
+    def nominal(self, wanted: Wanted, levels: Levels) -> Calculation:
         """The design as it was written, of which nothing varies."""
         with np.errstate(all="ignore"):
-            return replace(self, varied=frozenset(), _prepared={}).question(wanted, levels)[1]
+            return replace(self, varied=frozenset(), _prepared={}).constants(wanted, levels)
 
     def rows_at_once(self, wanted: Wanted, levels: Levels, chunk: int = MOST_ROWS) -> int:
         """Number of rows that one array call takes."""
@@ -184,11 +186,10 @@ class RowDesign:
         """Number of values that each cell and output has in one row, as the design was written."""
         if wanted not in self._sizes:
             cheapest = {block.name: next(iter(block.cls.levels), None) for block in self.steps(wanted)}
-            rows = self.nominal(wanted, cheapest)
-            self._sizes[wanted] = {cell.name: int(np.size(c.value)) for cell, c in rows.cells.items()} | {
-                f"{step.block.name}.{name}": int(np.size(column.value))
-                for step in rows.steps.values()
-                for name, column in step.values.items()
+            nominal, needed = self.nominal(wanted, cheapest), self.needs(wanted).members.items()
+            inside = (Reference(block, None, name) for block, names in needed for name in names)
+            self._sizes[wanted] = {name: int(np.size(c.value)) for name, c in nominal.values.items()} | {
+                str(reference): int(np.size(nominal.column(reference).value)) for reference in inside
             }
         return self._sizes[wanted]
 

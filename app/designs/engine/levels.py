@@ -10,18 +10,18 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from app.designs.columns import Column
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.columns import Column
+from app.designs.engine.row_design import Levels, RowDesign, Rows, Wanted
+from app.designs.engine.steps import Part, StepRows
 from app.designs.network import Block
-from app.designs.row_design import Levels, RowDesign, Rows, Wanted
-from app.designs.row_pass import RowPass
-from app.designs.step_rows import Part, StepRows
 from app.reference import Reference
 from templates.core.arrays import Array, Mask
 from templates.core.language.levels import Accuracy, accuracy
 
 S = TypeVar("S", bound=np.generic)
 
-Passes = Callable[[str | None], Iterable[RowPass]]
+Passes = Callable[[str | None], Iterable[Calculation]]
 """The rows, calculated with a step at a level, in chunks."""
 
 
@@ -67,7 +67,7 @@ class Levelling:
         outputs = self.design.needs(self.wanted).outputs(block)
         inside = Wanted.of(Reference(block.name, None, output) for output in outputs)
 
-        def passes(level: str | None) -> Iterator[RowPass]:
+        def passes(level: str | None) -> Iterator[Calculation]:
             pinned = {**levels, block.name: level or levels.get(block.name)}
             return (rows for _, rows in self.design.passes(self.rows, self.count, inside, pinned))
 
@@ -106,7 +106,7 @@ class LevelSearch:
 
     @cached_property
     def _started(self) -> list[StepRows]:
-        return [rows.steps[self.block.name] for rows in self.passes(None)]
+        return self._calculated(None)
 
     @property
     def _parts(self) -> Iterator[tuple[StepRows, Part]]:
@@ -143,12 +143,14 @@ class LevelSearch:
         met = np.ones(sum(step.count for step in steps), dtype=bool)
         for name in self.outputs:
             there = _joined(_has_value(step, name) for step in steps)
-            errors = _joined(step.errors[name].spread(step.count) for step in steps)
+            errors = _joined(step.error(name).spread(step.count) for step in steps)
             met &= np.where(there, errors <= tolerance, ~self._exists[name])
         return float(np.mean(met))
 
-    def _calculated(self, level: str) -> list[StepRows]:
-        return [rows.steps[self.block.name] for rows in self.passes(level)]
+    def _calculated(self, level: str | None) -> list[StepRows]:
+        """The step in each chunk of rows; without parts where it waits, or is refused."""
+        nothing = StepRows(self.block, 1, has_rows=False)
+        return [rows.step(self.block.name) or nothing for rows in self.passes(level)]
 
     def _expected(self, measured: Accuracy, level: str) -> Mask:
         """Where an expensive level is expected to serve, by what it states for where the rows lie now."""
@@ -165,7 +167,7 @@ def _joined(chunks: Iterable[NDArray[S]]) -> NDArray[S]:
 
 def _has_value(step: StepRows, output: str) -> Mask:
     """The rows in which an output has a value."""
-    return Column(step.values[output].spread(step.count), is_row=True).finite_rows()
+    return Column(step.column(output).spread(step.count), is_row=True).finite_rows()
 
 
 def _expected(measured: Accuracy, step: StepRows, level: str, output: str) -> Array:

@@ -9,10 +9,10 @@ import numpy as np
 
 from app.designs.analyses import axes_of, is_measured
 from app.designs.document import Document
+from app.designs.engine.calculate import literal
+from app.designs.engine.needs import Varying
+from app.designs.engine.relations import rank_of
 from app.designs.network import Block, Cell, Graph
-from app.designs.row_lists import rank_of
-from app.designs.row_pass import literal
-from app.designs.rows_needed import Varying
 from app.plain import Raw
 from app.reference import Reference
 from templates.core.arrays import Array

@@ -1,0 +1,246 @@
+"""The values of a design in some rows, each as far as it is known, and what is wrong with it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from app.designs.analyses import is_table, measured_unit
+from app.designs.engine.columns import Column
+from app.designs.engine.needs import Needs
+from app.designs.engine.refusals import Refusal, refusal_of
+from app.designs.engine.steps import StepRows
+from app.designs.network import Graph, Node, SolidAnalysis
+from app.reference import Reference
+from app.solids.outputs import Outputs as Outputs
+from app.solids.questions import Question
+from cad.model import CadModel
+from templates.core.arrays import Array
+from templates.core.errors import Fault, FaultyText, TemplateError
+from templates.core.language.evaluate import Evaluation
+from templates.core.language.template import Template
+from templates.core.units.quantity import Typed
+from templates.core.units.units import Value, unit
+
+Measures = Mapping[str, float]  # in the units of MEASURES
+Measured = Callable[[CadModel], Measures | None]
+Analysed = Callable[[CadModel, Question, tuple[str, ...]], Outputs | None]
+NOT_MEASURED = "this build was measured by an older program, or nothing else is there: change the design"
+DEFERRED: Literal["deferred"] = "deferred"
+Prepared = Evaluation | Literal["deferred"]
+"""The evaluation of a step that is shared with other designs, or that nobody waited for it."""
+
+
+@dataclass
+class Calculation:
+    """The values [SI] of a design in `count` rows; a design of its own is one row, of which nothing varies.
+
+    Attributes
+    ----------
+    assumed
+        Measures of solids [SI] that are known before: those with which iterations begin a round among them.
+    needs
+        What is calculated; everything, if None.
+    moving
+        The nodes that differ from row to row.
+    levels
+        By step, the level that rows ask for; None where the levels and tolerances of the design count.
+    started
+        By step, the level at which its first rows started, where none was asked for.
+    given
+        The columns of places that rows give.
+    changed
+        Outputs of steps that have other values than those that are calculated.
+    values
+        Of cells, by their names.
+    typed
+        Cells that are one for all rows, as the templates take them.
+    prepared
+        Evaluations of steps still to come, taken when they do.
+    evaluations, steps
+        Of steps that are one for all rows, and of those that differ from row to row.
+    shapes, measures
+        Of models whose parameters are all known, and of those that are built.
+    analyses
+        By model and kind: outputs of analyses that are used and known.
+    missing
+        Parameters of models that are not set.
+    pending
+        What waits for a solid, or for a deferred step.
+    deferred
+        Expensive steps that nobody waited for.
+    broken
+        What follows from a fault.
+    faults
+        Those that concern all rows.
+    refusals
+        By row, the first reason why it has no value somewhere.
+    operations
+        On single values, of the relations of one row so far.
+    """
+
+    graph: Graph
+    assumed: Mapping[Reference, float] = field(default_factory=dict)
+    needs: Needs | None = None
+    moving: Container[Node] = ()
+    levels: Mapping[str, str | None] | None = None
+    started: dict[str, str] = field(default_factory=dict)
+    count: int = 1
+    given: Mapping[Reference, Array] = field(default_factory=dict)
+    changed: Mapping[Reference, Column] = field(default_factory=dict)
+    values: dict[str, Column] = field(default_factory=dict)
+    typed: dict[str, Typed] = field(default_factory=dict)
+    prepared: dict[str, Prepared] = field(default_factory=dict)
+    evaluations: dict[str, Evaluation] = field(default_factory=dict)
+    steps: dict[str, StepRows] = field(default_factory=dict)
+    shapes: dict[str, CadModel] = field(default_factory=dict)
+    measures: dict[str, Measures] = field(default_factory=dict)
+    analyses: dict[str, dict[str, Outputs]] = field(default_factory=dict)
+    missing: dict[str, list[str]] = field(default_factory=dict)
+    pending: set[Node] = field(default_factory=set)
+    deferred: set[str] = field(default_factory=set)
+    broken: set[Node] = field(default_factory=set)
+    faults: list[Fault] = field(default_factory=list)
+    refusals: dict[int, Refusal] = field(default_factory=dict)
+    operations: int = 0
+
+    @property
+    def for_all(self) -> Refusal | None:
+        """The refusal of every row; None, if nothing is wrong with all of them."""
+        return refusal_of(self.faults) if self.faults else None
+
+    def value(self, reference: Reference) -> Value:
+        """The value [SI] of a name in a design of one row, once its node is calculated.
+
+        Raises
+        ------
+        KeyError, AttributeError, FaultyText
+            If it has none.
+        """
+        return self.used(reference).value
+
+    def used(self, reference: Reference) -> Column:
+        """The value of a name as relations use it; raises as `value`."""
+        if reference in self.changed:
+            return self.changed[reference]
+        if cell := self.graph.cell(reference):
+            if (column := self.values.get(cell.name)) is not None:
+                return column
+        if reference in self.given:
+            return Column(self.given[reference], is_row=True)
+        if reference in self.assumed:
+            return Column(self.assumed[reference])
+        if reference.block in self.steps:
+            return self.steps[reference.block].column(reference.member)
+        cls = self.graph.blocks[reference.block].cls
+        declared = cls.inputs.get(reference.member) or cls.formulas.get(reference.member)
+        if declared is None:
+            return Column(self.measure(reference))
+        with np.errstate(all="ignore"):
+            return Column(getattr(self.instance(reference.block), declared.attribute))
+
+    def column(self, reference: Reference) -> Column:
+        """The value of a name in all rows; NaN while it waits, and where it does not exist."""
+        step = self.step(reference.block) if self.graph.cell(reference) is None else None
+        try:
+            if step is not None and reference not in self.changed and reference not in self.given:
+                return step.column(reference.member)
+            return self.used(reference)
+        except (KeyError, AttributeError, TemplateError):
+            return Column(np.nan)
+
+    def taken(self, reference: Reference) -> Column:
+        """A parameter of a model as the model takes it; NaN where it has none."""
+        if reference.block in self.steps:
+            return self.steps[reference.block].column(reference.member)
+        shape = self.shapes.get(reference.block)
+        if shape is None:
+            return Column(np.nan)
+        return Column(getattr(shape, shape.inputs[reference.member].attribute))
+
+    def step(self, name: str) -> StepRows | None:
+        """A step, or a model of which rows want the values, as its rows; None while it waits."""
+        if name in self.steps:
+            return self.steps[name]
+        evaluation = self.evaluations.get(name)
+        if evaluation is None:
+            return None
+        if name not in self._whole or self._whole[name].evaluation is not evaluation:
+            self._whole[name] = StepRows.of(self.graph.blocks[name], evaluation)
+        return self._whole[name]
+
+    @cached_property
+    def _whole(self) -> dict[str, StepRows]:
+        return {}
+
+    def is_output(self, reference: Reference) -> bool:
+        """Return whether a name is an output of a step that the step calculates, and so may be off."""
+        block = self.graph.blocks.get(reference.block)
+        if block is None or block.is_model or reference in self.given or self.graph.cell(reference):
+            return False
+        return reference.analysis is None and reference.member in block.cls.formulas
+
+    def measure(self, reference: Reference) -> Value:
+        """A measure of a solid, or output of its analyses [SI], by its name: `throw.torsion.stiffness`.
+
+        A number, a table as an array [row, column], or a list as an array.
+
+        Raises
+        ------
+        FaultyText
+            With code `no_value`, where an analysis has a reason instead, or a build lacks the measure.
+        """
+        scale = unit(measured_unit(reference))
+        if reference.analysis is None:
+            measures = self.measures[reference.block]
+            if reference.member not in measures:
+                raise FaultyText("no_value", f"{reference} has no value: {NOT_MEASURED}")
+            return float(scale.to_si(measures[reference.member]))
+        computed = self._computed(reference, reference.analysis)
+        if is_table(reference):
+            return np.asarray(scale.to_si(np.asarray(computed, dtype=float)))
+        assert isinstance(computed, int | float), "no table"
+        return float(scale.to_si(float(computed)))
+
+    def outputs(self, model: str, kind: str) -> Outputs:
+        """The outputs of an analysis that are used and calculated; empty while it is pending."""
+        return self.analyses.get(model, {}).get(kind, {})
+
+    def _computed(self, reference: Reference, kind: str) -> object:
+        result = self.analyses[reference.block][kind][reference.output or ""]
+        if result["value"] is None:
+            raise FaultyText("no_value", f"{reference} has no value: {result['reason']}")
+        return result["value"]
+
+    def instance(self, block: str) -> Template:
+        """The template of a step, or the model, with its values; of rows, that of the first.
+
+        Raises
+        ------
+        KeyError
+            If it has none, because it waits or is refused.
+        """
+        if block in self.steps:
+            parts = self.steps[block].parts
+            if not parts:
+                raise KeyError(block)
+            return parts[0].template
+        return self.evaluations[block].template if block in self.evaluations else self.shapes[block]
+
+    def waiting(self) -> list[SolidAnalysis]:
+        """The analyses that are waited for, of models that are built."""
+        return [
+            node
+            for node in self.graph.order
+            if isinstance(node, SolidAnalysis) and node in self.pending and node.model.name in self.measures
+        ]
+
+    def levels_used(self) -> dict[str, str | None]:
+        """The level at which each step was calculated; None of a step without levels."""
+        used = {name: evaluation.level for name, evaluation in self.evaluations.items()}
+        single = {name: level if isinstance(level, str) else None for name, level in used.items()}
+        return single | {n: step.level for n, step in self.steps.items() if not step.block.is_model}

@@ -1,0 +1,120 @@
+"""Relations for many rows at once, each row by itself: `loads.main_load_x[bearing]`, `sum(film.pressure)`.
+
+Where no value differs from row to row, a relation is calculated as its text says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from app.designs.engine.columns import Column, aligned, stacked
+from templates.core.errors import FaultyText
+from templates.core.units.items import item_of
+from templates.core.units.lists import ITEM, LIST
+from templates.core.units.nodes import Constant, Item, Name, Node, Operation, Word
+from templates.core.units.relation import Relation
+from templates.core.units.walking import LISTWISE, check_ranks, listwise
+
+
+def related(relation: Relation, uses: Mapping[str, Column]) -> Column:
+    """The value of a relation in all rows; NaN where an index is no place of its array.
+
+    Raises
+    ------
+    FaultyText
+        With code `shape`, where curves of different lengths meet; `index`, if no row has a value.
+    """
+    if not any(column.is_row for column in uses.values()):
+        return Column(relation.value({name: column.value for name, column in uses.items()}))
+    items = {item.text: _item(item, uses) for item in relation.items}
+    columns = {**{name: uses[name] for name in relation.whole_names}, **items}
+    if relation.has_lists:
+        return _with_lists(relation, columns)
+    values, is_row = aligned(columns)
+    return Column(relation.value(values), is_row)
+
+
+def _with_lists(relation: Relation, columns: Mapping[str, Column]) -> Column:
+    try:
+        with np.errstate(all="ignore"):
+            return column_of(relation.tree, columns)
+    except ValueError:
+        raise FaultyText("shape", f"{relation.text!r} joins arrays of different lengths") from None
+
+
+def wrong_index(relation: Relation, uses: Mapping[str, Column], row: int) -> FaultyText | None:
+    """Why a row has no value, if that is because of an index."""
+    alone = {name: np.asarray(c.value)[row] if c.is_row else c.value for name, c in uses.items()}
+    try:
+        for item in relation.items:
+            item_of(item, alone)
+    except FaultyText as error:
+        return error
+    return None
+
+
+def _item(item: Item, uses: Mapping[str, Column]) -> Column:
+    whole = uses[item.name]
+    index = uses[item.index] if isinstance(item.index, str) else Column(float(item.index))
+    rows = {n for n, column in uses.items() if column.is_row}
+    values = {name: column.value for name, column in uses.items()}
+    if not index.is_row or not whole.rank:
+        return Column(item_of(item, values, rows), whole.is_row)
+    length = whole.places[0]
+    place = np.asarray(index.value)
+    right = (place == np.floor(place)) & (place >= 1) & (place <= length)
+    if not right.any():
+        item_of(item, values, rows)  # says what is wrong
+    chosen = item_of(item, {**values, str(item.index): np.where(right, place, 1.0)}, rows)
+    return Column(chosen, is_row=True).without(~right)
+
+
+def column_of(node: Node, columns: Mapping[str, Column]) -> Column:
+    """The value of a tree in all rows, from the columns of its names and of items by their text.
+
+    Raises
+    ------
+    FaultyText
+        With code `shape`, where a single value stands in place of a list, or a list in place of one.
+    """
+    match node:
+        case Constant(value=value):
+            return Column(value)
+        case Name(name=name):
+            return columns[name]
+        case Item():
+            return columns[node.text]
+        case Word(text=text):
+            return Column(text)  # type: ignore[arg-type] # a word is compared with a word
+    return _applied(node.operation, [column_of(argument, columns) for argument in node.arguments])
+
+
+def _applied(operation: Operation, parts: list[Column]) -> Column:
+    has_rows = any(part.is_row for part in parts)
+    if operation is LIST:
+        check_ranks(LIST, [part.rank for part in parts])
+        return stacked(parts)
+    if operation in LISTWISE:
+        value = listwise(operation, [part.value for part in parts], [part.rank for part in parts])
+        return Column(value, has_rows)
+    values, _ = aligned({str(place): part for place, part in enumerate(parts)})
+    return Column(operation.calculate(*values.values()), has_rows)
+
+
+def rank_of(node: Node, ranks: Mapping[str, int]) -> int:
+    """Return the number of axes of a tree in one row, from those of its names and of items by their text."""
+    match node:
+        case Constant() | Word():
+            return 0
+        case Name(name=name):
+            return ranks[name]
+        case Item():
+            return ranks[node.text]
+    inside = [rank_of(argument, ranks) for argument in node.arguments]
+    if node.operation is LIST:
+        return 1
+    if node.operation in LISTWISE:
+        return 0 if node.operation is ITEM else max(0, inside[0] - 1)
+    return max(inside, default=0)

@@ -1,0 +1,503 @@
+"""The criteria of a calculated design: those of its templates and its own, with errors carried downstream."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property, reduce
+from operator import or_
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.calculations.size import spanned
+from app.designs.engine.calculation import Calculation
+from app.designs.engine.columns import Column
+from app.designs.engine.estimates import Evaluations, RowEstimate, estimate_rows
+from app.designs.engine.shifts import Shifts, Upstream
+from app.designs.network import LIMITS, Block, Demand
+from app.designs.size import limit_operations, limit_values
+from app.designs.subjects import Subject, subjects
+from app.reference import Reference
+from templates.core.arrays import Array
+from templates.core.errors import FaultyText, listed
+from templates.core.judging.bands import Estimate, Shift
+from templates.core.judging.comparison import NOT_CHECKED, NOT_MET, compare, side_of
+from templates.core.judging.criterion import Criterion, Limit
+from templates.core.judging.judgement import Judgement
+from templates.core.judging.judging import Absent, Along, Instead, judge
+from templates.core.judging.limits import GivenLimit
+from templates.core.judging.summary import worst_first
+from templates.core.judging.worst import worst_of_rows
+from templates.core.language.criteria import (
+    Evaluated,
+    along_of,
+    estimates_of,
+    is_due,
+    level_and_truth,
+    missing_of,
+    notes,
+)
+from templates.core.language.levels import accuracy
+from templates.core.units.relation import Relation
+
+RowCodes = NDArray[np.int8]
+"""The verdict of each row as a place in `templates.core.judging.comparison.WORST_FIRST`."""
+
+COLUMNS = ("value", "limit", "low", "high", "utilisation", "margin")
+
+
+def judged(calculation: Calculation) -> list[Judgement]:
+    """Every criterion of a design, worst first; what waits for a solid or a step is not checked."""
+    return worst_first(Verdicts(calculation).all())
+
+
+@dataclass(frozen=True)
+class JudgedColumn:
+    """The sides of a criterion [SI] in each row, at its worst place; NaN where there is none.
+
+    Attributes
+    ----------
+    low, high
+        The band of the value; infinite where it is open, NaN where the error is not known.
+    utilisation
+        Limit over value, or value over limit; NaN unless both are positive, and of temperatures.
+    margin
+        Positive is safe.
+    is_stated
+        Whether the errors of all models behind it are stated.
+    """
+
+    value: Array
+    limit: Array
+    low: Array
+    high: Array
+    utilisation: Array
+    margin: Array
+    is_stated: bool
+
+    def within(self, whole: JudgedColumn | None, chunk: slice, count: int) -> JudgedColumn:
+        """A column of so many rows, of which these are a chunk; the rest is that of `whole`."""
+        columns = _columns(whole, count)
+        for name in COLUMNS:
+            columns[name][chunk] = getattr(self, name)
+        return JudgedColumn(**columns, is_stated=self.is_stated and (whole is None or whole.is_stated))
+
+
+def _columns(whole: JudgedColumn | None, count: int) -> dict[str, Array]:
+    if whole is None:
+        return {name: np.full(count, np.nan) for name in COLUMNS}
+    return {name: getattr(whole, name) for name in COLUMNS}
+
+
+@dataclass(frozen=True)
+class _Sides:
+    """The values that a criterion names, with the errors that reach them from upstream.
+
+    Attributes
+    ----------
+    shifts
+        All values, with something upstream at either end of its band.
+    unknown, unstated
+        What is upstream whose error is not known, or not stated.
+    """
+
+    estimates: Mapping[str, Estimate]
+    shifts: list[Shift]
+    unknown: frozenset[Reference]
+    unstated: frozenset[Reference]
+
+
+@dataclass(frozen=True)
+class Verdicts:
+    """A calculated design with its verdicts."""
+
+    calculation: Calculation
+    _steps: dict[str, Evaluations] = field(default_factory=dict)
+    _estimates: dict[Reference, RowEstimate | Absent] = field(default_factory=dict)
+
+    def all(self) -> Iterator[Judgement]:
+        """Every criterion, in no order."""
+        return self.some(self._subjects)
+
+    def some(self, names: Iterable[str]) -> Iterator[Judgement]:
+        """The criteria of these names."""
+        for name in names:
+            subject = self._subjects[name]
+            if subject.block is not None:
+                yield from self._of_template(subject.block, subject)
+            elif subject.demand is not None:
+                yield self._of_design(subject, subject.demand)
+
+    def names(self) -> list[str]:
+        """The names of all criteria."""
+        return list(self._subjects)
+
+    def subject(self, name: str) -> Subject:
+        """A criterion by its name, and where it is declared."""
+        return self._subjects[name]
+
+    def references(self, name: str) -> Mapping[str, Reference]:
+        """The values that a criterion names, without limits."""
+        return self._subjects[name].references
+
+    def uncertain(self, name: str) -> frozenset[Reference]:
+        """The outputs of steps whose errors, as far as they are stated, make the band of a criterion."""
+        subject = self._subjects[name]
+        judged = [subject, *(one for _, one in subject.instead)]
+        references = (reference for one in judged for reference in one.references.values())
+        origins = (self._shifts.behind(reference).uncertain for reference in references)
+        return reduce(or_, origins, frozenset())
+
+    def rows(self, subject: Subject) -> tuple[RowCodes, JudgedColumn]:
+        """The verdict of a criterion in each row, and the numbers behind it."""
+        criterion = subject.criterion
+        estimates = self._of_rows(subject)
+        missing = np.zeros(self.calculation.count, dtype=bool)
+        for estimate in estimates.values():
+            missing |= estimate.missing(self.calculation.count)
+        if not estimates.keys() >= set(criterion.names) or missing.all():
+            unjudged, column = self._not_checked(criterion, estimates)
+            return self._filled(subject, unjudged), column
+        try:
+            codes, column = self._compared(subject, estimates)
+        except FaultyText:  # curves of different lengths
+            return self._not_checked(criterion, estimates)
+        verdicts: RowCodes = np.where(missing, NOT_CHECKED, codes).astype(np.int8)
+        return self._filled(subject, verdicts), column
+
+    @cached_property
+    def _subjects(self) -> dict[str, Subject]:
+        return subjects(self.calculation.graph)
+
+    @cached_property
+    def _shifts(self) -> Shifts:
+        return Shifts(self.calculation, self._estimate)
+
+    def _of_template(self, block: Block, subject: Subject) -> Iterator[Judgement]:
+        """A criterion of a step's template, unless the step leaves out outputs that it needs."""
+        criterion, evaluated = subject.criterion, self._evaluated(block.name)
+        if evaluated is None:
+            absent = dict.fromkeys(criterion.names, Absent((), f"{block.name} waits for its calculation"))
+            yield _named(judge(criterion, {}, absent), block, subject.demand)
+            return
+        if not is_due(evaluated, criterion):
+            return
+        instead = self._instead(block, evaluated, criterion) if criterion.absent else None
+        judgement = self._of_step(subject, evaluated, notes(evaluated, criterion), instead)
+        yield _named(judgement, block, subject.demand)
+
+    def _instead(self, block: Block, evaluated: Evaluated, criterion: Criterion) -> Instead | None:
+        """The judgement where a side has no value, with the errors from upstream."""
+        missing = missing_of(evaluated, criterion)
+        if missing is None or missing.instead is None:
+            return None
+        subject = Subject(missing.instead, block, None)
+        return Instead(self._of_step(subject, evaluated, {}, None), missing.reason)
+
+    def _of_step(
+        self, subject: Subject, evaluated: Evaluated, more: Mapping[str, str | None], instead: Instead | None
+    ) -> Judgement:
+        criterion, block = subject.criterion, subject.block
+        assert block is not None
+        estimates, absent = estimates_of(evaluated, criterion)
+        absent |= self._waiting_limits(block, criterion) if block.related else {}
+        if absent:
+            return judge(criterion, estimates, absent, noted=more, instead=instead)
+        found = {name: RowEstimate(one) for name, one in estimates.items()}
+        along = along_of(evaluated.template, criterion.names)
+        return self._judged(subject, found, along, more, instead)
+
+    def _waiting_limits(self, block: Block, criterion: Criterion) -> dict[str, Absent]:
+        """The limits whose relations have no value yet; a row of the library does not stand in for them."""
+        related = (block.related[name] for name in criterion.limits_by_name if name in block.related)
+        waiting = [cell for cell in related if cell.name not in self.calculation.values]
+        return {
+            cell.reference.output or "": Absent((), f"{cell.name} has no value yet: {cell.raw}")
+            for cell in waiting
+        }
+
+    def _of_design(self, subject: Subject, demand: Demand) -> Judgement:
+        """A criterion that the design writes itself."""
+        found = {name: self._estimate(reference) for name, reference in demand.uses.items()}
+        estimates = {name: one for name, one in found.items() if isinstance(one, RowEstimate)}
+        absent = {name: one for name, one in found.items() if isinstance(one, Absent)}
+        criterion, along = subject.criterion, self._along(demand)
+        more = {"source": criterion.source, "waived": demand.written.waived, **self._stated_by(demand)}
+        if absent:
+            return judge(criterion, _plain(estimates), absent, along, noted=more)
+        return self._judged(subject, estimates, along, more, None)
+
+    def _stated_by(self, demand: Demand) -> dict[str, str | None]:
+        """Level and truth, where an output of a step is judged alone."""
+        subject = demand.criterion.subject if demand.criterion else None
+        reference = demand.uses[subject] if subject else None
+        evaluated = self._evaluated(reference.block) if reference and reference.output else None
+        return level_and_truth(evaluated, reference.output) if reference and evaluated else {}
+
+    def _along(self, demand: Demand) -> Along | None:
+        """The places of the first curve that a criterion uses."""
+        for reference in demand.uses.values():
+            evaluated = self._evaluated(reference.block) if reference.output else None
+            along = along_of(evaluated.template, [reference.member]) if evaluated else None
+            if along is not None:
+                return along
+        return None
+
+    def _judged(
+        self,
+        subject: Subject,
+        estimates: Mapping[str, RowEstimate],
+        along: Along | None,
+        more: Mapping[str, str | None],
+        instead: Instead | None,
+    ) -> Judgement:
+        """A criterion all of whose names have values."""
+        criterion = subject.criterion
+        try:
+            sides = self._sides(subject, estimates)
+        except FaultyText as error:
+            absent = dict.fromkeys(criterion.names, Absent((), str(error)))
+            return judge(criterion, _plain(estimates), absent, noted=more)
+        result = judge(
+            criterion, sides.estimates, {}, along, shifts=sides.shifts, noted=more, instead=instead
+        )
+        return _explained(result, sides)
+
+    def _sides(self, subject: Subject, estimates: Mapping[str, RowEstimate]) -> _Sides:
+        """The values that a criterion names, with the errors that reach them from upstream.
+
+        Raises
+        ------
+        FaultyText
+            If that takes too many operations.
+        """
+        criterion = subject.criterion
+        references = {name: one for name, one in subject.references.items() if name in estimates}
+        upstream = self._shifts.upstream(references.values())
+        limit_operations(self.calculation.operations + _operations(criterion, estimates, upstream))
+        moved, left_out = self._shifts.shifts(references, upstream)
+        unstated = upstream.unstated | left_out
+        tainted = self._tainted(estimates, references, upstream, is_unstated=bool(unstated))
+        rank = max((one.rank for one in estimates.values()), default=0)
+        fitted = {name: one.padded(rank) for name, one in tainted.items()}
+        constant = {name: one.value for name, one in fitted.items() if name not in references}
+        shifts: list[Shift] = [
+            ({**constant, **_padded(low, estimates, rank)}, {**constant, **_padded(high, estimates, rank)})
+            for low, high in moved
+        ]
+        return _Sides(fitted, shifts, upstream.unknown, unstated)
+
+    def _tainted(
+        self,
+        estimates: Mapping[str, RowEstimate],
+        references: Mapping[str, Reference],
+        upstream: Upstream,
+        *,
+        is_unstated: bool,
+    ) -> Mapping[str, RowEstimate]:
+        """Values whose errors upstream are not known, or not stated, marked as such."""
+        if upstream.unknown:
+            unknown = self._shifts.unknown(upstream)
+            return {n: e.without_error(unknown) if n in references else e for n, e in estimates.items()}
+        if is_unstated:
+            return {n: e.unstated() if n in references else e for n, e in estimates.items()}
+        return estimates
+
+    def _estimate(self, reference: Reference) -> RowEstimate | Absent:
+        """The value of a name with the error of its own step, or why there is none."""
+        if reference not in self._estimates:
+            self._estimates[reference] = self._estimated(reference)
+        return self._estimates[reference]
+
+    def _estimated(self, reference: Reference) -> RowEstimate | Absent:
+        calculation = self.calculation
+        is_own = reference.output is not None and not reference.analysis
+        is_written = calculation.graph.cell(reference) is not None or reference in calculation.given
+        if is_own and not is_written and self._parts(reference.block):
+            return self._inside(reference)
+        try:
+            return RowEstimate.exact(calculation.used(reference))
+        except FaultyText as error:
+            return Absent((), str(error))
+        except (KeyError, AttributeError):
+            return Absent((), f"{reference} waits for a solid or for its calculation")
+
+    def _inside(self, reference: Reference) -> RowEstimate | Absent:
+        """An input or output of a step as the step was evaluated with it."""
+        step, parts = self.calculation.step(reference.block), self._parts(reference.block)
+        if step is None or not parts:
+            return Absent((), f"{reference.block} waits for its calculation")
+        evaluated = parts[0][1]
+        if reference.member in evaluated.template.inputs or reference.member in evaluated.answers:
+            return estimate_rows(step, parts, reference.member)
+        return Absent((), f"{reference} is not computed; name it in the outputs of the step")
+
+    def _evaluated(self, step: str) -> Evaluated | None:
+        """A step as its criteria see it; None of a model, and while it waits."""
+        parts = self._parts(step)
+        return parts[0][1] if parts else None
+
+    def _parts(self, name: str) -> Evaluations:
+        """The parts of a step as its criteria see them; none of a model, and while it waits."""
+        if name not in self._steps:
+            step = self.calculation.step(name)
+            self._steps[name] = []
+            if step is not None and not step.block.is_model:
+                limits, measured = self._limits(step.block), accuracy(step.block.cls)
+                self._steps[name] = [
+                    (
+                        part,
+                        Evaluated(
+                            part.template, part.answers, part.errors, measured, limits, level=step.level
+                        ),
+                    )
+                    for part in step.parts
+                ]
+        return self._steps[name]
+
+    def _limits(self, block: Block) -> Mapping[str, GivenLimit]:
+        """The limits of a step; those by relations as far as they have values, with these as source."""
+        if not block.related:
+            return block.limits
+        values = self.calculation.values
+        related = {n: cell for n, cell in block.related.items() if cell.name in values}
+        given = {n: GivenLimit(values[cell.name].value, f"{n} {cell.raw}") for n, cell in related.items()}
+        return {**block.limits, **given}
+
+    def _of_rows(self, subject: Subject) -> dict[str, RowEstimate]:
+        """The values that a criterion names in rows, as far as there are any."""
+        block = subject.block
+        if block is not None and block.is_model:
+            return {}
+        found = {
+            name: self._inside(reference)
+            if block is not None and reference.analysis != LIMITS
+            else self._estimate(reference)
+            for name, reference in subject.references.items()
+        }
+        estimates = {name: one for name, one in found.items() if isinstance(one, RowEstimate)}
+        for limit in subject.criterion.limits:
+            if limit.name not in estimates and (given := self._limit(subject, limit, estimates)) is not None:
+                estimates[limit.name] = given
+        return estimates
+
+    def _limit(self, subject: Subject, limit: Limit, others: Mapping[str, RowEstimate]) -> RowEstimate | None:
+        """A limit of the user: one for all rows, or a curve beside a curve."""
+        assert subject.block is not None
+        given = subject.block.limits.get(limit.name)
+        if given is not None:
+            rank = np.ndim(given.value)
+            curve = next((other for other in others.values() if other.one.axes), None)
+            if rank and (curve is None or np.shape(given.value) != curve.value.places):
+                return None
+            return RowEstimate.exact(Column(given.value), axes=rank)
+        if limit.default is None:
+            return None
+        function, name = limit.default
+        cell = subject.block.cells.get(name)
+        column = self.calculation.values.get(cell.name) if cell else None
+        if column is None or not column.rank:
+            return None
+        end = {"min": np.min, "max": np.max}[function](column.value, axis=-1)
+        return RowEstimate.exact(Column(end, column.is_row))
+
+    def _compared(self, subject: Subject, estimates: Mapping[str, RowEstimate]) -> tuple[Array, JudgedColumn]:
+        """The verdicts of rows, and the numbers behind them."""
+        sides = self._sides(subject, estimates)
+        compared = compare(subject.criterion, sides.estimates, sides.shifts)
+        if not any(one.has_rows for one in estimates.values()) and np.ndim(compared.codes):
+            compared = replace(compared, codes=np.asarray(compared.codes)[None])
+        codes, numbers = worst_of_rows(subject.criterion, compared, self.calculation.count)
+        is_stated = not sides.unstated and all(one.is_stated for one in estimates.values())
+        return codes, _column(subject.criterion, numbers, is_stated)
+
+    def _filled(self, subject: Subject, codes: RowCodes) -> RowCodes:
+        """With the verdicts of what is judged where a value is missing that another one stands beside."""
+        for missing, instead in subject.instead:
+            if not instead.is_due(self.calculation.graph) or subject.block is None:
+                continue
+            beside = self._inside(Reference(subject.block.name, None, missing.beside))
+            others, _ = self.rows(instead)
+            is_filled = (codes == NOT_CHECKED) & (others != NOT_MET)
+            if isinstance(beside, RowEstimate):
+                is_filled &= ~beside.missing(self.calculation.count)
+                codes = np.where(is_filled, others, codes).astype(np.int8)
+        return codes
+
+    def _not_checked(
+        self, criterion: Criterion, estimates: Mapping[str, RowEstimate]
+    ) -> tuple[RowCodes, JudgedColumn]:
+        """No verdict in any row; a side that has a single value is reported."""
+        count = self.calculation.count
+        nothing = np.full(count, np.nan)
+        value, limit = (self._side(side, estimates) for side in (criterion.value, criterion.limit))
+        is_stated = all(estimate.is_stated for estimate in estimates.values())
+        column = JudgedColumn(value, limit, nothing, nothing, nothing, nothing, is_stated)
+        return np.full(count, NOT_CHECKED, dtype=np.int8), column
+
+    def _side(self, side: Relation, estimates: Mapping[str, RowEstimate]) -> Array:
+        """The value of a side, where it is one for each row."""
+        count = self.calculation.count
+        if side.names <= estimates.keys() and not any(estimates[n].value.rank for n in side.names):
+            value = side_of(side, {name: estimates[name].padded(0) for name in side.names})
+            return np.broadcast_to(np.asarray(value, dtype=float), (count,))
+        return np.full(count, np.nan)
+
+
+def _plain(estimates: Mapping[str, RowEstimate]) -> dict[str, Estimate]:
+    return {name: one.one for name, one in estimates.items()}
+
+
+def _padded(
+    values: Mapping[str, Column], estimates: Mapping[str, RowEstimate], rank: int
+) -> dict[str, Array | float]:
+    return {name: column.padded(rank + estimates[name].one.axes) for name, column in values.items()}
+
+
+def _column(criterion: Criterion, sides: list[Array], is_stated: bool) -> JudgedColumn:
+    """The numbers of each row, as a report of a single design has them."""
+    value, limit, low, high, *_ = sides
+    is_least = criterion.sign == ">="
+    with np.errstate(all="ignore"):
+        share = limit / value if is_least else value / limit
+    is_share = (value > 0) & (limit > 0) & np.isfinite(share) & (not criterion.is_temperature)
+    margin = value - limit if is_least else limit - value
+    return JudgedColumn(value, limit, low, high, np.where(is_share, share, np.nan), margin, is_stated)
+
+
+def _explained(result: Judgement, sides: _Sides) -> Judgement:
+    """A judgement that names where upstream its error is lost."""
+    if sides.unknown and result.verdict == "undecided":
+        return replace(
+            result, reason=f"it follows from {_listed(sides.unknown)}, whose error is not known here"
+        )
+    if sides.unstated and result.verdict in ("met", "not_met"):
+        reason = f"the error of {_listed(sides.unstated)}, from which it follows, is not stated"
+        return replace(result, reason=reason)
+    return result
+
+
+def _listed(references: frozenset[Reference]) -> str:
+    return listed(sorted(map(str, references)))
+
+
+def _operations(criterion: Criterion, estimates: Mapping[str, RowEstimate], upstream: Upstream) -> int:
+    """Count the operations on single values that a criterion takes in one row, with its shifted sides."""
+    points = spanned(estimate.value.places for estimate in estimates.values())
+    limit_values(points)
+    times = 1 + 2 * (len(estimates) + len(upstream.uncertain))
+    return points * times * (criterion.value.parts + criterion.limit.parts)
+
+
+def _named(judgement: Judgement, block: Block, demand: Demand | None) -> Judgement:
+    """A criterion of a template by its name in the design, with what the design says of it."""
+    written = demand.written if demand else None
+    return replace(
+        judgement,
+        name=f"{block.name}.{judgement.name}",
+        give=tuple(map(f"{block.name}.".__add__, judgement.give)),
+        words=(written and written.words) or judgement.words,
+        source=(written and written.source) or judgement.source,
+        waived=written.waived if written else None,
+    )
