@@ -5,79 +5,85 @@ from __future__ import annotations
 from contextlib import ExitStack, closing
 from typing import TYPE_CHECKING
 
-from app.api import problems, readiness
 from app.api.answering import Answering
-from app.api.gate.streams import Streams
 from app.api.services import Services
 from app.api.threads import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import Approving
-from app.brought.programs import assembled as assembled_programs
-from app.brought.service import IMPORT as MODEL_IMPORT
-from app.brought.service import ModelImports
-from app.brought.shelf import Shelf
 from app.calculations.assembly import Calculations, assemble_calculations
 from app.calculations.cache import results
 from app.calculations.jobs import CALCULATION, DECISION, IMPACT, PREVIEW, SOLUTION, TOLERANCE, VARIANT
 from app.catalogue.catalogues import Catalogues, TeamCatalogues
-from app.catalogue.checking import CheckInProcess
-from app.catalogue.finding import find_templates
+from app.catalogue.check import CheckInProcess
+from app.catalogue.discovery import find_templates
 from app.designs import decisions as decisions_of
+from app.designs.calculation_cache import CalculationCache
 from app.designs.labels import Labelling
 from app.designs.preview import Previewed, preview
 from app.designs.questions import Asked, Questions, in_a_process
-from app.designs.recent import Recent
 from app.designs.regeneration import Regeneration
 from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
 from app.designs.solved import solved
 from app.designs.variants.detail import WantedVariant, detailed
-from app.identity.sealing import Sealer
+from app.http import problems
+from app.http.streams import Streams
+from app.identity.sealer import Sealer
 from app.identity.service import Identity
 from app.impact import survey
+from app.imported_models.programs import assembled as assembled_programs
+from app.imported_models.registry import ImportedModelRegistry
+from app.imported_models.service import IMPORT as MODEL_IMPORT
+from app.imported_models.service import ModelImports
 from app.jobs.service import Jobs
-from app.observation import metrics
+from app.observation import metrics, readiness
 from app.reports.paper import Press
 from app.reports.service import Reports
 from app.retention.service import Retention
 from app.settings import Settings
 from app.settings.machines import LOCAL
 from app.solids.analyses import ANALYSIS, Analyses, ModelAnalysis
+from app.solids.analysis_process import Analysing
 from app.solids.builds import Builds
-from app.solids.finding import Analysing
-from app.solids.healing import Healing
 from app.solids.models import BUILD, ModelBuild, Models
+from app.solids.repair import Healing
 from app.storage.artifacts import Artifacts
-from app.storage.connecting import opened_database
+from app.storage.connection import opened_database
 from app.storage.database import Database
 from app.storage.folder import DataFolder
-from app.storage.opening import Figures, opened_store
 from app.storage.ownership import claim
-from app.studies.assembly import assemble_studies
-from app.studies.running import LANES, Parts
-from app.studies.solid_making import SolidMaking
-from app.tolerances.process import analysed
-from app.workers import ahead
+from app.storage.stores import Figures, opened_store
+from app.studies.run import LANES, StudyServices
+from app.studies.solids import SolidMaking
+from app.tolerances.answer import analysed
+from app.workers import prefork
 from app.workers.base import Limits, Worker
+from app.workers.choice import started_workers
 from app.workers.light import CHECKS
 from app.workers.local import LocalProcesses
-from app.workers.started import started_workers
 from app.worksheets.importing.service import IMPORT, Imports
-from app.worksheets.published import Published
+from app.worksheets.publication import Published
 from app.worksheets.service import Worksheets
 from cad.catalogue import models as find_models
 
 if TYPE_CHECKING:
     from app.observation.traces import Traces
 
+
+from app.studies.conclude import Concluding
+from app.studies.repair import ChunkRepair
+from app.studies.run import STUDY, Studying
+from app.studies.service import Studies
+from app.studies.variant_design import Building
+
 NETWORK = (
     "app.designs.engine.net",
     "app.impact.process",
-    "app.studies.planning",
-    "app.studies.searching",
+    "app.studies.plan",
+    "app.studies.search_slice",
     "app.studies.sensitivities",
 )
 """Modules loaded by processes that calculate rows of designs."""
-SHEETS = ("app.worksheets.checking",)
+SHEETS = ("app.worksheets.check",)
 """Modules loaded by all calculation processes, to read worksheets."""
 FIGURES = Figures(metrics.bucket_asked, metrics.copy_looked_for)
 
@@ -97,7 +103,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     retention = Retention(database, store, settings)
     retention.start()
     stack.callback(retention.stop)
-    stack.callback(ahead.close)
+    stack.callback(prefork.close)
     workers = started_workers(settings, stack)
     catalogues = find_catalogues(settings, workers.here)
     stack.callback(catalogues.close)
@@ -108,17 +114,17 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     sealer = Sealer(database)
     sealer.start()
     stack.callback(sealer.stop)
-    shelf = Shelf(database, catalogues, is_shared=database.is_shared)
-    shelf.start()
-    stack.callback(shelf.stop)
+    registry = ImportedModelRegistry(database, catalogues, is_shared=database.is_shared)
+    registry.start()
+    stack.callback(registry.stop)
     published = published_worksheets(database, catalogues, stack)
     calculations = assemble_calculations(settings, stack, catalogues, database, store, jobs, NETWORK, SHEETS)
-    recent = Recent()
+    calculation_cache = CalculationCache()
     programs = assembled_programs(settings, store)
     stack.callback(programs.close)
     builds = Builds(database, store, programs)
     analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
-    register_jobs(jobs, builds, analysing, catalogues, calculations, recent)
+    register_jobs(jobs, builds, analysing, catalogues, calculations, calculation_cache)
     about = database, catalogues, store, jobs, calculations.steps
     previews = Questions(PREVIEW, Previewed, preview, *about)
     decisions = Questions(DECISION, decisions_of.Asked, decisions_of.decided, *about)
@@ -128,14 +134,16 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     variant_details = Questions(VARIANT, WantedVariant, detailed, *about)
     for one in (previews, decisions, impacts, solving, tolerances, variant_details):
         jobs.register(one.kind, one, one.failed, lane=CALCULATION)
-    designs = Designs(database, jobs, catalogues, recent)
+    designs = Designs(database, jobs, catalogues, calculation_cache)
     solids = SolidMaking(database, builds, analysing, settings.workers)
-    parts = Parts(database, store, catalogues, calculations.pool, jobs, calculations.steps, solids)
-    studies = assemble_studies(parts, designs)
+    of_studies = StudyServices(
+        database, store, catalogues, calculations.pool, jobs, calculations.steps, solids
+    )
+    studies = assemble_studies(of_studies, designs)
     worksheets = Worksheets(database, catalogues, calculations.pool, published)
     imports = Imports(database, store, jobs, catalogues, worksheets)
     jobs.register(IMPORT, imports, imports.failed)
-    model_imports = ModelImports(database, store, jobs, catalogues, programs, shelf)
+    model_imports = ModelImports(database, store, jobs, catalogues, programs, registry)
     jobs.register(MODEL_IMPORT, model_imports, model_imports.failed)
     jobs.start({**calculations.lanes, **LANES})
     stack.callback(jobs.stop)
@@ -222,14 +230,31 @@ def register_jobs(
     analysing: Analysing,
     catalogues: Catalogues,
     calculations: Calculations,
-    recent: Recent,
+    calculation_cache: CalculationCache,
 ) -> None:
     """Say what carries out each kind of job."""
     regeneration = Regeneration(
-        builds.database, builds, analysing, catalogues, calculations.steps, recent, problems.describe
+        builds.database,
+        builds,
+        analysing,
+        catalogues,
+        calculations.steps,
+        calculation_cache,
+        problems.describe,
     )
     jobs.register(REGENERATE, regeneration, regeneration.failed)
     jobs.register(REGENERATE_SLOWLY, regeneration, regeneration.failed, is_slow=True)
     jobs.register(CALCULATE, regeneration, regeneration.failed, lane=CALCULATION)
     jobs.register(BUILD, ModelBuild(builds, catalogues))
     jobs.register(ANALYSIS, ModelAnalysis(builds, analysing, catalogues), is_slow=True)
+
+
+def assemble_studies(services: StudyServices, designs: Designs) -> Studies:
+    """Return the service of studies, its handler registered."""
+    conclude = Concluding(Building(services, designs))
+    repair = ChunkRepair(services, conclude)
+    handler = Studying(services, conclude, repair.heal)
+    services.jobs.register(STUDY, handler, handler.failed, lane=STUDY)
+    return Studies(
+        services.database, services.store, services.jobs, services.catalogues, designs, repair.lost
+    )

@@ -13,61 +13,60 @@ from typing import TYPE_CHECKING
 from fastapi import FastAPI, Response
 from fastapi_offline import FastAPIOffline
 
-from app.api import docs, problems
-from app.api.description import describe_interface, operation_id
-from app.api.gate import guard, observing, roles
-from app.api.gate.access import Access
-from app.api.gate.heads import HeadLimit
-from app.api.gate.pacing import Pace
-from app.api.gate.stopping import StoppingAnswer
-from app.api.gate.timeouts import BodyTime
-from app.api.reading import BodyLimit, BodyTooLarge, HeadTooLarge, HttpError
-from app.api.routes import health
-from app.api.routes.analyses import router as analyses
-from app.api.routes.approvals import router as approvals
-from app.api.routes.audit import router as audit
-from app.api.routes.brought_models import router as brought_models
-from app.api.routes.calculations import router as calculations
-from app.api.routes.calculations import worksheets
-from app.api.routes.catalogue import router as faults
-from app.api.routes.comparisons import router as comparisons
-from app.api.routes.curves import router as curves
-from app.api.routes.decisions import router as decisions
-from app.api.routes.design_events import router as design_events
-from app.api.routes.design_files import router as design_files
-from app.api.routes.designs import router as designs
-from app.api.routes.designs import saves
-from app.api.routes.evaluations import router as answers
-from app.api.routes.film_pressure import router as film_pressure
-from app.api.routes.impact import router as impact
-from app.api.routes.jobs import router as jobs
-from app.api.routes.labels import router as labels
-from app.api.routes.library import router as library
-from app.api.routes.models import router as models
-from app.api.routes.networks import router as networks
-from app.api.routes.principals import router as principals
-from app.api.routes.reports import router as reports
-from app.api.routes.revisions import router as revisions
-from app.api.routes.solid_fields import router as solid_fields
-from app.api.routes.solving import router as solving
-from app.api.routes.spreadsheet_lines import router as spreadsheet_lines
-from app.api.routes.studies import router as studies
-from app.api.routes.study_tables import router as study_tables
-from app.api.routes.templates import router as catalogue
-from app.api.routes.tolerances import router as tolerances
-from app.api.routes.variant_sheets import by_type as sheets_by_type
-from app.api.routes.variant_sheets import router as variant_sheets
-from app.api.routes.variants import router as variants
-from app.api.routes.worksheet_imports import router as worksheet_imports
-from app.api.routes.worksheets import router as written_worksheets
+from app.approvals.routes import router as approvals
 from app.assembly import assemble
+from app.calculations.routes.curves import router as curves
+from app.calculations.routes.evaluate import router as calculations
+from app.calculations.routes.evaluate import worksheets
+from app.calculations.routes.evaluations import router as answers
+from app.calculations.routes.film_pressure import router as film_pressure
+from app.calculations.routes.spreadsheet_lines import router as spreadsheet_lines
+from app.catalogue.routes.faults import router as faults
+from app.catalogue.routes.library import router as library
+from app.catalogue.routes.templates import router as catalogue
+from app.designs.routes.comparison import router as comparisons
+from app.designs.routes.decision import router as decisions
+from app.designs.routes.designs import router as designs
+from app.designs.routes.designs import saves
+from app.designs.routes.events import router as design_events
+from app.designs.routes.files import router as design_files
+from app.designs.routes.labels import router as labels
+from app.designs.routes.network import router as networks
+from app.designs.routes.revisions import router as revisions
+from app.designs.routes.solid_fields import router as solid_fields
+from app.designs.routes.solution import router as solving
+from app.designs.routes.variant_sheets import by_type as sheets_by_type
+from app.designs.routes.variant_sheets import router as variant_sheets
+from app.designs.routes.variants import router as variants
+from app.http import guard, openapi, problems, request_log, roles
+from app.http.access import Access
+from app.http.heads import HeadLimit
+from app.http.openapi import describe_interface, operation_id
+from app.http.pace import Pace
+from app.http.problems import StoppingAnswer
+from app.http.server import on_stop_signal
+from app.http.strict_requests import BodyLimit, BodyTooLarge, HeadTooLarge, HttpError
+from app.http.timeouts import BodyTime
 from app.identity.errors import IdentityError
-from app.jobs.shutdown import on_stop_signal
+from app.identity.routes.audit import router as audit
+from app.identity.routes.principals import router as principals
+from app.impact.routes import router as impact
+from app.imported_models.routes import router as brought_models
+from app.jobs.routes import router as jobs
+from app.observation.routes import router as health
+from app.reports.routes import router as reports
 from app.schemas.problems import PROBLEM_CONTENT
 from app.settings import Settings
 from app.settings.hosts import Hosts
+from app.solids.routes.analyses import router as analyses
+from app.solids.routes.models import router as models
 from app.storage.errors import DatabaseUnavailable
+from app.studies.routes.studies import router as studies
+from app.studies.routes.tables import router as study_tables
+from app.tolerances.routes import router as tolerances
 from app.web import assembly as pages
+from app.worksheets.routes.imports import router as worksheet_imports
+from app.worksheets.routes.worksheets import router as written_worksheets
 
 if TYPE_CHECKING:
     from app.observation.traces import Traces
@@ -156,10 +155,10 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     )
     for router in ROUTERS:
         app.include_router(router)
-    app.include_router(health.router)
+    app.include_router(health)
     app.include_router(problems.router)
     problems.install(app)
-    docs.install(app)
+    openapi.install(app)
     pages.install(app)
     roles.install(app)
     app.add_middleware(Access, refuse=_refused)
@@ -169,10 +168,10 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.add_middleware(StoppingAnswer)
     guard.install(app, Hosts(chosen.allowed_hosts, chosen.host), _refused)
     if traces is not None:
-        from app.api.gate import tracing
+        from app.http import request_spans
 
-        tracing.install(app, traces)
-    observing.install(app)  # the outermost: it sees what the others refuse
+        request_spans.install(app, traces)
+    request_log.install(app)  # the outermost: it sees what the others refuse
     app.openapi = partial(describe_interface, app)  # type: ignore[method-assign]
     return app
 

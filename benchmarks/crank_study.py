@@ -23,10 +23,10 @@ import matplotlib as mpl
 import matplotlib.pyplot as plt
 from PIL import Image
 
+from app.calculations.schemas.evaluations import UsedInput
 from app.cli.demonstration import service
 from app.client import Client
-from app.schemas.designs import Design
-from app.schemas.evaluations import UsedInput
+from app.designs.schemas.designs import Design
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE, PICTURE = DOCS / "crank_study.md", DOCS / "pictures" / "crank_study.png"

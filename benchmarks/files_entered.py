@@ -53,7 +53,7 @@ class Files:
 
 def change_to_step(root: Path = ROOT) -> Files:
     """Return the files that a change enters, from the merge patch to the checked STEP file."""
-    from app.designs.schemas import PAPER
+    from app.designs.bodies import PAPER
 
     with _profiled(root) as calls, TemporaryDirectory() as folder, ExitStack() as stack:
         bench = Bench(Path(folder), stack)
@@ -74,7 +74,7 @@ def scale(turn: int) -> dict[str, Any]:
 
 def changed_step(root: Path = ROOT) -> Files:
     """Return the files that a PATCH of one closed-form step enters, with HTTP."""
-    from app.designs.schemas import PAPER
+    from app.designs.bodies import PAPER
 
     document = {name: part for name, part in PAPER.items() if name != "model"}
     with _profiled(root) as calls, TemporaryDirectory() as folder, _server(Path(folder)) as http:
@@ -89,7 +89,7 @@ def changed_step(root: Path = ROOT) -> Files:
 
 def evaluation(root: Path = ROOT) -> Files:
     """Return the files that an evaluation of one template enters, with HTTP."""
-    from app.calculations.schemas import OIL_FILM
+    from app.calculations.bodies import OIL_FILM
 
     with _profiled(root) as calls, TemporaryDirectory() as folder, _server(Path(folder)) as http:
 
@@ -135,8 +135,8 @@ def _profiled(root: Path) -> Iterator[Calls]:
 @contextmanager
 def _server(folder: Path) -> Iterator[httpx.Client]:
     """Run the service in a thread of this process."""
+    from app.http.server import configuration
     from app.main import create_app
-    from app.server import configuration
     from app.settings import Settings
 
     settings = Settings(data=folder / "data")

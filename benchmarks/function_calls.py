@@ -74,15 +74,15 @@ class Bench:
     """The services that a change passes through, on a database in a folder of its own."""
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
-        from app.api import problems
-        from app.catalogue.finding import find_templates
+        from app.catalogue.discovery import find_templates
         from app.designs.graph import Catalogues
         from app.designs.regeneration import Regeneration
         from app.designs.service import Designs
+        from app.http import problems
         from app.jobs.service import Jobs
         from app.settings import Settings
+        from app.solids.analysis_process import Analysing
         from app.solids.builds import Builds
-        from app.solids.finding import Analysing
         from app.storage.artifacts import ArtifactStore
         from app.storage.database import Database
         from app.storage.migrations import migrate
@@ -147,7 +147,7 @@ def _folders(builds: type) -> list[tuple[()]]:
 
 def _recent(designs: Any) -> dict[str, Any]:
     """Return the results that saves leave for their jobs; version 0.1 left nothing."""
-    return {"recent": designs.recent} if hasattr(designs, "recent") else {}
+    return {"calculation_cache": designs.calculation_cache}
 
 
 def _once() -> Any:
@@ -158,7 +158,7 @@ def _once() -> Any:
 
 def document() -> dict[str, Any]:
     """Return the design that is changed."""
-    from app.designs.schemas import PAPER
+    from app.designs.bodies import PAPER
 
     parameters = {"inner_diameter": "= film.bearing_diameter", "width": "= film.bearing_width"}
     model = {"id": "plain_bearing", "version": 1, "parameters": parameters}

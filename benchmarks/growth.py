@@ -28,7 +28,7 @@ from typing import Any
 import httpx
 import numpy as np
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 from benchmarks.processor_time import used
 from benchmarks.speed.figures import processor_seconds
 from benchmarks.speed.servers import Server, commit, crankwright, machine

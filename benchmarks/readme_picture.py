@@ -15,11 +15,11 @@ import matplotlib as mpl
 import matplotlib.pyplot as plt
 from PIL import Image, ImageChops
 
+from app.calculations.schemas.evaluations import Output
 from app.cli.demonstration import service
 from app.client import Client
-from app.designs.schemas import PAPER
-from app.schemas.designs import Design
-from app.schemas.evaluations import Output
+from app.designs.bodies import PAPER
+from app.designs.schemas.designs import Design
 
 TARGET = Path(__file__).parents[1] / "docs" / "pictures" / "link.png"
 SHOWN = ("sommerfeld_number", "relative_eccentricity", "minimum_film_thickness")

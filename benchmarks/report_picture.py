@@ -19,7 +19,7 @@ import httpx
 from PIL import Image
 
 from app.cli.demonstration import service
-from app.designs.schemas import PAPER
+from app.designs.bodies import PAPER
 
 TARGET = Path(__file__).parents[1] / "docs" / "pictures" / "report_page.png"
 RESOLUTION = 84  # dots per inch

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from app.catalogue.catalogues import Catalogues
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
 from app.designs.document import Document
 from app.designs.engine.net import Net
 from app.reference import Reference

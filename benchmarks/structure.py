@@ -34,10 +34,12 @@ NOUNS = frozenset({"spring", "string", "bearing"})
 
 
 def layers() -> tuple[frozenset[str], ...]:
-    """Return the layers of `app` as the import contracts of `pyproject.toml` draw them, from the top down."""
+    """The layers of `app` as the import contracts of `pyproject.toml` draw them, from the top down."""
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
     (drawn,) = (one["layers"] for one in contracts if one["name"] == "the layers of app")
-    return tuple(frozenset(name.strip().removeprefix("app.") for name in layer.split("|")) for layer in drawn)
+    parts = [frozenset(name.strip().removeprefix("app.") for name in layer.split("|")) for layer in drawn]
+    place = parts.index(frozenset({"api"}))  # what routes share is right beneath them
+    return (*parts[:place], frozenset({"routes"}), *parts[place:])
 
 
 LAYERS = layers()
@@ -45,12 +47,17 @@ LAYERS = layers()
 
 
 def part_of(module: str) -> str:
-    """Return the part of `app` to which a module belongs: `app.designs.document` → `designs`."""
-    return module.split(".")[1]
+    """Return the part of `app` to which a module belongs: `app.designs.document` → `designs`.
+
+    The routes of all resources are one part: they stand above every room, though each is in the folder of its
+    resource.
+    """
+    part, *inside = module.split(".")[1:]
+    return "routes" if inside[:1] == ["routes"] and part != "web" else part
 
 
 def imports(path: Path) -> Iterator[str]:
-    """Yield the modules of `app` that a file imports, wherever in the file."""
+    """The modules of `app` that a file imports, wherever in the file."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and node.module:
             names = [f"{node.module}.{alias.name}" for alias in node.names]
@@ -60,7 +67,7 @@ def imports(path: Path) -> Iterator[str]:
 
 
 def arrows(app: Path = APP) -> Counter[tuple[str, str]]:
-    """Return how many imports lead from one part to another."""
+    """How many imports lead from one part to another."""
     counted: Counter[tuple[str, str]] = Counter()
     for path in sorted(app.rglob("*.py")):
         source = part_of("app." + ".".join(path.relative_to(app).with_suffix("").parts))
@@ -70,7 +77,7 @@ def arrows(app: Path = APP) -> Counter[tuple[str, str]]:
 
 
 def words(pattern: str, app: Path = APP) -> Counter[str]:
-    """Return how often a word that matches stands in each file, imports and comments included."""
+    """How often a word that matches stands in each file, imports and comments included."""
     counts = Counter[str]()
     for path in app.rglob("*.py"):
         count = len(re.findall(rf"\b(?:{pattern})\b", path.read_text(encoding="utf-8")))
@@ -89,7 +96,7 @@ def named(banned: Container[str], root: Path = APP) -> Counter[str]:
 
 
 def _given(node: ast.AST) -> str | None:
-    """Return the name that a node gives to something, if it gives one."""
+    """The name that a node gives to something, if it gives one."""
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
         return node.name.lower()
     if isinstance(node, ast.arg):
@@ -100,12 +107,12 @@ def _given(node: ast.AST) -> str | None:
 
 
 def rank(part: str) -> int:
-    """Return the layer of a part, counted from the top; the lowest for one that no layer names."""
+    """The layer of a part, counted from the top; the lowest for one that no layer names."""
     return next((number for number, layer in enumerate(LAYERS) if part in layer), len(LAYERS))
 
 
 def upward(counted: Counter[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Return the arrows that point to the same layer or to a higher one."""
+    """The arrows that point to the same layer or to a higher one."""
     return sorted(pair for pair in counted if rank(pair[1]) <= rank(pair[0]))
 
 

@@ -30,7 +30,7 @@ from one_analysis import share_one_analysis  # noqa: E402
 from patience import BUDGET, FACTOR, SLOW_TEST, TEST  # noqa: E402
 from seeds import CHOSEN, SEED, examples  # noqa: E402
 
-from app.workers import isolated  # noqa: E402
+from app.workers import processes  # noqa: E402
 
 share_one_analysis()  # before the routes of the program are imported
 
@@ -95,12 +95,12 @@ def pytest_collection_finish(session):
 @pytest.fixture
 def real_fork_servers(monkeypatch):
     """Fork servers are processes that import by themselves, as those of the program are."""
-    monkeypatch.setattr(isolated, "launch", forked.LAUNCH)
+    monkeypatch.setattr(processes, "launch", forked.LAUNCH)
 
 
 @pytest.fixture(scope="session", autouse=True)
 def forked_forkservers():
     """Fork servers of servers in this process need no seconds to begin: they are forked themselves."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(isolated, "launch", forked.launch_forkserver)
+        patch.setattr(processes, "launch", forked.launch_forkserver)
         yield

@@ -16,9 +16,9 @@ from pathlib import Path
 
 import origins
 
-from app.workers import isolated
+from app.workers import processes
 
-LAUNCH = isolated.launch  # the real one
+LAUNCH = processes.launch  # the real one
 LONG = ("app.calculations.warm", "cad.models")  # what takes seconds to import
 PRELOAD = ("app.cli.main", "app.cli.serve", *LONG, "analysed")
 
@@ -52,7 +52,7 @@ def run_command(request, errors: int, *descriptors: int) -> None:
     sys.argv = ["crankwright", *request["arguments"]]
     own = origins.own_origin(run)  # a descendant, so that its forks are seen to end with this process
     origins.origin = lambda function, preload: own
-    isolated.launch = launch_forkserver
+    processes.launch = launch_forkserver
     module, _, name = request["call"].partition(":")
     if module:
         sys.exit(getattr(importlib.import_module(module), name)(*request["arguments"], *descriptors))

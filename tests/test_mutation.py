@@ -35,7 +35,7 @@ def test_related_tests_are_few_and_none_of_the_pages():
 
 
 def test_a_server_is_stopped_where_the_table_of_slow_tests_says_so():
-    assert "tests/app/test_stopping.py" in related("app/jobs/shutdown.py")
+    assert "tests/app/test_stopping.py" in related("app/http/server.py")
 
 
 def row(key, outcome="survived", file="templates/core/x.py", text="a = b + c", after="a = b - c"):

@@ -9,8 +9,6 @@ from contextlib import suppress
 from fastapi import Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from app.api.gate.clients import get_client
-from app.api.gate.pacing import PiecesResponse
 from app.api.waiting import accepted, client_left, patience
 from app.calculations.errors import TooManyCalculations
 from app.calculations.jobs import CalculationJobs
@@ -18,6 +16,8 @@ from app.calculations.operations import LARGE, Question, answered, check, checke
 from app.calculations.pool import Calculation, CalculationPool
 from app.calculations.sources import source_of
 from app.catalogue.catalogues import Catalogues
+from app.http.clients import get_client
+from app.http.pace import PiecesResponse
 from app.workers.errors import JobCancelled
 from templates.core.errors import UnreleasedTemplate
 from templates.core.language.template import Template

@@ -11,44 +11,44 @@ from typing import Annotated
 from fastapi import Depends, Header, Query, Request
 
 from app.api.answering import Answering
-from app.api.gate.access import STILL
-from app.api.gate.clients import TheClient
-from app.api.readiness import Readiness
-from app.api.reading import fingerprint
 from app.api.resuming import Still, always
 from app.api.services import Services
 from app.api.threads import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import Approving
-from app.brought.service import ModelImports
 from app.calculations.steps import Caller, call_as
 from app.catalogue.catalogues import Catalogues
 from app.designs import decisions
 from app.designs.labels import Labelling
 from app.designs.preview import Previewed
 from app.designs.questions import Asked, Questions
+from app.designs.schemas.decision import Decision
+from app.designs.schemas.designs import Preview
+from app.designs.schemas.solution import DesignSolution
+from app.designs.schemas.variants import VariantDetail
 from app.designs.service import Designs
 from app.designs.variants.detail import WantedVariant
+from app.http.access import STILL
+from app.http.clients import TheClient
+from app.http.strict_requests import fingerprint
 from app.identity.service import Identity
 from app.impact import survey
+from app.impact.schemas import Impact
+from app.imported_models.service import ModelImports
 from app.jobs.service import Jobs
+from app.observation.readiness import Readiness
 from app.presentation.units import System
 from app.reports.paper import Press
 from app.reports.service import Reports
-from app.schemas.decisions import Decision
-from app.schemas.designs import Preview
-from app.schemas.impact import Impact
-from app.schemas.solve import DesignSolution
-from app.schemas.tolerances import ToleranceAnalysis
-from app.schemas.variants import VariantDetail
 from app.settings import Settings
 from app.solids.analyses import Analyses
-from app.solids.healing import Healing
 from app.solids.models import Models
+from app.solids.repair import Healing
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.studies.service import Studies
+from app.tolerances.schemas import ToleranceAnalysis
 from app.worksheets.importing.service import Imports
 from app.worksheets.service import Worksheets
 

@@ -12,16 +12,16 @@ from fastapi.responses import FileResponse
 from starlette.datastructures import Headers
 from starlette.types import Message, Receive, Scope, Send
 
-from app.api import problems
-from app.api.attachments import is_at_hand, unchanged
-from app.api.problem_kinds import REBUILDING
 from app.api.waiting import finished
+from app.http import problems
+from app.http.attachments import is_at_hand, unchanged
+from app.http.problem_kinds import REBUILDING
 from app.jobs.service import Jobs
 from app.schemas.problems import Responses, refusals
-from app.solids.healing import Healing, other_bytes
+from app.solids.repair import Healing, other_bytes
 from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
-from app.storage.verified import Opened, stamp_of
+from app.storage.verification import Opened, stamp_of
 
 RETRY_AFTER = 2  # s
 GONE = 410

@@ -8,10 +8,10 @@ from difflib import get_close_matches
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.approvals.schemas import Comment, CommentIn
 from app.designs import repository
-from app.identity.acting import acting
 from app.identity.audit import record
-from app.schemas.approvals import Comment, CommentIn
+from app.identity.principal import acting
 from app.storage.database import Database
 from app.storage.errors import NotFound
 from app.storage.idempotency import Once

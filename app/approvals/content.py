@@ -8,8 +8,9 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.approvals.errors import NotReady
+from app.approvals.schemas import Approval, Files, Present, Signed
 from app.designs.stored_results import results_of
-from app.schemas.approvals import ORDER, Approval, Files, Present, Signed
+from app.schemas.approval_steps import ORDER
 from app.solids import rows
 from app.storage.tables import ApprovalRow, RevisionRow, canonical_json
 

@@ -9,7 +9,7 @@ ApprovalError
 
 from __future__ import annotations
 
-from app.identity.acting import LOCAL
+from app.identity.principal import LOCAL
 
 
 class ApprovalError(Exception):

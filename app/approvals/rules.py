@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from app.approvals.errors import OutOfOrder, SamePrincipal
 from app.designs.releases import last_of
-from app.identity.acting import Principal, Role
 from app.identity.errors import RoleNeeded
-from app.schemas.approvals import ORDER, ApprovalState, Step
+from app.identity.principal import Principal, Role
+from app.schemas.approval_steps import ORDER, ApprovalState, Step
 from app.storage.tables import ApprovalRow, RevisionRow
 
 ROLES: dict[Step, Role] = {

@@ -7,12 +7,13 @@ from sqlalchemy.orm import Session
 from app.approvals.content import STEP, digest, present, require_files, shown, steps_taken, to_sign
 from app.approvals.errors import ApprovalError, NotReady, OtherDigest
 from app.approvals.rules import next_step, require_principal, require_turn, state_of
+from app.approvals.schemas import ApprovalIn, Approvals, Present, Released, Signed
 from app.designs import repository
 from app.designs.releases import NEWEST_RELEASED, newest_released
-from app.identity.acting import acting
 from app.identity.audit import record
 from app.identity.errors import RoleNeeded
-from app.schemas.approvals import ApprovalIn, Approvals, Present, Released, Signed, Step
+from app.identity.principal import acting
+from app.schemas.approval_steps import Step
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.idempotency import Once

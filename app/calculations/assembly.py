@@ -17,7 +17,7 @@ from app.observation import metrics
 from app.settings import Settings
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
-from app.workers import ahead
+from app.workers import prefork
 from app.workers.base import Limits
 from app.workers.pool import WarmProcesses
 
@@ -63,7 +63,7 @@ def assemble_calculations(
     of_designs = partial(WarmProcesses, network, spares=size)
     processes = (
         CalculationProcesses(of_designs)
-        if ahead.is_forked(network)
+        if prefork.is_forked(network)
         else CalculationProcesses(partial(WarmProcesses, light, spares=size), of_designs)
     )
     stack.callback(processes.close)

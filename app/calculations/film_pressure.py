@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from app.calculations.schemas.film_pressure import Field, FilmPressure
 from app.plain import JsonObject, Raw
 from app.schemas.answers import Quantity, Values
-from app.schemas.films import Field, FilmPressure
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.language.template import Array, Template, given
 from templates.physics.films.film_measures import measure

@@ -14,8 +14,8 @@ from pydantic import ValidationError
 from pydantic_core import from_json, to_json
 
 from app.calculations.array_files import MEDIA_TYPES, Form, npy
+from app.calculations.bodies import Asked, EvaluateIn, SolveIn
 from app.calculations.errors import InvalidBody
-from app.calculations.schemas import Asked, EvaluateIn, SolveIn
 from app.calculations.service import check_evaluate, check_solve, evaluated, run_evaluate, run_solve
 from app.calculations.sources import Source, loaded
 from app.calculations.worksheet import run_worksheet

@@ -21,7 +21,7 @@ from templates.core.progress import Reporter
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
 
-SHEETS = ("app.worksheets.checking", "app.worksheets.examining")
+SHEETS = ("app.worksheets.check", "app.worksheets.examination")
 LIGHT = ("app.calculations", "app.workers", *SHEETS, "templates")
 """Packages and modules of this program whose functions need no network of designs."""
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from app.calculations import rendering
+from app.calculations.bodies import EvaluateIn, SolveIn
 from app.calculations.errors import TooManyValues
-from app.calculations.schemas import EvaluateIn, SolveIn
 from app.calculations.size import points
 from app.plain import JsonObject
 from templates.core.language.evaluate import Evaluation, evaluate

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from app.calculations import operations  # noqa: F401 - what the processes run
-from app.catalogue.finding import find_templates
-from app.workers.scheduling import give_way
+from app.catalogue.discovery import find_templates
+from app.workers.priority import give_way
 
 
 def rehearse(has_come: Callable[[], bool]) -> None:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Container
 
 from app.calculations import rendering
-from app.calculations.schemas import EvaluateIn
+from app.calculations.bodies import EvaluateIn
+from app.calculations.schemas.evaluations import Worksheet
 from app.calculations.service import evaluated
 from app.plain import JsonObject
 from app.presentation.units import System, shown_unit
-from app.schemas.evaluations import Worksheet
 from templates.core.language.evaluate import Evaluation
 from templates.core.language.template import Template
 from templates.core.paper import report

@@ -15,8 +15,8 @@ from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
-from app.catalogue.checking import Check
-from app.catalogue.finding import find_templates
+from app.catalogue.check import Check
+from app.catalogue.discovery import find_templates
 from app.catalogue.sheets import Key, Sheets
 from app.catalogue.team import Snapshot, TeamFile, TeamFiles, joined, merged, with_models
 from app.workers.errors import WorkerError

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from app.catalogue.checking import Check, loaded_or_faulty
+from app.catalogue.check import Check, loaded_or_faulty
 from app.catalogue.sheets import Key, Sheets
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue

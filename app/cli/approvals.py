@@ -6,11 +6,11 @@ from pathlib import Path
 
 import click
 
+from app.approvals.schemas import Block
 from app.cli.connections import connected, data_option, url_option
 from app.client import Client
 from app.reports.verification import Line, NotReport, read_block, verify
-from app.schemas.approvals import ORDER, Step
-from app.schemas.signatures import Block
+from app.schemas.approval_steps import ORDER, Step
 from templates.core.errors import plain
 
 

@@ -15,7 +15,7 @@ from app.identity.audit_rows import AuditFilter
 from app.maintenance.errors import CannotRun
 from app.maintenance.folder import database_file
 from app.settings import Settings
-from app.storage.connecting import require_connection, require_database
+from app.storage.connection import require_connection, require_database
 from app.storage.engines import reading_engine, sqlite_file
 from app.storage.errors import StorageError
 from app.storage.migrations import refuse_unknown, schema_of

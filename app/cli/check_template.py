@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from app.catalogue.catalogues import loaded
-from app.catalogue.checking import CheckInProcess
+from app.catalogue.check import CheckInProcess
 from app.catalogue.team import TeamFile, TeamFiles, merged
 from app.settings import Settings
 from app.workers.base import Limits
@@ -17,7 +17,7 @@ from app.workers.local import LocalProcesses
 from cad.model import CadModel
 from templates.core.language.template import Template
 
-PRELOAD = ("cad.surfaces", "cad.model", "templates.core.checking.check", "app.catalogue.checking")
+PRELOAD = ("cad.surfaces", "cad.model", "templates.core.checking.check", "app.catalogue.check")
 
 
 @click.command("check-template")

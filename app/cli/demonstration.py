@@ -19,10 +19,10 @@ from pathlib import Path
 import click
 
 from app.client import Client
-from app.designs.schemas import PAPER
+from app.designs.bodies import PAPER
+from app.designs.schemas.designs import Design
 from app.plain import JsonObject
 from app.schemas.answers import Quantity
-from app.schemas.designs import Design
 from app.settings import Settings
 
 LOOPBACK = "127.0.0.1"

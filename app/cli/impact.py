@@ -9,8 +9,8 @@ from pathlib import Path
 import click
 
 from app.cli.connections import connected, data_option, url_option
+from app.impact.schemas import DesignImpact, Impact, VerdictMoved
 from app.presentation import numbers
-from app.schemas.impact import DesignImpact, Impact, VerdictMoved
 
 
 @click.command("impact")

@@ -13,12 +13,12 @@ from pathlib import Path
 
 import click
 
-from app.identity.acting import ROLES, Role
 from app.identity.errors import IdentityError
+from app.identity.principal import ROLES, Role
 from app.identity.rows import is_over
 from app.identity.service import Changes, Identity, Kind
 from app.settings import Settings
-from app.storage.connecting import require_connection
+from app.storage.connection import require_connection
 from app.storage.database import Database
 from app.storage.engines import sqlite_file
 from app.storage.errors import DataFolderInUse, StorageError

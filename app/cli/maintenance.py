@@ -20,7 +20,7 @@ from app.settings import Settings
 from app.storage.engines import sqlite_file
 from app.storage.errors import DataFolderInUse
 from app.storage.folder import DataFolder
-from app.storage.opening import is_bucket
+from app.storage.stores import is_bucket
 
 CLEAN, FAULTS, CANNOT_RUN = 0, 1, 2
 
@@ -122,7 +122,7 @@ def _team_url(settings: Settings) -> str | None:
 def _check(settings: Settings, *, in_use: bool) -> Findings:
     files = files_of(settings)
     if url := _team_url(settings):
-        from app.maintenance.shared import check_shared  # PostgreSQL, which the other commands do without
+        from app.maintenance.team_check import check_shared  # PostgreSQL, which the other commands do without
 
         findings = check_shared(url, files)
     else:

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from app.cli.connections import connected, data_option, url_option
-from app.schemas.brought import BroughtParameter
+from app.imported_models.schemas import BroughtParameter
 from templates.core.errors import plain
 
 

@@ -6,22 +6,22 @@ from pathlib import Path
 
 import click
 
-from app import server
 from app.assembly import NETWORK, SHEETS
 from app.calculations.assembly import PRELOAD
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
 from app.cli.keys import asks_for_keys
+from app.http import server
 from app.main import create_app
 from app.plain import JsonObject
 from app.settings import Settings
 from app.settings.hosts import is_loopback
 from app.settings.machines import LOCAL
-from app.storage.connecting import require_answer
+from app.storage.connection import require_answer
 from app.storage.errors import StorageError
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
 from app.storage.ownership import require_own_store
-from app.workers import ahead
+from app.workers import prefork
 from app.workers.light import CHECKS
 from app.workers.local import KERNEL
 from cad import on_demand
@@ -42,10 +42,10 @@ def fork_ahead(settings: Settings) -> None:
     find_templates(())
     models()
     if settings.engine == LOCAL:
-        ahead.fork(KERNEL, on_demand.load)
+        prefork.fork(KERNEL, on_demand.load)
     if settings.template_folders:
-        ahead.fork(CHECKS)
-    ahead.fork((*PRELOAD, *SHEETS, *NETWORK))
+        prefork.fork(CHECKS)
+    prefork.fork((*PRELOAD, *SHEETS, *NETWORK))
 
 
 @click.command("serve")

@@ -14,7 +14,7 @@ from app.cli.connections import connected, data_option, url_option
 from app.client import Client
 from app.client.studies import ClientStudy, Kind
 from app.plain import JsonObject
-from app.schemas.studies import Study
+from app.studies.schemas import Study
 
 _NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
 _INTERVAL = re.compile(rf"({_NUMBER})\s*([^.]*?)\s*\.\.\s*({_NUMBER})\s*(.*?)/([0-9]{{1,7}})")

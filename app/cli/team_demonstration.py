@@ -15,7 +15,7 @@ import click
 
 from app.cli.demonstration import MAPPED, build_of, changed, created, dimensions_of
 from app.client import Client
-from app.schemas.designs import Design
+from app.designs.schemas.designs import Design
 from app.team.errors import DidNotStart, Missing
 from app.team.parts import running
 

@@ -17,8 +17,8 @@ import numpy as np
 from app.cli import start  # noqa: F401  # before all that imports Pint
 
 # isort: split
-from app.calculations.arguments import argument
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
+from app.cli.arguments import argument
 from app.plain import Raw
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile

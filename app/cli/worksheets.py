@@ -13,8 +13,8 @@ import click
 
 from app.cli.connections import connected, data_option, url_option
 from app.client import Client
-from app.schemas.worksheet_imports import ImportedRegion
-from app.schemas.worksheets import Sheet, SheetCheck, SheetSummary
+from app.worksheets.schemas.imports import ImportedRegion
+from app.worksheets.schemas.worksheets import Sheet, SheetCheck, SheetSummary
 from templates.core.errors import plain
 
 OPEN = ("draft", "tested", "reviewed")

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from app.approvals.schemas import Approvals, Comment, CommentList, Released
 from app.client.design_operations import once
 from app.client.exchange import Exchange, answered, get, listed, post
-from app.schemas.approvals import Approvals, Comment, CommentList, Released, Step
+from app.schemas.approval_steps import Step
 
 
 def approvals(id: str, revision: int) -> Exchange[Approvals]:

@@ -23,10 +23,9 @@ from app.client.exchange import (
     written,
 )
 from app.client.problem import checked
-from app.presentation.units import System
-from app.schemas.comparisons import Comparison
-from app.schemas.decisions import Decision
-from app.schemas.designs import (
+from app.designs.schemas.comparison import Comparison
+from app.designs.schemas.decision import Decision
+from app.designs.schemas.designs import (
     Design,
     DesignList,
     DesignSummary,
@@ -40,8 +39,9 @@ from app.schemas.designs import (
     RevisionWorksheet,
     State,
 )
-from app.schemas.labels import Labels, TagList, TagUse
-from app.schemas.networks import DesignNetwork
+from app.designs.schemas.labels import Labels, TagList, TagUse
+from app.designs.schemas.network import DesignNetwork
+from app.presentation.units import System
 
 
 class Wanted(TypedDict, total=False):

@@ -15,9 +15,9 @@ import httpx
 from pydantic import TypeAdapter
 
 from app.client.problem import Problem, checked
+from app.jobs.schemas import Job
 from app.plain import JsonObject
 from app.schemas.answers import Answer, Page
-from app.schemas.jobs import Job
 
 BASE = "/api/v1"
 ENDED = ("done", "failed", "cancelled")

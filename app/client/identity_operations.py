@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from app.client.exchange import BASE, Exchange, Request, answered, get, listed, post
-from app.schemas.identity import Key, KeyList, Me, NewKey, Principal, PrincipalList, Role, Usage
+from app.identity.schemas.principals import Key, KeyList, Me, NewKey, Principal, PrincipalList, Role, Usage
 
 _PATH = "/principals"
 

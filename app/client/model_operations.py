@@ -7,8 +7,8 @@ import uuid
 from app.client.exchange import BASE, Exchange, Progress, Request, answered, done, get, job_of
 from app.client.files import File
 from app.client.problem import checked
-from app.schemas.brought import DrawingProgram, DrawingPrograms, ModelOrigin
-from app.schemas.templates import CadModel
+from app.imported_models.schemas import DrawingProgram, DrawingPrograms, ModelOrigin
+from app.solids.schemas.models import CadModel
 
 _PATH = "/models"
 

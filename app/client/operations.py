@@ -12,6 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.calculations.array_files import NPY
+from app.calculations.schemas.curves import Curves
+from app.calculations.schemas.evaluations import Evaluation, Solution, Worksheet
+from app.catalogue.schemas.faults import FaultList, FaultyFile
+from app.catalogue.schemas.library import LibraryTable, LibraryTables, LibraryTableSummary
+from app.catalogue.schemas.templates import Template, TemplateList, TemplateSummary
 from app.client.design_operations import Wanted as Wanted
 from app.client.design_operations import auto_map as auto_map
 from app.client.design_operations import change as change
@@ -53,15 +58,10 @@ from app.client.questions import impact as impact
 from app.client.questions import solve_design as solve_design
 from app.client.questions import tolerance as tolerance
 from app.client.questions import upgrade as upgrade
+from app.jobs.schemas import Job
 from app.presentation.units import System
-from app.schemas.analyses import Analysis, Surface
-from app.schemas.catalogue import FaultList, FaultyFile
-from app.schemas.curves import Curves
-from app.schemas.evaluations import Evaluation, Solution, Worksheet
-from app.schemas.jobs import Job
-from app.schemas.library import LibraryTable, LibraryTables, LibraryTableSummary
-from app.schemas.solids import Build, Verification
-from app.schemas.templates import Template, TemplateList, TemplateSummary
+from app.solids.schemas.analyses import Analysis, Surface
+from app.solids.schemas.models import Build, Verification
 
 Values = Mapping[str, object]
 """Quantities by name: `"25 kN"`, `{"value": 25, "unit": "kN"}`, or a quantity of another answer."""

@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 
 from app.client.design_operations import change
 from app.client.exchange import Exchange, Progress, calculated, post
+from app.designs.schemas.designs import Design
+from app.designs.schemas.solution import DesignSolution
+from app.impact.schemas import Impact
 from app.presentation.units import System
-from app.schemas.designs import Design
-from app.schemas.impact import Impact
-from app.schemas.solve import DesignSolution
-from app.schemas.tolerances import ToleranceAnalysis
+from app.tolerances.schemas import ToleranceAnalysis
 
 
 def solve_design(

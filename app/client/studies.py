@@ -29,9 +29,9 @@ from app.client.exchange import (
 )
 from app.client.files import File
 from app.client.problem import Problem, checked
+from app.designs.schemas.designs import Design
 from app.schemas.criteria import Word
-from app.schemas.designs import Design
-from app.schemas.studies import Study, StudyList, StudyRow, StudyRows
+from app.studies.schemas import Study, StudyList, StudyRow, StudyRows
 
 Where = Word | Literal["refused"]
 """A choice of rows: by their worst verdict, or those without values."""

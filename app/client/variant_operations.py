@@ -24,9 +24,9 @@ from app.client.exchange import (
     written,
 )
 from app.client.files import File
+from app.designs.schemas.designs import Design
+from app.designs.schemas.variants import VariantDetail, VariantsOut
 from app.presentation.units import System
-from app.schemas.designs import Design
-from app.schemas.variants import VariantDetail, VariantsOut
 
 Table = Mapping[str, Mapping[str, object]]
 """Values by variant and place: `{"main_1": {"clearance": "55 um"}}`."""

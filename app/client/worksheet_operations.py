@@ -19,8 +19,8 @@ from app.client.exchange import (
     written,
 )
 from app.client.problem import checked
-from app.schemas.worksheet_imports import SheetImport
-from app.schemas.worksheets import Sheet, SheetCheck, SheetList, SheetSummary
+from app.worksheets.schemas.imports import SheetImport
+from app.worksheets.schemas.worksheets import Sheet, SheetCheck, SheetList, SheetSummary
 
 _PATH = "/worksheets"
 

@@ -14,8 +14,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from app.designs.network import Block, Graph
+from app.designs.schemas.designs import Proposal
 from app.reference import Reference
-from app.schemas.designs import Proposal
 from templates.core.language.spec import Choice, Curve, Profile, Table, Text
 from templates.core.units.units import compatible, unit
 

@@ -10,9 +10,9 @@ from sqlalchemy.orm import Session
 
 from app.designs import repository
 from app.designs.differences import differing, differing_texts, leaves
+from app.designs.schemas.comparison import Comparison, Side, VerdictChange, VerdictOf
 from app.plain import Json, JsonObject
 from app.presentation import numbers
-from app.schemas.comparisons import Comparison, Side, VerdictChange, VerdictOf
 from app.solids import measures, rows
 from app.storage.tables import RevisionRow
 

@@ -14,12 +14,12 @@ from app.designs.engine.decision import Climb, ClimbResult, Trial
 from app.designs.engine.verdicts import Verdicts
 from app.designs.graph import build_graph, raise_if
 from app.designs.questions import Reply
+from app.designs.schemas.decision import Decision, Tried
 from app.designs.starting import settled, starts
 from app.designs.stored_solids import analysed, built
 from app.plain import JsonObject, Raw
 from app.presentation.units import System
 from app.schemas.answers import Quantity
-from app.schemas.decisions import Decision, Tried
 from app.storage.database import Database
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_names
 from templates.core.units.quantity import read

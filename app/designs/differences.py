@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from app.designs.schemas.comparison import Compared, ComparedValue, TextChange
 from app.plain import Json, JsonObject
 from app.schemas.answers import Quantity
-from app.schemas.comparisons import Compared, ComparedValue, TextChange
 from templates.core.errors import FaultyText
 from templates.core.units.tolerance import KEYS
 from templates.core.units.units import Unit, unit

@@ -22,7 +22,7 @@ from pydantic import (
 
 from app.designs.variants.names import MOST_OVERRIDES, MOST_VARIANTS, PLACE, natural
 from app.plain import Json, JsonObject, Raw
-from app.schemas.bounded import Bounded, at_most
+from app.schemas.bounds import Bounded, at_most
 from app.schemas.values import Given, Limits
 from app.solids.questions import Options
 

@@ -16,9 +16,9 @@ from app.designs.analyses import measured_names, measured_unit
 from app.designs.graph import build_graph
 from app.designs.network import LIMITS, Block, Cell, Graph
 from app.designs.reading import read_document, resolved
+from app.designs.schemas.network import DesignNetwork, NetworkBlock, NetworkName, NetworkRelation
 from app.plain import Raw
 from app.reference import Reference
-from app.schemas.networks import DesignNetwork, NetworkBlock, NetworkName, NetworkRelation
 from app.storage.tables import canonical_json
 from templates.core.language.spec import Choice, Declaration
 from templates.core.units.relation import is_relation

@@ -7,9 +7,9 @@ from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import Verdicts
 from app.designs.explain_criterion import explain_any
+from app.designs.schemas.designs import Explanation
 from app.designs.sensitivities import Asked, sensitivities
 from app.presentation.units import System
-from app.schemas.designs import Explanation
 
 
 def explained(

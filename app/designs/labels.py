@@ -16,11 +16,11 @@ from app.designs.news import note_revision
 from app.designs.reading import read_document
 from app.designs.repository import Written
 from app.designs.results import ModelState
+from app.designs.schemas.labels import MOST_TAGS, Labels, Tag, TagUse
 from app.designs.service import Designs, Saved
 from app.identity.audit import record
 from app.plain import JsonObject, Raw
-from app.schemas.bounded import Bounded
-from app.schemas.labels import MOST_TAGS, Labels, Tag, TagUse
+from app.schemas.bounds import Bounded
 from app.storage.idempotency import Once
 from app.storage.identity import now
 from app.storage.tables import DesignRow, DesignTagRow, RevisionRow

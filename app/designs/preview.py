@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from app.calculations.criteria import rendered
+from app.calculations.schemas.evaluations import Output
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, results, tolerances
 from app.designs.document import Document, merge
@@ -17,6 +18,7 @@ from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph, raise_if
 from app.designs.questions import Reply
 from app.designs.reading import read_document, resolved
+from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, Status
 from app.designs.starting import starts
 from app.designs.stored_solids import analysed, built
 from app.designs.variants.calculating import checked
@@ -26,12 +28,10 @@ from app.designs.variants.together import Available
 from app.designs.worksheet import previewed
 from app.plain import JsonObject
 from app.presentation.units import System
-from app.schemas.analyses import AnalysisOutput
 from app.schemas.answers import Shown, Warning
-from app.schemas.designs import Change, ParameterChange, Preview, RevisionStep, Status
-from app.schemas.evaluations import Output
 from app.solids import measures
 from app.solids.analysis_views import output as analysis_output
+from app.solids.schemas.analyses import AnalysisOutput
 from app.storage.database import Database
 from templates.core.errors import Fault
 from templates.core.judging.judgement import Judgement

@@ -11,13 +11,13 @@ from app.calculations.steps import Steps, calling
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository
 from app.designs.analyses import measured_unit
+from app.designs.calculation_cache import CalculationCache, Prepared
 from app.designs.document import Document, Iteration
 from app.designs.engine.calculate import calculate, resume
 from app.designs.engine.calculation import Calculation
 from app.designs.errors import NotConverged
 from app.designs.graph import Graph, build_graph, raise_if
 from app.designs.naming import named
-from app.designs.recent import Prepared, Recent
 from app.designs.service import REGENERATE
 from app.designs.starting import starts
 from app.designs.stored_solids import analysed, built
@@ -29,8 +29,8 @@ from app.designs.variants.together import Available, together
 from app.jobs.service import Completion, Job, JobContext, JobFailed
 from app.plain import Json, JsonObject
 from app.reference import Reference
+from app.solids.analysis_process import Analysing
 from app.solids.builds import Builds
-from app.solids.finding import Analysing
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild
 from app.workers.errors import DeadlineExceeded, MemoryExceeded
@@ -55,12 +55,16 @@ class Regeneration:
         analysing: Analysing,
         catalogues: Catalogues,
         steps: Steps | None = None,
-        recent: Recent | None = None,
+        calculation_cache: CalculationCache | None = None,
         describe: Describe = plain_problem,
     ) -> None:
         self.describe = describe
         self.database, self.builds, self.catalogues = database, builds, catalogues
-        self.analysing, self.steps, self.recent = analysing, steps, recent or Recent()
+        self.analysing, self.steps, self.calculation_cache = (
+            analysing,
+            steps,
+            calculation_cache or CalculationCache(),
+        )
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
         """Regenerate the revision of a job; the completion attaches the results.
@@ -101,7 +105,7 @@ class Regeneration:
 
     def _prepared(self, plain: Mapping[str, Json]) -> Prepared:
         """A revision's document and its calculation: that of its save, or calculated again."""
-        if prepared := self.recent.find(plain):
+        if prepared := self.calculation_cache.find(plain):
             return prepared
         document = Document.model_validate(plain)
         graph, faults = build_graph(document, self.catalogues)

@@ -7,7 +7,7 @@ from collections.abc import Collection
 from sqlalchemy import bindparam, func, select
 from sqlalchemy.orm import Session, aliased
 
-from app.schemas.approvals import ORDER, Step
+from app.schemas.approval_steps import ORDER, Step
 from app.storage.errors import NotFound
 from app.storage.statements import Statement
 from app.storage.tables import ApprovalRow, RevisionRow

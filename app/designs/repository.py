@@ -17,8 +17,8 @@ from app.designs.errors import DesignReleased, StaleRevision
 from app.designs.filtering import DesignFilter, conditions
 from app.designs.releases import EVER_RELEASED, NEWEST_RELEASED
 from app.designs.results import ModelState
-from app.identity.acting import acting
 from app.identity.audit import record
+from app.identity.principal import acting
 from app.plain import JsonObject
 from app.storage.errors import NotFound
 from app.storage.identity import new_id, now

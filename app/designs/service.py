@@ -12,6 +12,7 @@ from app.calculations.steps import begun_steps
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, views
 from app.designs.automap import proposals
+from app.designs.calculation_cache import CalculationCache, Prepared
 from app.designs.document import Document, merge
 from app.designs.drives import network
 from app.designs.engine.calculate import calculate
@@ -21,8 +22,9 @@ from app.designs.explained import explained
 from app.designs.graph import Graph, build_graph, raise_if
 from app.designs.news import note_revision
 from app.designs.reading import read_document, resolved
-from app.designs.recent import Prepared, Recent
 from app.designs.repository import Written
+from app.designs.schemas.designs import Design, Explanation, Proposal
+from app.designs.schemas.network import DesignNetwork
 from app.designs.starting import starts
 from app.designs.stored_solids import analysed, built
 from app.designs.variants import stored as variants
@@ -33,8 +35,6 @@ from app.jobs.service import Jobs
 from app.plain import JsonObject, Raw
 from app.presentation.units import System
 from app.reference import Reference
-from app.schemas.designs import Design, Explanation, Proposal
-from app.schemas.networks import DesignNetwork
 from app.solids.ages import renew
 from app.storage.database import Database, Unit
 from app.storage.idempotency import Once
@@ -79,10 +79,14 @@ class Designs:
     """All changes of designs."""
 
     def __init__(
-        self, database: Database, jobs: Jobs, catalogues: Catalogues, recent: Recent | None = None
+        self,
+        database: Database,
+        jobs: Jobs,
+        catalogues: Catalogues,
+        calculation_cache: CalculationCache | None = None,
     ) -> None:
         self.database, self.jobs, self.catalogues = database, jobs, catalogues
-        self.recent = recent or Recent()
+        self.calculation_cache = calculation_cache or CalculationCache()
 
     def show(self, id: str, number: int | None = None) -> Design:
         """Return a design as of a revision, by default the newest.
@@ -265,7 +269,7 @@ class Designs:
             bool(outcomes) and any(outcome.is_deferred for outcome in outcomes)
         )
         if pending and not calculation.deferred:
-            self.recent.keep(plain, Prepared(document, calculation))
+            self.calculation_cache.keep(plain, Prepared(document, calculation))
         written = Written(plain, stored, variants.models(calculation, outcomes), state, note, action)
         return Draft(written, _kind(calculation.graph, is_deferred), is_deferred, begun_steps())
 

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from sqlalchemy.orm import Session
 
+from app.calculations.schemas.evaluations import UsedInput
 from app.designs import repository, views
+from app.designs.schemas.designs import Revision, RevisionModel, RevisionStep
 from app.presentation.numbers import rough
-from app.schemas.designs import Revision, RevisionModel, RevisionStep
-from app.schemas.evaluations import UsedInput
 from app.solids import analysis_rows
 from app.solids.shapes import shape_of
 from app.storage.errors import NotFound

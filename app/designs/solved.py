@@ -7,6 +7,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import ConfigDict, Field, StringConstraints
 
+from app.calculations.schemas.evaluations import Jump, TracedCurve
 from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document, Place
 from app.designs.engine.calculate import calculate
@@ -14,16 +15,15 @@ from app.designs.engine.net import Net
 from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph
 from app.designs.overriding import changed
+from app.designs.schemas.solution import DesignRoot, DesignSolution, Target
 from app.designs.solving import DesignRoots, Wanted, roots_of_design
 from app.designs.starting import starts
 from app.designs.tasks import DesignTask
 from app.designs.variants.table import applied
 from app.reference import Reference
 from app.schemas.answers import Quantity, Shown, Values, Warning
-from app.schemas.bounded import Bounded, at_most
+from app.schemas.bounds import Bounded, at_most
 from app.schemas.criteria import Word
-from app.schemas.evaluations import Jump, TracedCurve
-from app.schemas.solve import DesignRoot, DesignSolution, Target
 from app.schemas.values import Given
 from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.language.confirming import Root

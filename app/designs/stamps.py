@@ -9,9 +9,9 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.designs import repository, statements
-from app.identity.acting import LOCAL
+from app.identity.principal import LOCAL
 from app.plain import Json
-from app.schemas.approvals import ORDER
+from app.schemas.approval_steps import ORDER
 from app.solids import rows
 from app.storage.tables import ApprovalRow, PrincipalRow, RevisionModelRow
 from cad.model import material_named

@@ -17,9 +17,9 @@ from pydantic import TypeAdapter
 from sqlalchemy import Text, bindparam, select, type_coerce
 from sqlalchemy.orm import Session
 
-from app.schemas.analyses import ModelAnalysis
+from app.designs.schemas.designs import RevisionStep, Round
 from app.schemas.criteria import Criterion, Verdict
-from app.schemas.designs import RevisionStep, Round
+from app.solids.schemas.analyses import ModelAnalysis
 from app.storage.tables import JsonText, RevisionRow, canonical_json
 
 KEPT = 4 * 2**20  # characters of stored texts; their models take some ten times as many bytes

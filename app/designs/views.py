@@ -7,15 +7,15 @@ from collections.abc import Mapping
 from sqlalchemy.orm import Session
 
 from app.designs import releases, repository, tolerances
+from app.designs.schemas.designs import Design, DesignSummary, ModelMeasurements, Revision
 from app.designs.stored_results import results_of
 from app.designs.variants.names import natural
 from app.identity.rows import names
+from app.identity.schemas.principals import Author
 from app.plain import JsonObject
-from app.schemas.analyses import ModelAnalysis
-from app.schemas.designs import Design, DesignSummary, ModelMeasurements, Revision
-from app.schemas.identity import Author
 from app.solids import measures, rows
 from app.solids.models import File
+from app.solids.schemas.analyses import ModelAnalysis
 from app.storage.errors import NotFound
 from app.storage.tables import DesignRow, RevisionModelRow, RevisionRow
 

@@ -14,13 +14,13 @@ from app.calculations.cache import results as cache
 from app.calculations.cost import EXPENSIVE
 from app.calculations.errors import StepDeferred
 from app.calculations.rendering import identity
+from app.calculations.schemas.evaluations import UsedInput, WorkedFormula
 from app.calculations.steps import evaluated_step
 from app.calculations.worksheet import formulas
 from app.designs.engine.calculation import Calculation
+from app.designs.schemas.designs import PreviewedStep, Revision, RevisionStep, RevisionWorksheet
 from app.plain import JsonObject, Raw
 from app.presentation.units import System
-from app.schemas.designs import PreviewedStep, Revision, RevisionStep, RevisionWorksheet
-from app.schemas.evaluations import UsedInput, WorkedFormula
 from templates.core.catalogue.finding import Catalogue
 from templates.core.catalogue.loading import is_outside
 from templates.core.errors import TemplateError

@@ -8,7 +8,7 @@ import time
 from sqlalchemy import insert
 from sqlalchemy.orm import Session
 
-from app.identity.acting import acting
+from app.identity.principal import acting
 from app.storage.identity import now
 from app.storage.statements import Statement
 from app.storage.tables import AuditRow, Base

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from app.identity.acting import Principal
+from app.identity.principal import Principal
 
 
 class IdentityError(Exception):

@@ -9,8 +9,8 @@ from typing import Literal, cast
 from sqlalchemy import delete, exists, select
 from sqlalchemy.orm import Session
 
-from app.identity.acting import BUILT_IN, LOCAL, SYSTEM, Principal, Role
 from app.identity.keys import NO_HASH, is_same
+from app.identity.principal import BUILT_IN, LOCAL, SYSTEM, Principal, Role
 from app.storage.errors import NotFound
 from app.storage.identity import now
 from app.storage.tables import ApiKeyRow, PrincipalRow, SessionRow

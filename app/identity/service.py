@@ -11,7 +11,6 @@ from typing import Literal, TypeVar
 from sqlalchemy.orm import Session
 
 from app.identity import audit, rows, usage
-from app.identity.acting import BUILT_IN, ROLES, Principal, Role, acting
 from app.identity.door import Door
 from app.identity.errors import (
     FirstByCommand,
@@ -24,6 +23,7 @@ from app.identity.errors import (
 )
 from app.identity.keys import NewKey, digest, new_key
 from app.identity.limits import Limits, limits_of
+from app.identity.principal import BUILT_IN, ROLES, Principal, Role, acting
 from app.identity.usage import Used
 from app.settings import Settings
 from app.storage.database import Database

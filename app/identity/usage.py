@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from sqlalchemy import func, select, text
 from sqlalchemy.orm import Session
 
-from app.identity.acting import ACTING, BUILT_IN, client_of
 from app.identity.limits import LimitReached, Limits, limits_of, seconds_to_midnight, today
+from app.identity.principal import ACTING, BUILT_IN, LOCAL, acting_as, client_of
+from app.identity.rows import asked_by
 from app.settings import Settings
+from app.storage.database import Database
 from app.storage.tables import JobRow, PrincipalRow, StorageRow, UsageRow
 
 MIB = 2**20
@@ -103,3 +108,21 @@ def check(limits: Limits, used: Used, name: str) -> None:
     if used.bytes >= limits.storage_mb * MIB:
         amounts = f"{used.bytes / MIB:.0f} MiB of {limits.storage_mb:.0f} MiB of storage"
         raise LimitReached(f"{name} has used {amounts}, which neither waiting nor deletion restores", None)
+
+
+@contextmanager
+def working_for(database: Database, principal: str | None) -> Iterator[None]:
+    """Act for a principal by its id, and note how long that takes; LOCAL where nobody is named."""
+    if principal is None or principal in BUILT_IN:
+        with acting_as(LOCAL):
+            yield
+        return
+    with database.read() as session:
+        who = asked_by(session, principal)
+    start = time.monotonic()
+    try:
+        with acting_as(who):
+            yield
+    finally:
+        seconds = time.monotonic() - start
+        database.write(lambda session: note(session, who.id, seconds=seconds))

@@ -10,15 +10,15 @@ import numpy as np
 from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document
 from app.designs.variants.table import applied
-from app.impact.alone import outcome_alone
-from app.impact.answering import impact_of
+from app.impact.effect import impact_of
 from app.impact.forms import Form, Quantities, form_of
 from app.impact.outcome import Outcome
+from app.impact.schemas import DesignImpact
+from app.impact.single import outcome_alone
 from app.impact.solids import Solids
 from app.impact.task import Batch, DesignAt, upgraded
 from app.impact.together import Together
 from app.reference import Reference
-from app.schemas.impact import DesignImpact
 from templates.core.arrays import Array
 from templates.core.progress import report
 

@@ -15,14 +15,14 @@ from app.designs.labels import key_of
 from app.designs.questions import Reply
 from app.designs.tasks import CatalogueTask
 from app.impact import repository
-from app.impact.answering import described, unfinished, unusable, used_steps
+from app.impact.bodies import ImpactIn
+from app.impact.effect import described, unfinished, unusable, used_steps
 from app.impact.process import Compared, compared
-from app.impact.ranking import rank
-from app.impact.schemas import ImpactIn
+from app.impact.schemas import DesignImpact, Impact
+from app.impact.severity import rank
 from app.impact.task import Batch, DesignAt, missing, uses
 from app.presentation.units import System
 from app.schemas.answers import Version
-from app.schemas.impact import DesignImpact, Impact
 from app.storage.database import Database
 from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
 

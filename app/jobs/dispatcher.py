@@ -11,7 +11,7 @@ from functools import partial
 
 from sqlalchemy.orm import Session
 
-from app.identity.working import working_for
+from app.identity.usage import working_for
 from app.jobs import repository
 from app.jobs.admission import Durations
 from app.jobs.context import JobContext, note
@@ -130,11 +130,11 @@ class Dispatcher:
         """Return the jobs that this server runs, as they were claimed."""
         return [running.job for running in list(self._running.values())]
 
-    def give_back_all(self, owner: str | None = None) -> None:
+    def requeue_all(self, owner: str | None = None) -> None:
         """Queue again all jobs that seem to run, or those of an owner, when none of them can be alive."""
 
         def unit(session: Session) -> None:
-            for job in repository.give_back_all(session, owner):
+            for job in repository.requeue_all(session, owner):
                 note(session, self._events, job, "queued")
 
         self._database.write(unit)
@@ -230,12 +230,12 @@ class Dispatcher:
                 self._progress.forget(job)
             self._complete(job, context, completion)
         except JobCancelled:
-            self._give_back(job, job.crashes)  # unless somebody has cancelled it: then it is no longer held
+            self._requeue(job, job.crashes)  # unless somebody has cancelled it: then it is no longer held
         except JobRests:
             self._rest(job)
         except (ArtifactsUnreachable, DatabaseUnavailable) as error:
             logger.warning("Job %s (%s) is queued again: %s", job.id, job.kind, error)
-            self._give_back(job, job.crashes)
+            self._requeue(job, job.crashes)
             self._stopping.wait(error.retry_after)
         except JobCrashed as error:
             self._crashed(job, context, error)
@@ -260,12 +260,12 @@ class Dispatcher:
     def _crashed(self, job: Job, context: JobContext, error: JobCrashed) -> None:
         """Try again: another process may have been to blame, such as one that took the machine's memory."""
         if self._stopping.is_set():  # its process was ended with the others
-            self._give_back(job, job.crashes)
+            self._requeue(job, job.crashes)
             return
         crashes = job.crashes + 1
         logger.warning("Job %s (%s) crashed, time %d: %s", job.id, job.kind, crashes, error)
         if crashes < MAX_CRASHES:
-            self._give_back(job, crashes)
+            self._requeue(job, crashes)
         else:
             self._fail(job, context, self._describe(error), crashes=crashes)
 
@@ -274,13 +274,13 @@ class Dispatcher:
         losses = job.losses + 1
         logger.warning("Job %s (%s) was lost, time %d: %s", job.id, job.kind, losses, error)
         if losses < MAX_LOSSES:
-            self._give_back(job, job.crashes, losses=losses)
+            self._requeue(job, job.crashes, losses=losses)
         else:
             self._fail(job, context, self._describe(JobLost(losses)), losses=losses)
 
-    def _give_back(self, job: Job, crashes: int, **more: int) -> None:
+    def _requeue(self, job: Job, crashes: int, **more: int) -> None:
         def unit(session: Session) -> None:
-            if repository.give_back(session, job, crashes, **more):
+            if repository.requeue(session, job, crashes, **more):
                 note(session, self._events, job, "queued")
 
         self._database.write(unit)

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from functools import cached_property
 
+from app.jobs.schemas import State
 from app.plain import JsonObject
-from app.schemas.jobs import State
 
 FINAL: frozenset[State] = frozenset({"done", "failed", "cancelled"})
 

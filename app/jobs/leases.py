@@ -61,7 +61,7 @@ class Leases:
         self._stopping.set()
         self._thread.join()
         try:
-            self._dispatcher.give_back_all(self._dispatcher.owner)
+            self._dispatcher.requeue_all(self._dispatcher.owner)
         except Exception:
             logger.exception("Jobs could not be given back; other servers take them when their leases end")
 

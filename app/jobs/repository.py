@@ -15,12 +15,12 @@ from typing import cast
 from sqlalchemy import bindparam, func, insert, or_, select, update
 from sqlalchemy.orm import Session
 
-from app.identity.acting import ACTING
+from app.identity.principal import ACTING
 from app.jobs.job import Job
+from app.jobs.schemas import State
 from app.jobs.turns import ALL_KINDS, LANES, UNFINISHED, Lane, next_turn
 from app.observation import logs
 from app.plain import JsonObject
-from app.schemas.jobs import State
 from app.storage.clock import operated, present
 from app.storage.identity import new_id, now
 from app.storage.locks import lock
@@ -181,7 +181,7 @@ def set_result(session: Session, id: str, link: str | None) -> None:
     _write(session, id, result=link)
 
 
-def give_back(session: Session, job: Job, crashes: int, **more: int) -> bool:
+def requeue(session: Session, job: Job, crashes: int, **more: int) -> bool:
     """Queue a claimed job again; return whether it was still held."""
     return _fenced(session, job, state="queued", crashes=crashes, **more, **_FREE)
 
@@ -193,7 +193,7 @@ def rest(session: Session, job: Job, lane: Lane) -> bool:
     return _fenced(session, job, state="queued", turn=turn, **_FREE)
 
 
-def give_back_all(session: Session, owner: str | None = None) -> list[Job]:
+def requeue_all(session: Session, owner: str | None = None) -> list[Job]:
     """Queue all running jobs again, or those of an owner, when none can be alive; return them."""
     running = update(JobRow).where(JobRow.state == "running")
     which = running if owner is None else running.where(JobRow.owner == owner)

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 from sqlalchemy.orm import Session
 
 from app.identity import usage
-from app.identity.acting import BUILT_IN, acting
 from app.identity.audit import record
 from app.identity.errors import NotOwn
 from app.identity.limits import Limits as PrincipalLimits
+from app.identity.principal import BUILT_IN, acting
 from app.jobs import repository, turns
 from app.jobs.admission import admit
 from app.jobs.context import JobContext, note
@@ -24,8 +24,8 @@ from app.jobs.events import Events
 from app.jobs.job import FINAL, Job
 from app.jobs.leases import Leases
 from app.jobs.progress import ProgressFollower
+from app.jobs.schemas import State
 from app.plain import JsonObject
-from app.schemas.jobs import State
 from app.settings import Settings
 from app.storage.clock import operated
 from app.storage.database import Database
@@ -102,7 +102,7 @@ class Jobs:
         if self._database.is_shared:
             self._leases.start()
         else:
-            self._dispatcher.give_back_all()
+            self._dispatcher.requeue_all()
         self._dispatcher.start(lanes or {})
         if self._database.is_shared:
             self._join_others()

@@ -13,7 +13,7 @@ from app.maintenance.rows import Named
 from app.settings import Settings
 from app.storage.artifacts import QUARANTINE, SHA256
 from app.storage.errors import ArtifactsUnreachable, StoreRefused
-from app.storage.opening import is_bucket, opened_bucket, shared_folder
+from app.storage.stores import is_bucket, opened_bucket, shared_folder
 
 if TYPE_CHECKING:
     from app.storage.s3 import Bucket

@@ -12,7 +12,7 @@ from sqlalchemy import Connection, create_engine, inspect, make_url, text
 from sqlalchemy.exc import OperationalError
 
 from app.maintenance.errors import CannotRun
-from app.maintenance.shared import Rows
+from app.maintenance.team_check import Rows
 from app.storage.migrations import known_schemas
 from app.storage.postgres_programs import postgres_program
 

@@ -9,30 +9,30 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TypeVar, TypeVarTuple
 
-from app.brought.programs import Programs, assembled
-from app.brought.shelf import Shelf
 from app.calculations.errors import InvalidBody, NoArray, TooManyValues
 from app.calculations.jobs import CALCULATION, place_of_answer, question_of
 from app.calculations.operations import answered
 from app.calculations.sources import source_of
 from app.catalogue.catalogues import Catalogues, loaded
+from app.imported_models.programs import Programs, assembled
+from app.imported_models.registry import ImportedModelRegistry
 from app.jobs import repository as jobs
 from app.maintenance.check import Findings, Say
 from app.maintenance.rows import Named
 from app.settings import Settings
 from app.solids import analysis_rows as analyses
+from app.solids.analysis_process import Analysing
 from app.solids.builds import Builds
-from app.solids.finding import Analysing
 from app.solids.shapes import shape_of
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, CannotRebuild
 from app.storage.folder import DataFolder
-from app.storage.opening import opened_store
+from app.storage.stores import opened_store
 from app.workers.base import Limits
 from app.workers.errors import WorkerError
 from app.workers.local import LocalProcesses
-from app.worksheets.published import Published
+from app.worksheets.publication import Published
 from cad.analysis.kinds import SURFACE
 from cad.errors import AnalysisError, GeometryError
 from cad.export import is_derived
@@ -82,7 +82,7 @@ class Repair:
         files = loaded(settings.template_folders)
         self.catalogues = Catalogues(files.templates, files.models)
         Published(database, self.catalogues, is_shared=False, at_once=math.inf)
-        Shelf(database, self.catalogues, is_shared=False)
+        ImportedModelRegistry(database, self.catalogues, is_shared=False)
         self.builds = Builds(database, store, programs)
         longest = Limits(settings.analysis_deadline, settings.analysis_memory_mb)
         self.analysing = Analysing(database, store, longest)

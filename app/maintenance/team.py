@@ -33,7 +33,7 @@ from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, ArtifactsUnreachable, StoreRefused
 from app.storage.folder import DataFolder
 from app.storage.migrations import known_schemas
-from app.storage.opening import opened_store
+from app.storage.stores import opened_store
 
 NO_STORE = (
     "CRANKWRIGHT_ARTIFACTS_URL is not set: servers on PostgreSQL keep files in a bucket, or in a folder that "

@@ -6,13 +6,13 @@ import re
 from dataclasses import dataclass
 from functools import lru_cache
 
+from app.calculations.schemas.evaluations import Output, UsedInput
 from app.plain import Raw
 from app.presentation import numbers
+from app.presentation.input_text import text_of
 from app.presentation.numbers import in_line
-from app.presentation.typed import text_of
-from app.schemas.analyses import AnalysisOutput
 from app.schemas.answers import Quantity, Shown, Values
-from app.schemas.evaluations import Output, UsedInput
+from app.solids.schemas.analyses import AnalysisOutput
 from templates.core.units.units import compatible, unit
 
 DIGITS_TYPED = 12  # of a number that a user typed: as many as are kept

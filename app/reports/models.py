@@ -7,7 +7,9 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from sqlalchemy.orm import Session
 
+from app.calculations.schemas.evaluations import CalculatedBy
 from app.designs import repository
+from app.designs.schemas.designs import RevisionModel
 from app.designs.solid_fields import SolidField
 from app.presentation import numbers
 from app.presentation.numbers import in_line
@@ -16,12 +18,10 @@ from app.reports.cells import NOTHING, cell, typed
 from app.reports.content import File, Line, Mapped, Model, PaintedField, Rule, Warned
 from app.reports.steps import class_of, relation_mathml, rules, symbol_of, version_of, words_of
 from app.reports.typesetting import DRAWING, PICTURE
-from app.schemas.analyses import AnalysisOutput, ModelAnalysis
 from app.schemas.answers import Quantity, Shown
-from app.schemas.designs import RevisionModel
-from app.schemas.evaluations import CalculatedBy
-from app.schemas.solids import Measurements
 from app.solids import measures, rows
+from app.solids.schemas.analyses import AnalysisOutput, ModelAnalysis
+from app.solids.schemas.models import Measurements
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError

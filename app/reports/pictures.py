@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
-from app.schemas.declared import Declared, properties
-from app.schemas.designs import RevisionStep
-from app.schemas.evaluations import Evaluated, Output, UsedInput
-from app.schemas.templates import Schema
+from app.calculations.schemas.evaluations import Evaluated, Output, UsedInput
+from app.catalogue.schemas.declarations import Declared, properties
+from app.catalogue.schemas.templates import Schema
+from app.designs.schemas.designs import RevisionStep
 
 FEWEST = 3  # points of a curve
 AXES = ("crank_angle",)  # of curves that say no other

@@ -7,13 +7,13 @@ from math import cos, pi, sin
 from types import SimpleNamespace
 from typing import NotRequired, TypedDict
 
+from app.calculations.schemas.evaluations import Output, UsedInput
+from app.designs.schemas.designs import PreviewedStep
 from app.presentation import numbers
 from app.reports.charts import Chart, Series, svg
 from app.reports.content import Plot
 from app.reports.pictures import Declaring, Picture, pictures
 from app.reports.throw_star import throw_star
-from app.schemas.designs import PreviewedStep
-from app.schemas.evaluations import Output, UsedInput
 from templates.core.language.levels import accuracy
 from templates.core.language.template import Template
 from templates.core.paper.schema import inputs_schema, outputs_schema

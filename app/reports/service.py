@@ -17,6 +17,7 @@ from sqlalchemy.orm import Session
 from app.approvals.content import shown, steps_taken
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, stamps, views
+from app.designs.schemas import designs as schemas
 from app.designs.solid_fields import fields_of
 from app.designs.variants.views import variants
 from app.designs.worksheet import worksheet
@@ -29,7 +30,6 @@ from app.reports.steps import step_of
 from app.reports.typesetting import DRAWING, PAINTED, PICTURE, SKETCH
 from app.reports.variants import variants_of
 from app.reports.verdict import judged
-from app.schemas import designs as schemas
 from app.schemas.answers import Quantity
 from app.solids import rows
 from app.solids.models import Models

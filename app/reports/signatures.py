@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from app.identity.acting import LOCAL
+from app.approvals.schemas import Approval, Block, BlockStep
+from app.identity.principal import LOCAL
+from app.identity.schemas.principals import Author
 from app.presentation.units import System
 from app.reports.cells import clean
 from app.reports.content import Signature, Signatures
-from app.schemas.approvals import ORDER, Approval, ApprovalState
-from app.schemas.identity import Author
-from app.schemas.signatures import Block, BlockStep
+from app.schemas.approval_steps import ORDER, ApprovalState
 
 ROLES = {"calculated": "Calculated", "checked": "Checked", "released": "Released", "withdrawn": "Withdrawn"}
 

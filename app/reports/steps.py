@@ -7,16 +7,16 @@ from dataclasses import replace
 from typing import NotRequired, TypedDict, TypeVar
 
 from app.calculations.rendering import identity
+from app.calculations.schemas.evaluations import CalculatedBy, Output, UsedInput, WorkedFormula
 from app.catalogue.catalogues import Catalogues
 from app.catalogue.sheets import ReleasedSheet
+from app.designs.schemas.designs import PreviewedStep
 from app.designs.worksheet import checked
 from app.plain import Raw
 from app.presentation import numbers
 from app.reports.cells import Cell, cell, flat, in_si, typed
 from app.reports.content import Formula, Identity, Line, Rule, Step, Warned
 from app.reports.plots import plots_of
-from app.schemas.designs import PreviewedStep
-from app.schemas.evaluations import CalculatedBy, Output, UsedInput, WorkedFormula
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.language.spec import Formula as DeclaredFormula

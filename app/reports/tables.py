@@ -15,13 +15,13 @@ from datetime import datetime
 from itertools import chain, count, zip_longest
 from typing import TYPE_CHECKING, cast
 
+from app.calculations.schemas.evaluations import Output, UsedInput
+from app.designs.schemas.designs import RevisionModel, RevisionStep, RevisionWorksheet
 from app.plain import Raw
+from app.presentation.input_text import text_of
 from app.presentation.spreadsheets import Value, harmless, put, without_illegal
-from app.presentation.typed import text_of
-from app.schemas.analyses import AnalysisOutput
 from app.schemas.answers import Shown
-from app.schemas.designs import RevisionModel, RevisionStep, RevisionWorksheet
-from app.schemas.evaluations import Output, UsedInput
+from app.solids.schemas.analyses import AnalysisOutput
 from templates.core.errors import FaultyText
 from templates.core.units.quantity import read_any
 from templates.core.units.relation import is_relation

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from app.designs.schemas.variants import VariantResult, VariantsOut
 from app.designs.variants.names import BASE
 from app.presentation import numbers
 from app.presentation.criteria import Line, line, tone
@@ -12,7 +13,6 @@ from app.reports.content import Columns, File, Judged, Solid, VariantLine, Varia
 from app.reports.typesetting import SKETCH
 from app.reports.verdict import governing_sentence, row_of
 from app.schemas.criteria import Criterion
-from app.schemas.variants import VariantResult, VariantsOut
 
 MOST_COLUMNS = 6  # of one table on paper, beside the names
 SIGNS = {"met": "met", "not_met": "NOT MET", "undecided": "undecided", "not_checked": "not checked"}

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from app.designs.schemas.designs import RevisionWorksheet
 from app.presentation.criteria import Line, headline_of, line, tone
 from app.reports.cells import clean
 from app.reports.content import Criterion, Judged
 from app.schemas import criteria as schemas
-from app.schemas.designs import RevisionWorksheet
 
 
 def judged(revision: RevisionWorksheet) -> Judged:

@@ -13,9 +13,8 @@ from itertools import pairwise
 from pydantic import ValidationError
 
 from app.approvals.content import hashed
+from app.approvals.schemas import ATTACHMENT, Approval, Approvals, Block, BlockStep
 from app.reports.signatures import moment
-from app.schemas.approvals import Approval, Approvals
-from app.schemas.signatures import ATTACHMENT, Block, BlockStep
 from templates.core.errors import plain
 
 LARGEST = 64 * 2**20  # bytes of a report that is read

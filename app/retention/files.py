@@ -6,10 +6,10 @@ import time
 from collections.abc import Callable, Iterable
 
 from app.retention.rows import referenced_files
-from app.storage.alone import alone
 from app.storage.artifacts import Artifacts, Stored
 from app.storage.copies_of_databases import require_only_copy
 from app.storage.database import Database
+from app.storage.locks import alone
 
 GRACE = 24 * 3600.0  # s
 

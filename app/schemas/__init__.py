@@ -1,1 +1,1 @@
-"""Building blocks of the Pydantic models of every domain."""
+"""What the Pydantic models of all resources are made of."""

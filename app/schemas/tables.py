@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import ConfigDict, Field
 
 from app.schemas.answers import Answer
-from app.schemas.bounded import Bounded
+from app.schemas.bounds import Bounded
 
 _STRICT = ConfigDict(strict=True, extra="forbid")
 

@@ -10,7 +10,7 @@ from typing import Annotated
 from pydantic import Field, JsonValue, WithJsonSchema
 from pydantic.config import JsonDict
 
-from app.schemas.bounded import at_most
+from app.schemas.bounds import at_most
 
 FORMS: list[JsonValue] = [
     {"type": "string", "minLength": 1},

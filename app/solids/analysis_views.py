@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from app.schemas.analyses import Analysis, AnalysisOutput, ModelAnalysis
 from app.schemas.answers import Version
 from app.solids.outputs import StoredOutput
 from app.solids.questions import Question, warnings
+from app.solids.schemas.analyses import Analysis, AnalysisOutput, ModelAnalysis
 from cad.analysis.kinds import SURFACE
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from app.plain import JsonObject
 from app.schemas.answers import Quantity, Triple, Values
-from app.schemas.solids import BoundingBox, Clearance, Inertia, Measurements
+from app.solids.schemas.models import BoundingBox, Clearance, Inertia, Measurements
 from cad.inspect import MEASURES
 from cad.model import CadModel
 from cad.overlaps import Clearance as Between

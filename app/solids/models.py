@@ -11,11 +11,10 @@ from sqlalchemy.orm import Session
 from app.catalogue.catalogues import Catalogues
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.schemas.answers import Shown, Version
-from app.schemas.solids import Build, BuildUse, Verification
 from app.solids import measures, rows
 from app.solids.ages import is_fresh, renew
 from app.solids.builds import Builds
-from app.solids.stated import statements
+from app.solids.schemas.models import Build, BuildUse, Stated, Verification
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild, NotFound
@@ -26,7 +25,7 @@ from cad.header import read_header
 from cad.model import CadModel
 from cad.regenerate import as_text, build_key
 from cad.stamp import is_copy
-from cad.statements import is_validated
+from cad.statements import UNITS, Value, compared, is_validated, read_statements
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
 
@@ -226,3 +225,33 @@ class ModelBuild:
         except FAILURES as error:
             raise JobFailed(error) from error
         return lambda session: f"/api/v1/builds/{key}"
+
+
+LONGEST = 200
+"""Letters of a text that an answer quotes: a client may send any file."""
+
+
+def statements(original: bytes, step: bytes) -> list[Stated]:
+    """Return every statement of a build's STEP file beside that of another file.
+
+    Equal bytes are read once.
+    """
+    expected = read_statements(original)
+    read = expected if step is original else read_statements(step)
+    return [
+        Stated(
+            kind=one.kind[:LONGEST],
+            name=one.name[:LONGEST],
+            unit=UNITS.get(one.kind),
+            expected=_quoted(one.expected),
+            stated=_quoted(one.stated),
+            agrees=one.agrees,
+        )
+        for one in compared(expected, read)
+    ]
+
+
+def _quoted(values: tuple[Value, ...] | None) -> list[Value] | None:
+    if values is None:
+        return None
+    return [value[:LONGEST] if isinstance(value, str) else value for value in values[:LONGEST]]

@@ -23,7 +23,7 @@ class Mesh(TypedDict):
 
 
 class StoredOutput(TypedDict, total=False):
-    """An output as its row holds it; `app.schemas.analyses.AnalysisOutput` describes its fields."""
+    """An output as its row holds it; `app.solids.schemas.analyses.AnalysisOutput` describes its fields."""
 
     value: float | list[float] | list[list[float]] | None
     unit: str | None

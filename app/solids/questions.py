@@ -15,7 +15,7 @@ from importlib.metadata import version
 from pydantic import ConfigDict, Field
 
 from app.plain import JsonObject, Raw
-from app.schemas.bounded import Bounded
+from app.schemas.bounds import Bounded
 from app.solids.outputs import Outputs, Refinement, StoredOutput
 from cad.analysis.kinds import (
     BORE_COMPLIANCE,

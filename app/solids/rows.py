@@ -9,7 +9,7 @@ from sqlalchemy import bindparam, select
 from sqlalchemy.orm import Session
 
 from app.identity import usage
-from app.identity.acting import ACTING, BUILT_IN
+from app.identity.principal import ACTING, BUILT_IN
 from app.plain import JsonObject
 from app.storage.clock import operated
 from app.storage.identity import now

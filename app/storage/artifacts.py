@@ -18,10 +18,9 @@ from io import BufferedReader
 from pathlib import Path
 from typing import Protocol
 
-from app.storage.durable import TEMPORARY, sync_folder, write_whole
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, ArtifactsUnreachable
-from app.storage.file_locks import OwnLock, SharedLock
-from app.storage.verified import Opened, Stamp, Verified, stamp_of
+from app.storage.files import TEMPORARY, OwnLock, SharedLock, sync_folder, write_whole
+from app.storage.verification import Opened, Stamp, Verified, stamp_of
 
 QUARANTINE = "quarantine"
 SHA256 = re.compile(r"[0-9a-f]{64}")

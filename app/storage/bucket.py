@@ -21,7 +21,7 @@ from app.storage.artifacts import OWNER, QUARANTINE, SHA256, Stored, hashed, req
 from app.storage.copies import Copies
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, ArtifactsUnreachable
 from app.storage.s3 import Bucket, Entry
-from app.storage.verified import Newest, Opened
+from app.storage.verification import Newest, Opened
 
 logger = logging.getLogger(__name__)
 

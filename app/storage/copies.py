@@ -10,7 +10,7 @@ from pathlib import Path
 
 from app.storage.artifacts import QUARANTINE, ArtifactStore, Stored
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
-from app.storage.verified import Opened
+from app.storage.verification import Opened
 
 IN_USE = 60.0  # a copy that was used within this time stays, whatever the limit [s]
 _KEPT = 0.9  # of the limit, after room was made: not every new copy needs room made for it

@@ -1,7 +1,7 @@
 """The database of the process: reads in snapshots, and writes by units of work.
 
 How units are written depends on the kind of database: `app.storage.group_writer` (SQLite) and
-`app.storage.pooled_writer` (PostgreSQL).
+`app.storage.pool_writer` (PostgreSQL).
 """
 
 from collections.abc import Callable, Iterator
@@ -46,7 +46,7 @@ class Database:
         self.clock: OperationClock | SharedClock
         self._writer: Writer
         if self.is_shared:
-            from app.storage.pooled_writer import PooledWriter
+            from app.storage.pool_writer import PooledWriter
 
             self._writer = PooledWriter(engine, pool, said)
             self.clock = SharedClock(self._writer)

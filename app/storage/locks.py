@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
+
+from app.storage.database import Database
 
 
 def lock(session: Session, name: str) -> None:
@@ -13,3 +18,13 @@ def lock(session: Session, name: str) -> None:
     """
     if session.get_bind().dialect.name != "sqlite":
         session.execute(select(func.pg_advisory_xact_lock(func.hashtextextended(name, 0))))
+
+
+@contextmanager
+def alone(database: Database, work: str) -> Iterator[bool]:
+    """Yield whether no other server does this work while the block runs; a server's death ends its turn."""
+    if not database.is_shared:
+        yield True
+        return
+    with database.read() as session:
+        yield bool(session.scalar(select(func.pg_try_advisory_xact_lock(func.hashtextextended(work, 0)))))

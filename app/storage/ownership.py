@@ -12,11 +12,11 @@ from sqlalchemy.orm import Session
 
 from app.settings import Settings
 from app.storage.artifacts import OWNER, Artifacts
-from app.storage.connecting import opened_database
+from app.storage.connection import opened_database
 from app.storage.database import Database
 from app.storage.errors import StoreRefused
 from app.storage.folder import DataFolder
-from app.storage.opening import opened_store
+from app.storage.stores import opened_store
 from app.storage.tables import CounterRow
 from app.storage.units import repeatable
 from app.storage.upserts import insert_new

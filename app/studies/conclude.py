@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.schemas.studies import StudyResult, Trade
 from app.studies.archive import AnyArray
-from app.studies.asking import directions
-from app.studies.building import Building
-from app.studies.finding import MOST_CONFIRMED, front, ranked, signed
-from app.studies.optimising import optimised
-from app.studies.running import Run
+from app.studies.front import MOST_CONFIRMED, front, ranked, signed
+from app.studies.optimisation import optimised
+from app.studies.question import directions
+from app.studies.row_columns import OUTPUT, PLACE, Stored
+from app.studies.row_views import rows_found
+from app.studies.run import Run
+from app.studies.schemas import StudyResult, Trade
 from app.studies.sensitivities import Shares, sensitivities
-from app.studies.shown import rows_found
-from app.studies.stored import OUTPUT, PLACE, Stored
 from app.studies.task import read_body
+from app.studies.variant_design import Building
 from templates.core.arrays import Integers
 from templates.core.judging.comparison import MET
 

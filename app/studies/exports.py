@@ -12,8 +12,8 @@ import numpy as np
 
 from app.presentation.spreadsheets import Value, harmless
 from app.presentation.units import System, shown_unit, shown_value
-from app.schemas.studies import StudyRow
 from app.studies.archive import AnyArray, write_each
+from app.studies.schemas import StudyRow
 from app.studies.views import Listing
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.judging.comparison import WORST_FIRST

@@ -21,7 +21,7 @@ from app.designs.engine.row_design import Levels, Rows, Wanted
 from app.designs.network import Block
 from app.designs.subjects import subjects
 from app.reference import Reference
-from app.studies.schemas import StudyIn
+from app.studies.bodies import StudyIn
 from cad.model import CadModel
 from cad.regenerate import as_text
 from templates.core.arrays import Array, Mask

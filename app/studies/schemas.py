@@ -1,130 +1,182 @@
-"""Bodies of the calls of studies."""
+"""Studies and their rows as the interface shows them."""
 
 from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from pydantic import ConfigDict, Field, StringConstraints, ValidationError, model_validator
-from pydantic.config import JsonDict
+from pydantic import Field
 
-from app.calculations.errors import InvalidBody
-from app.designs.document import CriterionName
-from app.designs.schemas import LONGEST_NOTE
-from app.plain import JsonObject
-from app.schemas.bounded import Bounded, at_most
-from app.schemas.studies import Method
-from app.schemas.values import Given
+from app.presentation.units import System, shown_unit, shown_value
+from app.schemas.answers import Answer, Page, Quantity
+from app.schemas.criteria import Word
+from app.schemas.problems import Problem
 
-MOST_VARIED, MOST_OUTPUTS, MOST_BUILT, MOST_SEED = 20, 50, 200, 2**32 - 1
-MOST_ROWS = {"grid": 10**6, "table": 10**5, "sample": 10**6, "sensitivity": 10**5, "optimise": 10**5}
-"""Rows of a study by method."""
-
-_STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
-_PLACE = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63}){0,2}$"
-Place = Annotated[str, StringConstraints(pattern=_PLACE)]
-"""A parameter, `step.input`, `model.parameter` or `step.output`."""
-VariantName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
-Places = Annotated[list[Place], Field(max_length=MOST_OUTPUTS)]
+Method = Literal["grid", "table", "sample", "sensitivity", "optimise"]
+StudyState = Literal["queued", "running", "done", "failed", "cancelled"]
 
 
-class Vary(Bounded):
-    """The values of one place: anything between two bounds, or one of a list."""
+SetAside = Annotated[
+    dict[str, str], Field(description="relations that do not hold in this study, by the place they set")
+]
 
-    model_config = _STRICT
 
-    between: Annotated[list[Given], Field(min_length=2, max_length=2)] | None = Field(
-        None, examples=[["0.03 mm", "0.09 mm"]], description="the lower and the upper bound"
+class Estimate(Answer):
+    """The estimated cost of a study before it begins."""
+
+    seconds: float = Field(description="of one calculation process; an order of magnitude")
+    solids: int = Field(0, description="that have to be built")
+
+
+class StudyEstimate(Answer):
+    """The estimate of a study, if it began now."""
+
+    rows: int = Field(description="planned; of a search the most that it may ask for")
+    criteria: list[str] = Field(description="that a row must meet")
+    levels: dict[str, str] = Field(description="at which rows are explored, by step")
+    confirm: dict[str, str] = Field({}, description="at which the best rows are calculated again, by step")
+    set_aside: SetAside = {}
+    estimate: Estimate
+
+
+class Refused(Answer):
+    """Rows without values."""
+
+    count: int
+    reasons: dict[str, int] = Field(description="how many rows, by `place: code`; the most frequent ones")
+
+
+class StudyRow(Answer):
+    """One row: the values of its places and its outputs, in the units that the page names."""
+
+    row: int = Field(description="its number, from 0")
+    values: dict[str, float | None] = Field(description="places and outputs; null where there is no value")
+    errors: dict[str, float] = Field({}, description="relative, of outputs whose level states one")
+    verdicts: dict[str, Word] = Field({}, description="by criterion")
+    verdict: Word | None = Field(None, description="the worst of them")
+    level: dict[str, str] = Field({}, description="of fidelity, by step")
+    confirmed: bool = Field(False, description="whether it was calculated again at finer levels")
+    reason: str | None = Field(None, description="why it has no values")
+
+
+class Units(Answer):
+    """Numbers by name, each with a unit that the system of units replaces."""
+
+    units: dict[str, str] = Field(description="of every place and output")
+
+    def _converted(self, row: StudyRow, system: System) -> StudyRow:
+        values = {n: shown_value(v, self.units[n], system) for n, v in row.values.items()}
+        return row.model_copy(update={"values": values})
+
+    def _units(self, system: System) -> dict[str, str]:
+        return {name: shown_unit(unit, system) for name, unit in self.units.items()}
+
+
+class StudyRows(Units, Page[StudyRow]):
+    """A page of rows."""
+
+    count: int | None = Field(None, description="of all rows that fit the filter, where it was counted")
+
+    def in_units(self, system: System) -> Self:
+        """Return the rows in a system of units."""
+        if system == "si":
+            return self
+        items = [self._converted(row, system) for row in self.items]
+        return self.model_copy(update={"items": items, "units": self._units(system)})
+
+
+class TradePlace(Answer):
+    """A place that a level promises, and what is true of it."""
+
+    at: dict[str, Quantity] = Field({}, description="where it lies")
+    promise: dict[str, Quantity] = {}
+    confirmed: dict[str, Quantity] = Field({}, description="at the levels of `confirm`")
+    verdicts: dict[str, Word] = Field({}, description="as confirmed")
+
+
+class Trade(TradePlace):
+    """The promise of one level of fidelity: its optimum, or along `front` if there are several objectives."""
+
+    level: dict[str, str] = Field(description="by step")
+    front: list[TradePlace] | None = Field(
+        None, description="its front, by the first objective as promised; of several objectives"
     )
-    values: Annotated[list[Given], Field(min_length=1, max_length=10_000)] | None = Field(
-        None, examples=[["18 mm", "20 mm"]]
-    )
-    spacing: Literal["linear", "log"] = "linear"
-
-    @model_validator(mode="after")
-    def one_of_both(self) -> Self:
-        """Either bounds or a list."""
-        if (self.between is None) == (self.values is None):
-            raise ValueError("give either `between`, two bounds, or `values`, a list")
-        return self
+    rows: int = Field(description="that were calculated")
+    seconds: float = Field(description="estimated")
 
 
-class StageAccuracy(Bounded):
-    """Accuracy that a level must reach."""
+class Best(Answer):
+    """A row that was found to be the best, or one of the front."""
 
-    model_config = _STRICT
-
-    tolerance: float = Field(gt=0, lt=1, description="relative error that the levels may have")
-
-
-EXAMPLE: JsonDict = {
-    "design": "00000000000001abcdef0123",
-    "method": "grid",
-    "vary": {"scale": {"between": ["0.98", "1.02"]}},
-    "steps": 5,
-    "outputs": ["film.minimum_film_thickness"],
-}
+    row: int
+    at: dict[str, Quantity]
+    outputs: dict[str, Quantity]
+    verdicts: dict[str, Word] = {}
+    verdict: Word | None = None
+    confirmed: bool = False
 
 
-class StudyIn(Bounded):
-    """A new study."""
+class Index(Answer):
+    """The influence of a place on an output; an index that the kind does not give is absent."""
 
-    model_config = ConfigDict(
-        strict=True, extra="forbid", allow_inf_nan=False, json_schema_extra={"examples": [EXAMPLE]}
-    )
+    slope: Quantity | None = Field(None, description="change of the output by that of the place")
+    elasticity: float | None = Field(None, description="relative change by relative change")
+    mu_star: Quantity | None = Field(None, description="Morris: mean size of the effect of its whole range")
+    sigma: Quantity | None = Field(None, description="Morris: how much that differs from place to place")
+    first: float | None = Field(None, description="Sobol': share of the variance by itself")
+    first_error: float | None = None
+    total: float | None = Field(None, description="Sobol': share with all interactions")
+    total_error: float | None = None
 
-    design: str = Field(max_length=64)
-    revision: int | None = Field(None, ge=1, le=10**9, description="the newest, if not given")
-    variant: VariantName | None = Field(
-        None, description="which variant is studied; the design itself, if not given"
-    )
+
+class StudyResult(Answer):
+    """The result of the method."""
+
+    best: Best | None = None
+    front: list[Best] | None = Field(None, description="none is better in all objectives")
+    indices: dict[str, dict[str, Index]] | None = Field(None, description="by output, by place")
+    trade: list[Trade] | None = None
+    settled: bool | None = Field(None, description="whether promise and confirmed value agree")
+    global_: str | None = Field(None, alias="global", description="`not proven`: of every search")
+    share: float | None = Field(None, description="of the rows that meet all criteria")
+    shares: dict[str, float] | None = Field(None, description="of the rows that meet each criterion")
+    design: str | None = Field(None, description="the new design, whose variants are the rows to build")
+    notes: list[str] = []
+
+
+class Study(Units):
+    """A study."""
+
+    id: str
+    design: str
+    revision: int
+    variant: str | None = Field(None, description="of the design, if the study is of one")
     method: Method
-    seed: int = Field(1, ge=0, le=MOST_SEED, description="the same seed, the same rows")
-    vary: Annotated[dict[Place, Vary], Field(max_length=MOST_VARIED), at_most(MOST_VARIED)] = Field(
-        {},
-        description="parameters, `step.input` and `model.parameter`; `set_aside` names those with a relation",
-    )
-    set_aside: Annotated[list[Place], Field(max_length=MOST_VARIED)] = Field(
-        [], description="varied places that a relation sets: the relation does not hold in this study"
-    )
-    steps: int | dict[Place, int] | None = Field(None, description="of `grid`: for each interval, or by name")
-    rows: dict[Place, Given] | list[dict[Place, Given]] | None = Field(
-        None, description="of `table`: columns by name, each an array with its unit, or a list of rows"
-    )
-    points: int | None = Field(None, ge=1, description="of `sample`; the base of `sensitivity`")
-    sequence: Literal["sobol", "lhs"] = Field("sobol", description="of `sample`")
-    kind: Literal["local", "morris", "sobol"] = Field("local", description="of `sensitivity`")
-    outputs: Places = Field([], description="what each row keeps, beside what is minimised or maximised")
-    minimise: Places = []
-    maximise: Places = []
-    hold: Annotated[list[CriterionName], Field(max_length=100)] | None = Field(
-        None, description="criteria that a row must meet; all of the design if not given"
-    )
-    explore: StageAccuracy | None = Field(None, description="levels of the design itself, if not given")
-    confirm: StageAccuracy | None = Field(None, description="the best rows are calculated again to this")
-    build: (
-        Literal["none", "best", "front", "all"]
-        | Annotated[list[Annotated[int, Field(ge=0)]], Field(min_length=1, max_length=MOST_BUILT)]
-    ) = Field("none", description=f"rows that become variants of a new design, at most {MOST_BUILT}")
+    state: StudyState
+    seed: int
+    progress: float = Field(ge=0, le=1)
+    rows: int = Field(description="planned")
+    done: int = Field(description="rows that were calculated")
+    refused: Refused
+    varied: list[str]
+    outputs: list[str]
+    criteria: list[str]
+    levels: dict[str, str] = Field(description="at which rows are explored, by step")
+    set_aside: SetAside = {}
+    objectives: dict[str, Literal["minimise", "maximise"]] = Field({}, description="by output")
+    estimate: Estimate
+    result: StudyResult | None = None
+    problem: Problem | None = None
+    job: str | None = Field(None, description="path of the job that works on it")
+    created: str
+    changed: str
+
+    def in_units(self, system: System) -> Self:
+        """Return the study in a system of units."""
+        if system == "si":
+            return self
+        converted = super().in_units(system)
+        return converted.model_copy(update={"units": self._units(system)})
 
 
-def study_of(raw: JsonObject) -> StudyIn:
-    """Return a study from plain values.
-
-    Raises
-    ------
-    InvalidBody
-        With everything that is wrong.
-    """
-    try:
-        return StudyIn.model_validate(raw)
-    except ValidationError as error:
-        raise InvalidBody.of(error) from None
-
-
-class ChooseIn(Bounded):
-    """A row whose values become a revision."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", json_schema_extra={"examples": [{"row": 2}]})
-
-    row: int = Field(ge=0, le=10**9)
-    note: str | None = Field(None, max_length=LONGEST_NOTE)
+class StudyList(Page[Study]):
+    """A page of studies, newest first."""

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from app.designs.slopes import Local, slope_in
 from app.reference import Reference
 from app.schemas.answers import Quantity
-from app.schemas.studies import Index
 from app.studies.methods.points import Points
 from app.studies.methods.sensitivity import (
     MorrisPoints,
@@ -18,6 +17,7 @@ from app.studies.methods.sensitivity import (
     indices,
     slopes,
 )
+from app.studies.schemas import Index
 from app.studies.task import Task, prepared
 from templates.core.arrays import Array
 from templates.core.errors import InvalidInputs

@@ -10,19 +10,21 @@ from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository as designs
+from app.designs.analyses import is_measured, is_table
+from app.designs.bodies import LONGEST_NOTE
 from app.designs.document import Document
+from app.designs.engine.calculation import Calculation
 from app.designs.graph import build_graph
-from app.designs.schemas import LONGEST_NOTE
 from app.designs.service import Designs, Saved
 from app.designs.variant_sheets.reading import Units
 from app.designs.variant_sheets.units import units_of
 from app.identity.audit import record
 from app.identity.usage import note_bytes
 from app.jobs.errors import JobFinished, JobNotFound
+from app.jobs.schemas import State
 from app.jobs.service import Jobs
 from app.plain import JsonObject
 from app.reference import Reference
-from app.schemas.jobs import State
 from app.solids.analyses import ANALYSIS
 from app.solids.models import BUILD
 from app.storage.artifacts import Artifacts
@@ -32,17 +34,16 @@ from app.storage.idempotency import Once
 from app.storage.tables import StudyRow
 from app.studies import repository
 from app.studies.archive import packed
-from app.studies.given import Rows, columns_named
-from app.studies.measured import measured_in
-from app.studies.of_variant import document_of, within
-from app.studies.planning import Plan
-from app.studies.running import STUDY
-from app.studies.schemas import StudyIn
-from app.studies.setting_aside import relations_at, words
-from app.studies.stored import PLACE, Stored
+from app.studies.bodies import StudyIn
+from app.studies.plan import Plan
+from app.studies.relations import relations_at, words
+from app.studies.row_columns import PLACE, Stored
+from app.studies.row_table import Rows, columns_named
+from app.studies.run import STUDY
 from app.studies.task import Task
+from app.studies.variant import document_of, within
 from templates.core.arrays import Array
-from templates.core.errors import Fault, InvalidInputs
+from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.units.units import unit
 
 Lost = Callable[[str], Exception]
@@ -250,3 +251,30 @@ def patch_of(document: JsonObject, units: Mapping[str, str], values: Mapping[str
 
 def _study(location: JsonObject) -> str:
     return str(location["study"])
+
+
+def measured_in(designs: Designs, document: JsonObject) -> dict[str, float]:
+    """Return the measures [SI] that relations of a document use, as far as they are known."""
+    if not document.get("models"):
+        return {}
+    calculation = designs.prepare(document)[1]
+    values = {str(reference): _value(calculation, reference) for reference in _used(calculation)}
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def _used(calculation: Calculation) -> set[Reference]:
+    """Return the measures and results of analyses that relations name, but for tables."""
+    blocks = calculation.graph.blocks
+    used = {reference for cell in calculation.graph.cells() for reference in cell.uses.values()}
+    models = {
+        reference for reference in used if reference.block in blocks and blocks[reference.block].is_model
+    }
+    measured = {r for r in models if is_measured(r, blocks[r.block].analyses, blocks[r.block].cls)}
+    return {reference for reference in measured if not is_table(reference)}
+
+
+def _value(calculation: Calculation, reference: Reference) -> float | None:
+    try:
+        return float(calculation.measure(reference))
+    except (FaultyText, KeyError):  # not built, or not analysed
+        return None

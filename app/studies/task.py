@@ -16,9 +16,9 @@ from app.designs.tasks import DesignTask
 from app.plain import JsonObject
 from app.reference import Reference
 from app.storage.tables import canonical_json
-from app.studies.asking import Asked, asked_of
+from app.studies.bodies import StudyIn
+from app.studies.question import Asked, asked_of
 from app.studies.row_solids import RowSolids, iterated, measures_of_rows, tables_among
-from app.studies.schemas import StudyIn
 from templates.core.errors import Fault, InvalidInputs
 
 

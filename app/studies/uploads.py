@@ -14,7 +14,7 @@ from typing import Literal
 from app.calculations.tables import read_table
 from app.designs.variant_sheets.grid import MOST_FAULTS
 from app.plain import Raw
-from app.studies.schemas import MOST_ROWS
+from app.studies.bodies import MOST_ROWS
 from app.workers.pieces import Pieces
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_name
 from templates.core.units.units import require_same_kind

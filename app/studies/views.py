@@ -10,13 +10,13 @@ import numpy as np
 from sqlalchemy.orm import Session
 
 from app.presentation.units import System
-from app.schemas.studies import Estimate, Refused, Study, StudyEstimate, StudyResult, StudyRow, StudyRows
 from app.storage.tables import JobRow
 from app.storage.tables import StudyRow as Row
 from app.studies import repository
 from app.studies.archive import AnyArray, Archive
-from app.studies.planning import Plan
-from app.studies.stored import CONFIRM, ERROR, OUTPUT, PLACE, VERDICT, Part, Stored
+from app.studies.plan import Plan
+from app.studies.row_columns import CONFIRM, ERROR, OUTPUT, PLACE, VERDICT, Part, Stored
+from app.studies.schemas import Estimate, Refused, Study, StudyEstimate, StudyResult, StudyRow, StudyRows
 from templates.core.arrays import Array, Integers
 from templates.core.errors import InvalidInputs, unknown_names
 from templates.core.judging.comparison import NOT_CHECKED, WORST_FIRST

@@ -65,7 +65,7 @@ class Tied:
     ) -> None:
         self.name, self.log = name, log
         self._line = Lifeline()
-        tied = [sys.executable, "-m", "app.team.tied", str(self._line.reader), user or ""]
+        tied = [sys.executable, "-m", "app.team.tether", str(self._line.reader), user or ""]
         with log.open("ab") as output:
             self._process = subprocess.Popen(
                 [*tied, *command],

@@ -22,7 +22,7 @@ from app.tolerances.factors import Factor
 from app.tolerances.question import Question
 from app.tolerances.scatter import SCRAMBLINGS, Rows, Scatter, scatter
 from app.tolerances.shares import Shares, shares
-from app.tolerances.toleranced import Varied, faults, varied
+from app.tolerances.variables import Varied, faults, varied
 from app.tolerances.worst import Worst, worst
 from templates.core.arrays import Array
 from templates.core.errors import Fault, unknown_name, unknown_names

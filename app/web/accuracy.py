@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from pydantic import BaseModel, JsonValue
 
-from app.schemas.templates import Accuracy
+from app.catalogue.schemas.templates import Accuracy
 
 SHOWN = 6  # outputs; all are in the answer of the interface
 

@@ -1,7 +1,7 @@
 """Actions of forms about designs: each calls a service, then shows the page with the result.
 
 Without a script in the browser these are all actions there are; with one, `static/design.js` saves by itself.
-`app.api.gate.guard` refuses a form of another site: a browser would send it without asking anyone.
+`app.http.guard` refuses a form of another site: a browser would send it without asking anyone.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from collections.abc import Mapping
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import JsonValue
 
-from app.api.routes.designs import document_of
+from app.designs.bodies import DesignIn
 from app.designs.labels import LabelsIn
-from app.designs.schemas import DesignIn
-from app.presentation.typed import value_of
+from app.designs.routes.designs import document_of
+from app.designs.schemas.designs import Design
+from app.presentation.input_text import value_of
 from app.reference import Reference
-from app.schemas.designs import Design
 from app.web.blocks import Refusal
 from app.web.declarations import change_of
 from app.web.design_page import design_page

@@ -11,11 +11,11 @@ from pydantic_core import to_json
 from starlette.responses import Response
 
 from app.api.answering import to_try
-from app.api.gate.pacing import PiecesResponse
-from app.api.routes.evaluations import show_evaluation
+from app.calculations.bodies import Asked
 from app.calculations.cost import EXPENSIVE
 from app.calculations.operations import OPERATIONS, Question
-from app.calculations.schemas import Asked
+from app.calculations.routes.evaluations import show_evaluation
+from app.http.pace import PiecesResponse
 from app.presentation.units import System
 from app.schemas.problems import Problem
 from app.web.services import PageServices, Refused

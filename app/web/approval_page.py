@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from app.schemas.approvals import ApprovalIn, CommentIn
+from app.approvals.schemas import ApprovalIn, CommentIn
 from app.web.design_page import design_page
 from app.web.forms import fields, forms_only
 from app.web.responses import go

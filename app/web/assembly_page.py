@@ -13,9 +13,9 @@ from collections.abc import Mapping
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import JsonValue, TypeAdapter
 
-from app.api.routes.models import list_models, show_model
-from app.schemas.designs import Design, DesignModel
-from app.schemas.templates import TemplateSummary
+from app.catalogue.schemas.templates import TemplateSummary
+from app.designs.schemas.designs import Design, DesignModel
+from app.solids.routes.models import list_models, show_model
 from app.web.design_answers import job_of
 from app.web.forms import fields, forms_only
 from app.web.model_import_page import MISSED, begun_import

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from app.reports.pictures import Picture, pictures
-from app.schemas.answers import Shown
-from app.schemas.declared import properties, required
-from app.schemas.designs import (
+from app.calculations.schemas.evaluations import Output
+from app.catalogue.schemas.declarations import properties, required
+from app.catalogue.schemas.library import LibraryTable
+from app.catalogue.schemas.templates import Template
+from app.designs.schemas.designs import (
     Design,
     ParameterChange,
     PreviewedStep,
@@ -16,10 +17,9 @@ from app.schemas.designs import (
     RevisionModel,
     RevisionWorksheet,
 )
-from app.schemas.evaluations import Output
-from app.schemas.library import LibraryTable
-from app.schemas.templates import CadModel as Model
-from app.schemas.templates import Template
+from app.reports.pictures import Picture, pictures
+from app.schemas.answers import Shown
+from app.solids.schemas.models import CadModel as Model
 from app.web import sheet
 from app.web.limits import limit_fields, with_rows
 from app.web.sheet import Field

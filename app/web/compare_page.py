@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from fastapi import Request, Response
 
-from app.api.routes.comparisons import compare_revisions
-from app.api.routes.designs import list_designs
-from app.schemas.designs import Design
+from app.designs.routes.comparison import compare_revisions
+from app.designs.routes.designs import list_designs
+from app.designs.schemas.designs import Design
 from app.web.responses import show, units_of
 from app.web.services import PageServices, Refused
 

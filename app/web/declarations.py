@@ -8,9 +8,9 @@ from typing import TypeVar
 
 from pydantic import JsonValue
 
-from app.presentation.typed import text_of, value_of
-from app.schemas.designs import Design, DesignIteration
-from app.schemas.solids import Analysable
+from app.designs.schemas.designs import Design, DesignIteration
+from app.presentation.input_text import text_of, value_of
+from app.solids.schemas.models import Analysable
 from app.web.blocks import ModelBlock, Refusal
 from app.web.forms import option_of
 

@@ -7,13 +7,14 @@ from typing import NamedTuple
 
 from fastapi import Request
 
-from app.api.routes.approvals import list_all_comments, list_comments
-from app.api.routes.models import show_model
-from app.api.routes.templates import list_template_versions, show_template
-from app.schemas.approvals import Approvals, CommentList
-from app.schemas.designs import Design, RevisionWorksheet
-from app.schemas.jobs import Job
-from app.schemas.templates import CadModel, Template
+from app.approvals.routes import list_all_comments, list_comments
+from app.approvals.schemas import Approvals, CommentList
+from app.catalogue.routes.templates import list_template_versions, show_template
+from app.catalogue.schemas.templates import Template
+from app.designs.schemas.designs import Design, RevisionWorksheet
+from app.jobs.schemas import Job
+from app.solids.routes.models import show_model
+from app.solids.schemas.models import CadModel
 from app.web.responses import units_of
 from app.web.services import PageServices
 

@@ -9,29 +9,29 @@ from typing import NamedTuple
 from fastapi import Request, Response
 from markupsafe import Markup
 
-from app.api.gate.roles import routes_of
-from app.api.routes.designs import show_measurements
-from app.api.routes.jobs import list_jobs
-from app.api.routes.models import list_models
-from app.api.routes.revisions import list_revisions
-from app.api.routes.solid_fields import list_solid_fields
-from app.api.routes.templates import list_templates
-from app.api.routes.variants import variants_of
+from app.catalogue.routes.templates import list_templates
+from app.catalogue.schemas.templates import Template, TemplateSummary
 from app.designs.preview import Previewed
-from app.identity.acting import acting
-from app.schemas.analyses import Analysis
-from app.schemas.designs import (
+from app.designs.routes.designs import show_measurements
+from app.designs.routes.revisions import list_revisions
+from app.designs.routes.solid_fields import list_solid_fields
+from app.designs.routes.variants import variants_of
+from app.designs.schemas.designs import (
     Design,
     ModelMeasurements,
     Preview,
     Proposal,
     RevisionWorksheet,
 )
-from app.schemas.jobs import Job
-from app.schemas.solid_fields import SolidField
-from app.schemas.templates import CadModel as Model
-from app.schemas.templates import Template, TemplateSummary
-from app.schemas.variants import VariantsOut
+from app.designs.schemas.solid_fields import SolidField
+from app.designs.schemas.variants import VariantsOut
+from app.http.roles import routes_of
+from app.identity.principal import acting
+from app.jobs.routes import list_jobs
+from app.jobs.schemas import Job
+from app.solids.routes.models import list_models
+from app.solids.schemas.analyses import Analysis
+from app.solids.schemas.models import CadModel as Model
 from app.web import sheet
 from app.web.blocks import (
     ModelBlock,

@@ -11,8 +11,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 
+from app.designs.schemas.network import DesignNetwork, NetworkBlock, NetworkRelation
 from app.reference import Reference
-from app.schemas.networks import DesignNetwork, NetworkBlock, NetworkRelation
 
 LETTER = 6.7  # width, of 11 px in a fixed pitch
 HEAD, ROW, LANE = 24.0, 17.0, 8.0  # heights

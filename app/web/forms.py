@@ -17,10 +17,10 @@ from urllib.parse import parse_qsl
 from fastapi import Request
 from pydantic import JsonValue, TypeAdapter
 
-from app.api.gate.access import FORM_TOKEN
-from app.api.reading import FORM_TYPES, BodyTooLarge, NotForm, check_type
-from app.presentation.typed import text_of, value_of
-from app.schemas.designs import Design
+from app.designs.schemas.designs import Design
+from app.http.access import FORM_TOKEN
+from app.http.strict_requests import FORM_TYPES, BodyTooLarge, NotForm, check_type
+from app.presentation.input_text import text_of, value_of
 from app.web.session import check_form_token
 
 OPTIONS = ("level", "tolerance")  # of a step, beside its inputs

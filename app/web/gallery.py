@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from pydantic import JsonValue
 
-from app.calculations.schemas import OIL_FILM
-from app.designs.schemas import PAPER, DesignIn
-from app.schemas.templates import TemplateSummary
+from app.calculations.bodies import OIL_FILM
+from app.catalogue.schemas.templates import TemplateSummary
+from app.designs.bodies import PAPER, DesignIn
 from app.web.gallery_crank import CRANK
 from app.web.gallery_engine import FOUR_CYLINDERS, V8
 

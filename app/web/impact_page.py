@@ -8,12 +8,12 @@ from urllib.parse import urlencode
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from app.api.routes.templates import show_template
-from app.impact.schemas import ImpactIn
+from app.catalogue.routes.templates import show_template
+from app.impact.bodies import ImpactIn
+from app.impact.schemas import DesignImpact, Impact
 from app.impact.survey import Asked
 from app.presentation import numbers
 from app.schemas.answers import Quantity
-from app.schemas.impact import DesignImpact, Impact
 from app.web.answers import stored
 from app.web.forms import fields, forms_only
 from app.web.responses import go, show, units_of

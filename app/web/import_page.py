@@ -7,13 +7,13 @@ import re
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import BaseModel
 
-from app.api.routes.worksheet_imports import FileName, NewId, read_import
-from app.schemas.worksheet_imports import ImportedRegion
 from app.web.design_answers import job_of
 from app.web.multipart import forms_with_files, parts_of
 from app.web.responses import go, show
 from app.web.routes import Id, Text
 from app.web.services import PageServices, Refused, ThePageServices
+from app.worksheets.routes.imports import FileName, NewId, read_import
+from app.worksheets.schemas.imports import ImportedRegion
 
 MISSED = (409, 415, 422, 429)
 """Errors that the form explains, because the user can correct them."""

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 from pydantic import JsonValue
 
-from app.api.routes.library import list_library_tables, show_library_table
-from app.presentation.typed import text_of, value_of
+from app.catalogue.routes.library import list_library_tables, show_library_table
+from app.catalogue.schemas.declarations import Declared, properties
+from app.catalogue.schemas.library import LibraryRow, LibraryTable
+from app.catalogue.schemas.templates import Template
+from app.presentation.input_text import text_of, value_of
 from app.reference import Reference
-from app.schemas.declared import Declared, properties
-from app.schemas.library import LibraryRow, LibraryTable
-from app.schemas.templates import Template
 from app.schemas.values import Given
 from app.web.forms import LIMITS
 from app.web.services import PageServices

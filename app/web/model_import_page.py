@@ -7,7 +7,7 @@ import re
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import BaseModel
 
-from app.api.routes.brought_models import FileName, NewId, list_programs
+from app.imported_models.routes import FileName, NewId, list_programs
 from app.web.design_answers import job_of
 from app.web.multipart import forms_with_files, parts_of
 from app.web.responses import go, show

@@ -6,17 +6,17 @@ from collections.abc import Mapping
 
 from fastapi import Request, Response
 
-from app.api.gate.roles import AUTHOR
-from app.api.routes.analyses import list_analyses_of_build, show_analysis
-from app.api.routes.models import BuildIn, show_model
 from app.api.waiting import finished
 from app.catalogue.catalogues import Catalogues
-from app.presentation.typed import text_of, value_of
-from app.schemas.analyses import Analysis, ModelAnalysis
+from app.http.roles import AUTHOR
+from app.presentation.input_text import text_of, value_of
 from app.schemas.problems import Problem
-from app.schemas.solids import Build
-from app.schemas.templates import CadModel as Model
 from app.schemas.values import Given
+from app.solids.routes.analyses import list_analyses_of_build, show_analysis
+from app.solids.routes.models import BuildIn, show_model
+from app.solids.schemas.analyses import Analysis, ModelAnalysis
+from app.solids.schemas.models import Build
+from app.solids.schemas.models import CadModel as Model
 from app.web import sheet
 from app.web.responses import show, units_of
 from app.web.services import PageServices, Refused, refusals

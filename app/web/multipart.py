@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 from fastapi import Request
 
-from app.api.gate.access import FORM_TOKEN
-from app.api.reading import FORM_TYPES, NotForm, check_type
+from app.http.access import FORM_TOKEN
+from app.http.strict_requests import FORM_TYPES, NotForm, check_type
 from app.web.forms import fields
 from app.web.session import FIELD, check_form_token
 

@@ -13,10 +13,10 @@ from urllib.parse import urlencode
 from fastapi import Request, Response
 from pydantic import JsonValue
 
-from app.api.routes.templates import Number, show_template
-from app.presentation.typed import value_of
-from app.schemas.library import LibraryTable
-from app.schemas.templates import Template
+from app.catalogue.routes.templates import Number, show_template
+from app.catalogue.schemas.library import LibraryTable
+from app.catalogue.schemas.templates import Template
+from app.presentation.input_text import value_of
 from app.web import sheet
 from app.web.blocks import Refusal
 from app.web.forms import LIMITS, OPTIONS, option_of

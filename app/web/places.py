@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import inf
 
+from app.designs.schemas.designs import Design, ModelMeasurements, Preview, RevisionWorksheet
+from app.designs.schemas.network import DesignNetwork, NetworkName
 from app.presentation import numbers
-from app.presentation.typed import text_of
+from app.presentation.input_text import text_of
 from app.reference import Reference
-from app.schemas.designs import Design, ModelMeasurements, Preview, RevisionWorksheet
-from app.schemas.networks import DesignNetwork, NetworkName
 
 
 @dataclass(frozen=True)

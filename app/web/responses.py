@@ -9,8 +9,8 @@ from urllib.parse import urlencode
 from fastapi import Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
-from app.api.gate.guard import PAGE_POLICY
-from app.identity.acting import acting
+from app.http.guard import PAGE_POLICY
+from app.identity.principal import acting
 from app.presentation.environment import environment
 from app.presentation.units import System
 from app.reports.pictures import axis_of

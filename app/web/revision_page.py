@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 from fastapi import Request, Response
 
-from app.api.routes.revisions import show_revision
+from app.designs.routes.revisions import show_revision
+from app.designs.schemas.designs import Revision, RevisionWorksheet
 from app.presentation import numbers
 from app.schemas.answers import Answer
-from app.schemas.designs import Revision, RevisionWorksheet
 from app.web.blocks import models_of, steps_of
 from app.web.design_answers import approval_of, comments_of, described_models, revision_of, templates_of
 from app.web.responses import show

@@ -10,10 +10,9 @@ from urllib.parse import urlencode
 from fastapi import APIRouter, Path, Query, Request, Response
 from pydantic import BaseModel
 
-from app.api.gate.roles import needs
-from app.api.routes.audit import list_audit, show_head
-from app.api.routes.catalogue import list_catalogue_faults
-from app.api.routes.designs import (
+from app.catalogue.routes.faults import list_catalogue_faults
+from app.catalogue.routes.templates import list_template_versions, list_templates
+from app.designs.routes.designs import (
     Archived,
     InState,
     NamePart,
@@ -22,11 +21,12 @@ from app.api.routes.designs import (
     list_designs,
     show_measurements,
 )
-from app.api.routes.labels import list_tags
-from app.api.routes.models import list_model_versions, list_models
-from app.api.routes.templates import list_template_versions, list_templates
+from app.designs.routes.labels import list_tags
+from app.designs.schemas.designs import State
+from app.http.roles import needs
+from app.identity.routes.audit import list_audit, show_head
 from app.presentation.criteria import line
-from app.schemas.designs import State
+from app.solids.routes.models import list_model_versions, list_models
 from app.web import plotly
 from app.web.compare_page import Asked, compare_page
 from app.web.design_page import design_page, step_section

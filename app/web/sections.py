@@ -13,8 +13,8 @@ from cachetools import LRUCache
 from fastapi import Request
 from markupsafe import Markup
 
+from app.designs.schemas.designs import Design
 from app.presentation.criteria import Line
-from app.schemas.designs import Design
 from app.web.blocks import Refusal, StepBlock
 from app.web.responses import jinja
 from app.web.variants import VariantsTable

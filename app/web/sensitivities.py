@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from app.designs.schemas.designs import Sensitivity
 from app.presentation import numbers
-from app.schemas.designs import Sensitivity
 
 WIDTH = 100  # of the picture of a bar, whose middle is no change
 HELPS = {"increase": "raise it", "decrease": "lower it"}

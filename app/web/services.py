@@ -18,15 +18,15 @@ from fastapi import Depends, Request
 from pydantic import JsonValue, TypeAdapter, ValidationError
 from starlette.concurrency import run_in_threadpool
 
-from app.api import nul
 from app.api.dependencies import expensive_steps, services_of
-from app.api.gate.clients import TheClient
-from app.api.problem_kinds import TABLE
-from app.api.problems import refusal
-from app.api.routes.designs import noted
 from app.api.services import Services
 from app.calculations.errors import InvalidBody
+from app.designs.routes.designs import noted
 from app.designs.service import Saved
+from app.http import nul
+from app.http.clients import TheClient
+from app.http.problem_kinds import TABLE
+from app.http.problems import refusal
 from app.schemas.problems import Problem
 from app.storage.idempotency import Once
 

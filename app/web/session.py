@@ -12,10 +12,10 @@ import secrets
 
 from fastapi import Request, Response
 
-from app.api.gate.access import FORM_TOKEN, SIGN_IN
-from app.api.gate.clients import COOKIE, PRINCIPAL, is_session
-from app.api.gate.guard import CrossSite
-from app.identity.acting import ANONYMOUS
+from app.http.access import FORM_TOKEN, SIGN_IN
+from app.http.clients import COOKIE, PRINCIPAL, is_session
+from app.http.guard import CrossSite
+from app.identity.principal import ANONYMOUS
 
 BYTES = 16  # 128 random bits
 FIELD = "form_token"

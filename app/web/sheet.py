@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from app.catalogue.schemas.declarations import Declared, properties, required
+from app.catalogue.schemas.templates import Schema, Template
 from app.presentation import numbers
-from app.presentation.typed import text_of
-from app.schemas.declared import Declared, properties, required
-from app.schemas.templates import Schema, Template
+from app.presentation.input_text import text_of
 from app.schemas.values import Given
 from app.web.forms import OPTIONS
 from templates.core.units.relation import is_relation

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 from pydantic import JsonValue
 
-from app.api.routes.designs import list_designs
 from app.designs.preview import Previewed
+from app.designs.routes.designs import list_designs
+from app.designs.schemas.designs import Design, DesignSummary, Preview
 from app.presentation import numbers
-from app.schemas.designs import Design, DesignSummary, Preview
-from app.schemas.worksheets import Sheet, SheetCheck
 from app.web.services import PageServices, Refused
+from app.worksheets.schemas.worksheets import Sheet, SheetCheck
 
 OFFERED = 50  # designs, newest first
 PATIENCE = 5.0  # for steps of the design that take long [s]

@@ -13,12 +13,12 @@ from fastapi import APIRouter, Depends, Path, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheIdentity, services_of
-from app.api.gate.access import SIGN_IN
-from app.api.gate.roles import needs, public
-from app.api.routes import principals as routes
+from app.http.access import SIGN_IN
+from app.http.roles import needs, public
 from app.identity.errors import NotSignedIn
 from app.identity.keys import key_prefix
-from app.schemas.identity import Key, KeyIn, NewKey
+from app.identity.routes import principals as routes
+from app.identity.schemas.principals import Key, KeyIn, NewKey
 from app.web.forms import fields, forms_only
 from app.web.responses import go, show
 from app.web.services import PageServices, ThePageServices

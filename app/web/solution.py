@@ -6,10 +6,10 @@ from collections.abc import Awaitable, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
+from app.calculations.schemas.evaluations import Jump, Root, TracedCurve
 from app.presentation import numbers
 from app.reference import Reference
 from app.reports.charts import Chart, Series, svg
-from app.schemas.evaluations import Jump, Root, TracedCurve
 from app.web.answers import Answered
 from app.web.services import Refused
 

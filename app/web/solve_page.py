@@ -10,11 +10,11 @@ from urllib.parse import urlencode
 from fastapi import Request, Response
 
 from app.designs import questions
+from app.designs.schemas.designs import Design
+from app.designs.schemas.solution import DesignRoot, DesignSolution
 from app.designs.solved import SolveDesignIn
 from app.presentation import numbers
-from app.presentation.typed import value_of
-from app.schemas.designs import Design
-from app.schemas.solve import DesignRoot, DesignSolution
+from app.presentation.input_text import value_of
 from app.web.answers import Answered, stored
 from app.web.places import PlaceOption, outputs, related, suggested, times, varied
 from app.web.responses import go, show, units_of

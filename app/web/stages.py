@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.schemas.worksheets import Sheet, SheetVersion
+from app.worksheets.schemas.worksheets import Sheet, SheetVersion
 
 ORDER = ("draft", "tested", "reviewed", "released")
 FINISHED = ("released", "withdrawn", "broken")

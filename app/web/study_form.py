@@ -9,15 +9,15 @@ from math import inf
 from fastapi import Request, Response
 from pydantic import JsonValue
 
-from app.api.routes.variants import variants_of
 from app.designs.preview import Previewed
+from app.designs.routes.variants import variants_of
+from app.designs.schemas.designs import Design, RevisionWorksheet
+from app.designs.schemas.network import NetworkName
 from app.designs.variants.names import BASE, natural
-from app.presentation.typed import text_of, value_of
+from app.presentation.input_text import text_of, value_of
 from app.reference import Reference
 from app.schemas.criteria import Criterion
-from app.schemas.designs import Design, RevisionWorksheet
-from app.schemas.networks import NetworkName
-from app.schemas.studies import StudyEstimate
+from app.studies.schemas import StudyEstimate
 from app.web.places import outputs, present, set_aside, suggested, varied
 from app.web.responses import show
 from app.web.services import PageServices, Refused

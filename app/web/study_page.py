@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from fastapi import Request, Response
 from pydantic import BaseModel
 
-from app.api.paging import Cursor
-from app.api.routes.studies import Fits, Sort, list_rows, list_studies, show_study
+from app.http.pages import Cursor
 from app.presentation import numbers
 from app.presentation.units import System
 from app.reference import Reference
 from app.schemas.criteria import Criterion
-from app.schemas.studies import Best, Index, Study
+from app.studies.routes.studies import Fits, Sort, list_rows, list_studies, show_study
+from app.studies.schemas import Best, Index, Study
 from app.web.responses import show, units_of
 from app.web.services import PageServices, Refused
 

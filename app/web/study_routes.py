@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from app.api.routes.studies import begun, estimate_study, show_study
-from app.studies.schemas import ChooseIn, StudyIn
+from app.studies.bodies import ChooseIn, StudyIn
+from app.studies.routes.studies import begun, estimate_study, show_study
 from app.web.forms import fields, forms_only
 from app.web.responses import go, show
 from app.web.routes import Id

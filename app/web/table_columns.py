@@ -14,9 +14,9 @@ from math import isfinite
 from fastapi import APIRouter
 from starlette.concurrency import run_in_threadpool
 
-from app.api.gate.roles import needs
-from app.api.reading import StrictRoute
 from app.calculations.tables import TableColumn, read_table
+from app.http.roles import needs
+from app.http.strict_requests import StrictRoute
 from app.reference import Reference
 from app.schemas.tables import ChosenColumn, PastedTable, ReadColumn, ReadTable, TableField
 from templates.core.errors import FaultyText, InvalidInputs, excerpt

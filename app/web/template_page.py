@@ -7,16 +7,16 @@ from collections.abc import Mapping
 from fastapi import Request, Response
 from pydantic import JsonValue
 
-from app.api.routes.templates import list_template_versions, show_accuracy, show_template
+from app.calculations.bodies import EvaluateIn
 from app.calculations.cost import estimated_seconds, writing_seconds
-from app.calculations.schemas import EvaluateIn
+from app.calculations.schemas.evaluations import CalculatedBy, Output, Worksheet
+from app.catalogue.routes.templates import list_template_versions, show_accuracy, show_template
+from app.catalogue.schemas.declarations import properties
+from app.catalogue.schemas.templates import Template
 from app.presentation.criteria import line
-from app.presentation.typed import value_of
+from app.presentation.input_text import value_of
 from app.presentation.units import System
 from app.reports.pictures import pictures
-from app.schemas.declared import properties
-from app.schemas.evaluations import CalculatedBy, Output, Worksheet
-from app.schemas.templates import Template
 from app.web import sheet
 from app.web.accuracy import table
 from app.web.answers import TemplateQuestion, calculated

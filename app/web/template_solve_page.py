@@ -10,13 +10,13 @@ import numpy as np
 from fastapi import Request, Response
 from pydantic import JsonValue
 
-from app.api.routes.templates import show_template
+from app.calculations.bodies import SolveIn
 from app.calculations.cost import solving_seconds
-from app.calculations.schemas import SolveIn
-from app.presentation.typed import text_of, value_of
-from app.schemas.declared import Declared, properties
-from app.schemas.evaluations import Solution
-from app.schemas.templates import Template
+from app.calculations.schemas.evaluations import Solution
+from app.catalogue.routes.templates import show_template
+from app.catalogue.schemas.declarations import Declared, properties
+from app.catalogue.schemas.templates import Template
+from app.presentation.input_text import text_of, value_of
 from app.web.answers import Answered, TemplateQuestion, calculated, stored
 from app.web.places import PlaceOption, suggested
 from app.web.responses import go, show, units_of

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from fastapi import Request, Response
 
 from app.designs.questions import Asked
+from app.designs.schemas.designs import Design
 from app.presentation import bars
 from app.schemas.answers import Quantity
-from app.schemas.designs import Design
-from app.schemas.tolerances import OutputScatter, ToleranceAnalysis, Yield
-from app.tolerances.schemas import ToleranceIn
+from app.tolerances.bodies import ToleranceIn
+from app.tolerances.schemas import OutputScatter, ToleranceAnalysis, Yield
 from app.web.answers import stored
 from app.web.responses import show, units_of
 from app.web.services import PageServices, Refused

@@ -7,15 +7,15 @@ from typing import NamedTuple
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from app.api.routes.revisions import show_revision
-from app.api.routes.templates import show_template
+from app.calculations.schemas.evaluations import Output
+from app.catalogue.routes.templates import show_template
 from app.designs.preview import Previewed
+from app.designs.routes.revisions import show_revision
+from app.designs.schemas.designs import Design, Preview
 from app.presentation import numbers
 from app.presentation.criteria import line
-from app.schemas.analyses import AnalysisOutput
 from app.schemas.answers import Quantity
-from app.schemas.designs import Design, Preview
-from app.schemas.evaluations import Output
+from app.solids.schemas.analyses import AnalysisOutput
 from app.web.forms import Patch, fields, forms_only
 from app.web.responses import go, show, units_of
 from app.web.routes import Id, Text

@@ -8,12 +8,12 @@ from typing import ClassVar
 
 from fastapi import Request
 
+from app.designs.schemas.designs import Design
+from app.designs.schemas.variants import VariantDetail
 from app.designs.variants.detail import WantedVariant
 from app.presentation.criteria import Line, line
 from app.reports.content import Plot
 from app.reports.plots import drawn
-from app.schemas.designs import Design
-from app.schemas.variants import VariantDetail
 from app.web.answers import Answered, stored
 from app.web.blocks import StepBlock
 from app.web.responses import units_of

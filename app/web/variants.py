@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from app.designs.schemas.designs import Design
+from app.designs.schemas.network import DesignNetwork
+from app.designs.schemas.variants import VariantResult, VariantsOut
 from app.designs.variant_sheets.grid import Grid, address, grid_of
 from app.designs.variant_sheets.reading import RELATION, RESULTS
 from app.designs.variant_sheets.writing import page_columns, rows_of
 from app.designs.variants.names import BASE
 from app.presentation.criteria import Line, line
-from app.presentation.typed import text_of
+from app.presentation.input_text import text_of
 from app.reference import Reference
-from app.schemas.designs import Design
-from app.schemas.networks import DesignNetwork
-from app.schemas.variants import VariantResult, VariantsOut
 from app.web.variant_cells import CONTROL, FIRST_VARIANT
 from templates.core.errors import FaultyText
 from templates.core.judging.comparison import WORST_FIRST

@@ -6,10 +6,10 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from app.calculations.schemas.evaluations import Output
+from app.designs.schemas.designs import Design, RevisionWorksheet
 from app.presentation.criteria import Line, headline_of, line, sides, tone
 from app.schemas.criteria import Criterion
-from app.schemas.designs import Design, RevisionWorksheet
-from app.schemas.evaluations import Output
 from app.web.blocks import StepBlock
 from app.web.forms import texts
 

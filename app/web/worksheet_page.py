@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 from fastapi import Request, Response
 
-from app.api.routes.models import list_models
-from app.api.routes.worksheets import list_worksheets
-from app.schemas.worksheets import SheetCheck, SheetFault, SheetLine, SheetSummary
+from app.solids.routes.models import list_models
 from app.web.responses import show
 from app.web.services import PageServices
 from app.web.sheet_preview import offered, tried_in
 from app.web.stages import begins_next, newest_released, stages
-from app.worksheets import checking
-from app.worksheets.schemas import SheetCheckIn
+from app.worksheets import check
+from app.worksheets.bodies import SheetCheckIn
+from app.worksheets.routes.worksheets import list_worksheets
+from app.worksheets.schemas.worksheets import SheetCheck, SheetFault, SheetLine, SheetSummary
 from templates.examples.listing import examples
 
 EQUALS = "<mo>&#x0003D;</mo>"  # in MathML
@@ -112,7 +112,7 @@ async def _checked(services: PageServices, text: str, id: str) -> SheetCheck:
     """Every fault of a text under its line, or every line on paper with the numbers of the example."""
     asked = services.read(SheetCheckIn, {"text": text, "id": id})
     calculated = services.threads.run(
-        services.worksheets.calculated, services.client, checking.checked, asked.text, asked.id
+        services.worksheets.calculated, services.client, check.checked, asked.text, asked.id
     )
     return SheetCheck.model_validate_json(await services.ask(calculated))
 

@@ -9,13 +9,13 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Query, Request, Response
 from pydantic import JsonValue
 
-from app.api.gate.roles import needs
+from app.http.roles import needs
 from app.web.forms import fields, forms_only
 from app.web.responses import go
 from app.web.routes import Id, Text
 from app.web.services import PageServices, Refused, ThePageServices
 from app.web.worksheet_page import Unsaved, editor_page, list_page, start_page
-from app.worksheets.schemas import ReviewIn, SheetIn, SheetPatch, WithdrawIn
+from app.worksheets.bodies import ReviewIn, SheetIn, SheetPatch, WithdrawIn
 from templates.examples.listing import examples
 
 router = APIRouter(include_in_schema=False)

@@ -23,7 +23,7 @@ from typing import NoReturn
 
 from app.workers.job_process import Rehearsal, serve_jobs
 from app.workers.lifeline import hang_on
-from app.workers.scheduling import share_fairly
+from app.workers.priority import share_fairly
 
 Nursery = dict[int, Connection]  # process id of a living job -> where its exit code is sent
 

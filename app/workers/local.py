@@ -9,11 +9,11 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import NamedTuple, TypeVar, TypeVarTuple, cast
 
-from app.workers.ahead import fork_server
 from app.workers.base import GEOMETRY, UNLIMITED, Lane, Limits, shares_process
 from app.workers.errors import DeadlineExceeded, JobCancelled, WorkerError
-from app.workers.isolated import JobProcess
 from app.workers.messages import Outcome, Request, Returned
+from app.workers.prefork import fork_server
+from app.workers.processes import JobProcess
 from app.workers.threads import ONE_THREAD
 from templates.core.progress import Reporter
 
@@ -24,7 +24,7 @@ logger = logging.getLogger(__name__)
 
 # What jobs import: the kernel, every model, and the modules of the job functions. The finite elements are
 # imported by those that need them (0.3 s): NGSolve starts threads at once, which a fork would not have.
-KERNEL = ("cad.regenerate", "cad.models", "app.solids.builds", "app.solids.finding")
+KERNEL = ("cad.regenerate", "cad.models", "app.solids.builds", "app.solids.analysis_process")
 
 
 class LocalProcesses:

@@ -4,10 +4,10 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from typing import TypeVar, TypeVarTuple, cast
 
-from app.workers.ahead import fork_server
 from app.workers.base import Limits
-from app.workers.isolated import JobProcess
 from app.workers.messages import Request
+from app.workers.prefork import fork_server
+from app.workers.processes import JobProcess
 from app.workers.threads import ONE_THREAD
 from templates.core.progress import Reporter
 

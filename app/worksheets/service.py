@@ -16,20 +16,20 @@ from sqlalchemy.orm import Session
 from app.calculations.pool import CalculationPool
 from app.catalogue.catalogues import Catalogues
 from app.identity.audit import record
-from app.schemas.worksheets import Sheet
 from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.storage.identity import now
 from app.storage.tables import WorksheetVersionRow as Row
 from app.workers.errors import DeadlineExceeded
 from app.worksheets import repository, views
+from app.worksheets.bodies import ReviewIn, SheetIn, SheetPatch, WithdrawIn
 from app.worksheets.errors import IdTaken, OtherText, OutOfOrder, OwnReview, StaleWorksheet, TestsFailed
-from app.worksheets.examining import Examined, Tried, examined, tried
+from app.worksheets.examination import Examined, Tried, examined, tried
 from app.worksheets.importing.record import ImportRecord, require_resolved
-from app.worksheets.naming import is_same_person, require_free, signed
-from app.worksheets.published import Published
+from app.worksheets.names import is_same_person, require_free, signed
+from app.worksheets.publication import Published
 from app.worksheets.repository import RELEASED
-from app.worksheets.schemas import ReviewIn, SheetIn, SheetPatch, WithdrawIn
+from app.worksheets.schemas.worksheets import Sheet
 
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")

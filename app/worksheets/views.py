@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from app.catalogue.sheets import Key
-from app.schemas.worksheets import Sheet, SheetSummary, SheetVersion, State
 from app.storage.tables import WorksheetVersionRow as Row
 from app.worksheets.importing.views import origin
+from app.worksheets.schemas.worksheets import Sheet, SheetSummary, SheetVersion, State
 
 Broken = Mapping[Key, str]
 """Why released versions are broken."""

@@ -21,8 +21,8 @@ from pydantic_core import to_json
 
 from app.calculations import rendering
 from app.calculations.array_files import NPY, npy
-from app.calculations.schemas import OIL_FILM
-from app.designs.schemas import PAPER
+from app.calculations.bodies import OIL_FILM
+from app.designs.bodies import PAPER
 from benchmarks.processor_time import proportional_megabytes, used
 from benchmarks.speed.figures import Figure, processor_seconds
 from benchmarks.speed.load import answered

@@ -7,7 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 from benchmarks.processor_time import environment
 from benchmarks.speed.figures import Figure
 

@@ -12,7 +12,7 @@ from serving import API, created
 from sheets import fresh
 from study_helpers import done
 
-from app.identity.acting import INCLUDED
+from app.identity.principal import INCLUDED
 from app.identity.service import Changes
 
 ROLES = {

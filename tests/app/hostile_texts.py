@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from urllib.parse import quote
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 
 Request = tuple[str, str, dict[str, str], bytes]
 

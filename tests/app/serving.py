@@ -23,9 +23,9 @@ from unsynced import spare_the_disk
 
 from app import main
 from app.client import Client
-from app.designs.schemas import PAPER
+from app.designs.bodies import PAPER
+from app.http.server import configuration
 from app.main import create_app
-from app.server import configuration
 from app.settings import Settings
 
 spare_the_disk()

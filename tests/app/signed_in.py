@@ -7,7 +7,7 @@ import httpx
 from serving import folder_of_models, serving
 
 from app.client import Client
-from app.identity.acting import ROLES
+from app.identity.principal import ROLES
 from app.settings import Settings
 
 

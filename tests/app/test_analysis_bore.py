@@ -3,7 +3,7 @@
 import pytest
 from serving import API, faults
 
-from app.solids.finding import bore_of
+from app.solids.analysis_process import bore_of
 from cad.analysis.kinds import KINDS, mode_names
 from cad.errors import AnalysisError
 from cad.models.bearing_housing_v1 import BearingHousing

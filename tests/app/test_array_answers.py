@@ -9,8 +9,8 @@ import pytest
 from serving import API, problem, serving
 
 from app.calculations.array_files import NPY, npy
+from app.calculations.bodies import OIL_FILM
 from app.calculations.errors import NoArray
-from app.calculations.schemas import OIL_FILM
 from app.client import Client, Problem
 from app.settings import Settings
 from templates.core.language.answer import Answer

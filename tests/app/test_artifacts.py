@@ -12,7 +12,7 @@ from app.settings import Settings
 from app.storage.artifacts import ABANDONED, ArtifactStore
 from app.storage.errors import ArtifactMissing
 from app.storage.folder import DataFolder
-from app.storage.opening import opened_store
+from app.storage.stores import opened_store
 
 BYTES = b"ISO-10303-21;" * 1000
 

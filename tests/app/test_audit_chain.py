@@ -8,9 +8,9 @@ from sqlalchemy.exc import DatabaseError
 
 from app.cli.audit import audit_command
 from app.identity import chain
-from app.identity.acting import Principal, acting_as
 from app.identity.audit import record
-from app.identity.sealing import Sealer
+from app.identity.principal import Principal, acting_as
+from app.identity.sealer import Sealer
 from app.storage.engines import writing_engine
 from app.storage.tables import AuditRow
 

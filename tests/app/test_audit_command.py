@@ -9,7 +9,7 @@ from components import database_of
 
 from app.cli.main import main
 from app.identity.audit import record
-from app.identity.sealing import Sealer
+from app.identity.sealer import Sealer
 from app.storage.database import Database
 from app.storage.engines import writing_engine
 from app.storage.migrations import migrate

@@ -4,7 +4,7 @@ import pytest
 from serving import API, created
 
 from app.designs.automap import GENERAL
-from app.designs.schemas import PAPER
+from app.designs.bodies import PAPER
 
 DESIGNS = f"{API}/designs"
 

@@ -8,12 +8,12 @@ import pytest
 from app.calculations import rendering
 from app.calculations.cache import Cache
 from app.calculations.sizes import size_of
-from app.catalogue.finding import find_templates
-from app.designs import memory as designs
+from app.catalogue.discovery import find_templates
+from app.designs.engine import memory as designs
 from app.designs.engine.memory import Memory
 from app.designs.graph import Block
+from app.designs.schemas.designs import RevisionStep
 from app.designs.worksheet import _evaluated
-from app.schemas.designs import RevisionStep
 from templates.core.language.evaluate import evaluate
 
 MIB = 2**20

@@ -3,7 +3,7 @@
 import pytest
 
 from app.calculations.cost import EXPENSIVE, estimated_seconds, solving_seconds
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
 
 CATALOGUE = find_templates(())
 FILM = CATALOGUE.get("oil_film", 2)

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from forked import Forked
 from serving import PATIENCE
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 from app.cli.main import main
 
 INPUTS = [f"{name}={value}" for name, value in OIL_FILM.items()]

@@ -10,10 +10,10 @@ from fastapi import Request
 from patience import patient
 from serving import free_port, moody, paper
 
-from app.api.gate.clients import HEADER, get_client
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 from app.client import AsyncClient, Client, Problem, operations, user_at_host
 from app.client.exchange import read
+from app.http.clients import HEADER, get_client
 from app.schemas.answers import Version
 
 

@@ -7,7 +7,7 @@ import sys
 import pytest
 from click.testing import CliRunner
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 from app.cli.main import COMMANDS, main
 
 INPUTS = [f"{name}={value}" for name, value in OIL_FILM.items()]

@@ -18,8 +18,8 @@ from schemathesis.config import SchemathesisConfig
 from seeds import CHOSEN, seeded
 from serving import API, HANG, created, moody
 
-from app.api.gate.allow import METHODS
-from app.api.routes.film_pressure import TYPICAL
+from app.calculations.routes.film_pressure import TYPICAL
+from app.http.problems import METHODS
 
 SEED = seeded(11)
 CONFIGURATION = Path(__file__).parents[1] / "schemathesis.toml"

@@ -3,8 +3,8 @@
 import pytest
 from serving import API, created, faults, patched, revision
 
-from app.schemas.designs import Revision
-from app.schemas.evaluations import Evaluation
+from app.calculations.schemas.evaluations import Evaluation
+from app.designs.schemas.designs import Revision
 from templates.door import built_in
 
 FILM = dict(built_in().get("oil_film", 2).example)

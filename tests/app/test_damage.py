@@ -229,7 +229,7 @@ def test_a_file_is_hashed_once(tmp_path, monkeypatch):
 
     store = ArtifactStore(tmp_path)
     sha = store.put(b"hash me")
-    monkeypatch.setattr("app.storage.verified._RACY", 0)
+    monkeypatch.setattr("app.storage.verification._RACY", 0)
     counted = []
     digest = hashlib.file_digest
     monkeypatch.setattr("hashlib.file_digest", lambda *given: (counted.append(1), digest(*given))[1])

@@ -2,10 +2,10 @@
 
 import pytest
 
+from app.calculations.schemas.evaluations import Output
+from app.catalogue.schemas.declarations import properties
 from app.presentation import numbers
 from app.schemas.answers import Quantity, Shown
-from app.schemas.declared import properties
-from app.schemas.evaluations import Output
 
 
 def schema(title):

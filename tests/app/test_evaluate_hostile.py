@@ -7,8 +7,8 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from serving import API, HANG
 
-from app.calculations.schemas import OIL_FILM
-from app.schemas.evaluations import Evaluation
+from app.calculations.bodies import OIL_FILM
+from app.calculations.schemas.evaluations import Evaluation
 from app.schemas.problems import MEDIA_TYPE, Problem
 
 PLAIN, AS_JSON = f"{API}/templates/oil_film/versions/1/evaluate", {"Content-Type": "application/json"}

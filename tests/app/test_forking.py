@@ -11,27 +11,28 @@ import pytest
 from patience import patient
 from test_workers import alive, eventually
 
-from app.workers import ahead, isolated
+from app.workers import prefork, processes
 
 FORKS = """
 import os, sys, threading
-from app.workers import ahead, pool
+from app.workers import pool
+from app.workers import prefork
 sys.path.insert(0, {tests!r})
 import victims
 
 def forked(preload):
-    ahead.fork(preload, lambda: os.environ.update(PREPARED="yes"))
-    assert ahead.is_forked(preload)
+    prefork.fork(preload, lambda: os.environ.update(PREPARED="yes"))
+    assert prefork.is_forked(preload)
     worker = pool.WarmProcesses(preload)
-    assert not ahead.is_forked(preload)
+    assert not prefork.is_forked(preload)
     return worker
 
 workers = [forked(("victims", name)) for name in ("json", "csv")]
-ahead.fork(("victims", "abc"))
-unused = ahead._started["victims", "abc"]._process
+prefork.fork(("victims", "abc"))
+unused = prefork._started["victims", "abc"]._process
 assert unused.poll() is None
-ahead.close()
-assert unused.poll() is not None and not ahead.is_forked(("victims", "abc"))
+prefork.close()
+assert unused.poll() is not None and not prefork.is_forked(("victims", "abc"))
 pids = [worker._forkserver._process.pid for worker in workers]
 """
 RUNS = """
@@ -52,7 +53,7 @@ from app.cli.start import begin_serving
 begin_serving()
 import app.cli.serve
 app.cli.serve.find_templates(()), app.cli.serve.models()
-assert app.cli.serve.ahead._may_fork(), "something has started a thread"
+assert app.cli.serve.prefork._may_fork(), "something has started a thread"
 print(*sys.modules)
 """
 
@@ -86,8 +87,8 @@ def test_a_process_with_threads_forks_none():
     thread = threading.Thread(target=end.wait)
     thread.start()
     try:
-        ahead.fork(("json",))
-        assert not ahead.is_forked(("json",))
+        prefork.fork(("json",))
+        assert not prefork.is_forked(("json",))
     finally:
         end.set()
         thread.join()
@@ -96,7 +97,7 @@ def test_a_process_with_threads_forks_none():
 def test_what_is_forked_waits_as_long_as_it_may():
     if not (pid := os.fork()):
         os.execv(sys.executable, [sys.executable, "-c", "import time; time.sleep(60)"])
-    process: isolated.Process = ahead.Forked(pid)
+    process: processes.Process = prefork.Forked(pid)
     assert process.poll() is None
     with pytest.raises(subprocess.TimeoutExpired):
         process.wait(0.01)

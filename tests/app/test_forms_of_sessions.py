@@ -9,7 +9,7 @@ import pytest
 from described import APP
 from fastapi.routing import iter_route_contexts
 
-from app.api.gate.access import SIGN_IN
+from app.http.access import SIGN_IN
 
 FORMS = sorted(
     context.path

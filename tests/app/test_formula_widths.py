@@ -6,7 +6,7 @@ import pytest
 import typst
 
 from app.calculations.worksheet import formulas
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
 from app.reports import widths
 from app.reports.typesetting import DOCUMENT
 from app.reports.widths import fits

@@ -11,8 +11,8 @@ from described import APP
 from fastapi.routing import iter_route_contexts
 from starlette.routing import Mount
 
-from app.api.gate.roles import needs_of, routes_of
-from app.identity.acting import INCLUDED, ROLES
+from app.http.roles import needs_of, routes_of
+from app.identity.principal import INCLUDED, ROLES
 
 PUBLIC = {
     "GET /healthz",
@@ -139,7 +139,7 @@ def test_the_gate_sees_all_routes_that_fastapi_serves():
 
 
 def test_no_route_of_an_app_is_left_unguarded():
-    from app.api.gate.roles import Guarded
+    from app.http.roles import Guarded
 
     unguarded = [path for _, path, route in ROUTES if not isinstance(route.handle, Guarded)]
     assert unguarded == []

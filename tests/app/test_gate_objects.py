@@ -14,7 +14,7 @@ from sqlalchemy import text, update
 from study_helpers import OUT, TWICE, done
 from test_gate_matrix import ROUTES, needs_of
 
-from app.identity.acting import INCLUDED, ROLES
+from app.identity.principal import INCLUDED, ROLES
 from app.storage.tables import Base, StudyRow
 
 SECRET = "zephyrine"  # in the names of all that the author has

@@ -22,7 +22,7 @@ from hostile import (
 )
 from serving import API, created, moody
 
-from app.api.reading import SHEET_TYPES
+from app.http.strict_requests import SHEET_TYPES
 from app.storage.engines import sqlite_file
 from app.storage.tables import DesignRow, DesignTagRow, JobRow, RevisionRow
 

@@ -7,8 +7,8 @@ import pytest
 from approving import Room, signing
 from serving import API, created, moody, problem
 
-from app.api.gate.access import SIGN_IN
-from app.api.gate.clients import HEADER
+from app.http.access import SIGN_IN
+from app.http.clients import HEADER
 
 ADMIN = "admin"
 

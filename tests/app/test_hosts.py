@@ -8,9 +8,8 @@ import pytest
 from fastapi import FastAPI, Request
 from pydantic import ValidationError
 
-from app.api import problems
-from app.api.gate import guard
-from app.api.gate.clients import COOKIE, HEADER, TheClient
+from app.http import guard, problems
+from app.http.clients import COOKIE, HEADER, TheClient
 from app.main import create_app
 from app.settings import Settings
 from app.settings.hosts import Authority, Hosts, is_loopback, parse

@@ -6,11 +6,11 @@ from impact_designs import at_points, batch_of, loaded, paper, weighed, with_var
 from row_designs import BEARING, CATALOGUES, CURVES
 
 from app.designs.document import Document
-from app.impact.alone import outcome_alone
-from app.impact.comparing import change_size
+from app.impact.comparison import change_size
 from app.impact.forms import form_of
 from app.impact.process import _columns, compared
-from app.impact.ranking import rank
+from app.impact.severity import rank
+from app.impact.single import outcome_alone
 from app.impact.solids import Solids
 from app.impact.task import upgraded
 from app.impact.together import Together

@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import pytest
 
 from app.designs import regeneration
+from app.designs.calculation_cache import Prepared
 from app.designs.document import Iteration
 from app.designs.errors import NotConverged
-from app.designs.recent import Prepared
 from app.designs.regeneration import Regeneration
 from app.reference import Reference
 

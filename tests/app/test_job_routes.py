@@ -14,10 +14,10 @@ from fastapi import FastAPI
 from forked import Forked
 from patience import GLANCE, patient
 
-from app.api.gate.streams import Streams
-from app.api.routes.jobs import router
 from app.catalogue.catalogues import Catalogues
+from app.http.streams import Streams
 from app.jobs.errors import JobFinished, JobNotFound
+from app.jobs.routes import router
 from app.jobs.service import Jobs
 from app.settings import Settings
 from app.workers.inline import Inline

@@ -5,10 +5,10 @@ import os
 import pytest
 
 from app.calculations.cache import Cache
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
+from app.designs.calculation_cache import CalculationCache, Prepared
 from app.designs.engine.memory import Memory
 from app.designs.graph import Block
-from app.designs.recent import Prepared, Recent
 from app.designs.regeneration import Regeneration
 from app.designs.service import Designs
 from app.storage.artifacts import ArtifactStore
@@ -62,10 +62,10 @@ def test_all_bytes_of_an_artifact_have_left_the_program_when_it_is_synced(tmp_pa
 
 
 def test_a_job_looks_for_the_calculation_of_its_document_where_the_save_has_kept_it():
-    recent = Recent()
-    saving = Designs(None, None, None, recent)
-    job = Regeneration(None, None, None, None, None, recent)
+    calculation_cache = CalculationCache()
+    saving = Designs(None, None, None, calculation_cache)
+    job = Regeneration(None, None, None, None, None, calculation_cache)
     calculation = Prepared(None, None)
-    saving.recent.keep({"name": "a"}, calculation)
-    assert job.recent.find({"name": "a"}) is calculation
-    assert job.recent.find({"name": "b"}) is None
+    saving.calculation_cache.keep({"name": "a"}, calculation)
+    assert job.calculation_cache.find({"name": "a"}) is calculation
+    assert job.calculation_cache.find({"name": "b"}) is None

@@ -5,7 +5,7 @@ import re
 import pytest
 from serving import API, created
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 from app.designs import worksheet
 from app.web import sections
 

@@ -6,7 +6,7 @@ from sqlalchemy import text
 
 from app.cli.keys import opened
 from app.cli.main import main
-from app.identity.acting import Principal, acting_as
+from app.identity.principal import Principal, acting_as
 from app.observation.secrets import key_prefix
 from app.storage.database import Database
 

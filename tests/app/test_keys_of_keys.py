@@ -6,8 +6,8 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from app.client import Client, Problem
-from app.identity.acting import Principal, acting_as
 from app.identity.errors import NotSignedIn
+from app.identity.principal import Principal, acting_as
 from app.identity.service import Changes
 
 

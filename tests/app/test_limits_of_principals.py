@@ -10,7 +10,7 @@ from sheets import BUSH, WIDER, drafted, edited, fresh
 from study_helpers import OUT, TWICE, done
 
 from app.client import Client
-from app.identity.acting import Principal, acting_as
+from app.identity.principal import Principal, acting_as
 from app.identity.service import Changes
 
 sys.path.append(str(Path(__file__).parent / "worksheet_import"))  # mathcad_files

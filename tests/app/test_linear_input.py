@@ -6,22 +6,22 @@ import pytest
 from scaling import LIMIT, assert_constant, assert_linear, times
 from starlette.requests import cookie_parser
 
-from app.api import problems
-from app.api.gate.heads import _plain_cookies
-from app.api.paging import page_of
-from app.api.routes.design_files import _accepted
-from app.api.routes.models import BuildIn
-from app.api.routes.reports import REPORTS, _wanted
 from app.api.waiting import patience
+from app.calculations.bodies import OIL_FILM, EvaluateIn
 from app.calculations.curves import _NUMBER, LONGEST_LINE, read_curves
-from app.calculations.schemas import OIL_FILM, EvaluateIn
 from app.calculations.size import points
 from app.designs.document import Document, merge
 from app.designs.graph import Catalogues, Graph, build_graph
+from app.designs.routes.files import _accepted
 from app.designs.size import MOST_RELATION_TEXT
+from app.http import problems
+from app.http.heads import _plain_cookies
+from app.http.pages import page_of
 from app.presentation import numbers
-from app.presentation.typed import text_of, value_of
+from app.presentation.input_text import text_of, value_of
 from app.reports.cells import clean
+from app.reports.routes import REPORTS, _wanted
+from app.solids.routes.models import BuildIn
 from app.web.forms import kept, patch_of
 from cad.lists import listed
 from templates.core.catalogue.finding import Catalogue

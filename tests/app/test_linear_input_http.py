@@ -10,8 +10,8 @@ import pytest
 from openpyxl import load_workbook
 from serving import API, HANG, created, problem
 
-from app.api.gate.heads import LONGEST_HEAD, MOST_FIELDS, MOST_HEADERS
 from app.designs.explain import DEEPEST
+from app.http.heads import LONGEST_HEAD, MOST_FIELDS, MOST_HEADERS
 from tests.app.hostile_texts import EVERY
 
 ANSWERED = {

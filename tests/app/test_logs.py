@@ -13,8 +13,8 @@ from click.testing import CliRunner
 from prometheus_client.parser import text_string_to_metric_families
 from serving import API, PATIENCE, ServerProcess, created, moody, until
 
-from app.api.gate.observing import Observed
 from app.cli.main import main
+from app.http.request_log import Observed
 from app.observation import logs, metrics
 from app.observation.metrics import REGISTRY
 
@@ -219,7 +219,7 @@ def test_who_left_is_counted_apart(caplog):
 
     scope = {"type": "http", "method": "POST", "path": "/left", "headers": [], "client": ("127.0.0.1", 1)}
     before = REGISTRY.get_sample_value("crankwright_requests_total", LEFT) or 0
-    with caplog.at_level("INFO", "app.api.gate.observing"):
+    with caplog.at_level("INFO", "app.http.request_log"):
         asyncio.run(Observed(app)(scope, receive, send))
     assert sent[0]["status"] == 409
     assert caplog.records[-1].status == 499

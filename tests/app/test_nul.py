@@ -4,7 +4,7 @@ import pytest
 from scaling import assert_linear
 from serving import API, created, faults
 
-from app.api import nul
+from app.http import nul
 
 
 @pytest.fixture(scope="module")

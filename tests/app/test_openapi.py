@@ -11,9 +11,9 @@ from patience import until
 from serving import API, created, paper
 from study_helpers import done
 
-from app.calculations.schemas import OIL_FILM
-from app.schemas.evaluations import Evaluation, Solution, Worksheet
-from app.studies.schemas import EXAMPLE
+from app.calculations.bodies import OIL_FILM
+from app.calculations.schemas.evaluations import Evaluation, Solution, Worksheet
+from app.studies.bodies import EXAMPLE
 
 METHODS = ("get", "post", "patch", "put", "delete")
 

@@ -13,8 +13,8 @@ from serving import API, problem, serving
 from sleeping import folder_of_sleeper
 from test_workers import eventually
 
-from app.api.gate.pacing import Pace, PiecesResponse
-from app.api.reading import StrictRequest
+from app.http.pace import Pace, PiecesResponse
+from app.http.strict_requests import StrictRequest
 from app.settings import Settings
 from app.storage.artifacts import ArtifactStore
 from app.workers.base import Limits

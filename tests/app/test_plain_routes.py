@@ -3,7 +3,7 @@
 import pytest
 from serving import API
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 
 EVALUATE = f"{API}/templates/oil_film/versions/1/evaluate"
 DESIGNS = f"{API}/designs"

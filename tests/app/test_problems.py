@@ -5,9 +5,9 @@ import re
 import pytest
 from serving import API, problem
 
-from app.api.problem_kinds import HTTP, INTERNAL, TABLE, kind_of
-from app.api.problems import describe
-from app.api.reading import StrictRoute
+from app.http.problem_kinds import HTTP, INTERNAL, TABLE, kind_of
+from app.http.problems import describe
+from app.http.strict_requests import StrictRoute
 from app.storage.errors import StorageError
 
 KINDS = {kind.slug: kind for kind in (*TABLE.values(), *HTTP.values(), INTERNAL)}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from serving import API, HANG, created, faults, paper, problem
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 
 DESIGNS = f"{API}/designs"
 FILM = f"{API}/templates/oil_film/versions/1"

@@ -12,7 +12,7 @@ from patience import patient, until
 from serving import problem, serving
 from sqlalchemy import event
 
-from app.api.readiness import Processes, Readiness, Space, Writing
+from app.observation.readiness import Processes, Readiness, Space, Writing
 from app.settings import Settings
 from app.workers.inline import Inline
 from app.workers.local import LocalProcesses
@@ -100,7 +100,7 @@ def test_answers_are_kept_for_a_second(monkeypatch):
         return await asyncio.gather(*(readiness.failures() for _ in range(20)))
 
     clock = SimpleNamespace(monotonic=lambda: 0.0)
-    monkeypatch.setattr("app.api.readiness.time", clock)
+    monkeypatch.setattr("app.observation.readiness.time", clock)
     assert asyncio.run(many()) == [{"one": None}] * 20
     assert len(asked) == 1
 

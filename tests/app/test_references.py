@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
 from app.designs.document import Document
 from app.designs.engine.calculate import calculate, resume
 from app.designs.graph import Catalogues, build_graph

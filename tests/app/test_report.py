@@ -9,8 +9,8 @@ import pypdf
 import pytest
 from serving import API, created, moody, paper, patched, problem
 
-from app.api.gate.guard import PAGE_POLICY
-from app.designs.schemas import PAPER
+from app.designs.bodies import PAPER
+from app.http.guard import PAGE_POLICY
 from app.workers.errors import DeadlineExceeded
 
 DESIGNS = f"{API}/designs"

@@ -15,14 +15,14 @@ from app.designs import results
 from app.designs.document import Document
 from app.designs.engine.calculate import calculate
 from app.designs.graph import Catalogues, build_graph
+from app.designs.schemas.designs import Revision
 from app.designs.service import resolved
 from app.designs.worksheet import worksheet
 from app.reports.content import Report
-from app.reports.screen import page
+from app.reports.routes import page
 from app.reports.signatures import signatures_of
 from app.reports.steps import step_of
 from app.reports.verdict import judged
-from app.schemas.designs import Revision
 from cad.catalogue import models
 from templates.door import built_in
 

@@ -7,7 +7,7 @@ import pytest
 import victims
 
 from app.workers.pool import WarmProcesses
-from app.workers.scheduling import answer_promptly, share_fairly
+from app.workers.priority import answer_promptly, share_fairly
 
 
 def in_a_thread(function):

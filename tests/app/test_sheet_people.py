@@ -3,8 +3,8 @@
 import pytest
 from pydantic import ValidationError
 
-from app.worksheets.naming import is_same_person
-from app.worksheets.schemas import ReviewIn
+from app.worksheets.bodies import ReviewIn
+from app.worksheets.names import is_same_person
 
 
 @pytest.mark.parametrize(

@@ -11,12 +11,12 @@ from serving import API, PATIENCE, ServerProcess, problem, serving
 from sheets import BUSH, WIDER, drafted, edited, place, released, reviewed, step
 
 from app.catalogue.catalogues import Catalogues
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
 from app.cli.main import main
 from app.settings import Settings
 from app.storage.database import Database
 from app.storage.folder import DataFolder
-from app.worksheets.published import Published
+from app.worksheets.publication import Published
 from cad.catalogue import models as find_models
 from templates.core.errors import QuarantinedTemplate
 

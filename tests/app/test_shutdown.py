@@ -8,7 +8,7 @@ from contextlib import closing
 import pytest
 from patience import patient
 
-from app.jobs.shutdown import on_stop_signal
+from app.http.server import on_stop_signal
 
 
 @pytest.fixture

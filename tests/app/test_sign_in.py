@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from app.api.gate.access import SIGN_IN
+from app.http.access import SIGN_IN
 from app.identity.service import Changes
 
 PAGE = {"Accept": "text/html"}

@@ -8,12 +8,11 @@ from approving import Room, signed, signing
 from click.testing import CliRunner
 from serving import API, created, paper, patched
 
+from app.approvals.schemas import ATTACHMENT, Approvals
 from app.cli.approvals import verify_report_command
 from app.cli.connections import KEY
 from app.identity.service import Changes
 from app.reports.verification import NotReport, read_block, verify
-from app.schemas.approvals import Approvals
-from app.schemas.signatures import ATTACHMENT
 
 
 @pytest.fixture(scope="module")

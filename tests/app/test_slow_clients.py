@@ -11,9 +11,9 @@ import pytest
 from patience import GLANCE
 from serving import API, HANG, PATIENCE, problem, serving
 
-from app.api.gate.heads import LONGEST_HEAD
-from app.api.gate.streams import Streams, TooManyStreams
-from app.calculations.schemas import OIL_FILM as FILM
+from app.calculations.bodies import OIL_FILM as FILM
+from app.http.heads import LONGEST_HEAD
+from app.http.streams import Streams, TooManyStreams
 from app.settings import Settings
 
 EVALUATE = f"{API}/templates/oil_film/versions/1/evaluate"

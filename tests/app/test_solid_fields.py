@@ -15,8 +15,8 @@ from PIL import Image
 from serving import API, created, revision
 
 from app.designs import solid_fields
+from app.designs.schemas.designs import RevisionStep
 from app.designs.solid_fields import ends_of
-from app.schemas.designs import RevisionStep
 from app.solids import analysis_rows as repository
 from app.solids.questions import Options, question
 from cad.analysis.kinds import KINDS, TABLES

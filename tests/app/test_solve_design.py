@@ -8,10 +8,10 @@ from serving import API, faults, problem
 
 from app.designs.document import Document
 from app.designs.graph import Catalogues
+from app.designs.schemas.solution import DesignSolution
 from app.designs.service import resolved
 from app.designs.solved import solved
 from app.designs.tasks import DesignTask
-from app.schemas.solve import DesignSolution
 from cad.catalogue import models
 from templates.core.errors import InvalidInputs, Unreachable
 from templates.core.language.evaluate import evaluate

@@ -27,7 +27,7 @@ from serving import (
     problem,
 )
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 from templates.oil_film.cycle_heat_balance_v1 import CycleHeatBalance
 
 DESIGNS = f"{API}/designs"
@@ -262,7 +262,7 @@ SIGNALS = """
 import signal, sys, time
 from itertools import count
 import uvicorn
-from app.server import Server
+from app.http.server import Server
 
 server, counted = Server(uvicorn.Config(None), 5.0, lambda: None), count()
 

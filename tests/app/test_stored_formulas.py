@@ -6,9 +6,9 @@ import pytest
 from pydantic_core import to_json
 
 from app.calculations import rendering
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
 from app.designs import worksheet as worksheets
-from app.schemas.designs import Revision, RevisionStep
+from app.designs.schemas.designs import Revision, RevisionStep
 from templates.core.language.evaluate import evaluate
 from templates.core.language.record import Record, record, restored
 from templates.core.paper.verdicts import checks

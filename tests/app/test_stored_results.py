@@ -5,7 +5,7 @@ import hashlib
 import pytest
 from serving import API, created, patched
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 from app.designs import repository, stored_results
 from app.designs.stored_results import Results, results_of
 from app.storage.tables import canonical_json

@@ -13,7 +13,7 @@ from app.jobs.errors import JobRests
 from app.jobs.service import Jobs
 from app.settings import Settings
 from app.studies.archive import Archive, packed
-from app.studies.finding import front, ranked
+from app.studies.front import front, ranked
 from app.studies.uploads import read_rows
 from app.workers.inline import Inline
 from app.workers.pieces import Pieces

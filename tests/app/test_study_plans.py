@@ -6,8 +6,8 @@ from study_helpers import CLEARANCE, FILM, LOSS, THICKNESS, asked, new_design
 
 from app.catalogue.catalogues import loaded
 from app.studies.chunks import explored
-from app.studies.estimating import IN_CALL, Pace
-from app.studies.planning import planned
+from app.studies.estimate import IN_CALL, Pace
+from app.studies.plan import planned
 from app.studies.task import Task
 from templates.core.errors import InvalidInputs
 

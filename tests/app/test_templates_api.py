@@ -3,7 +3,7 @@
 import pytest
 from serving import API, created, faults, moody, pages, problem
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 
 FILM = f"{API}/templates/oil_film/versions/1"
 OTHER_UNITS = {

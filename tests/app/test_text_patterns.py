@@ -6,8 +6,8 @@ import jsonschema_rs
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from app.schemas.approvals import Text
-from app.schemas.identity import Name
+from app.approvals.schemas import Text
+from app.identity.schemas.principals import Name
 
 LETTERS = [chr(code) for code in range(sys.maxunicode + 1) if code < 0x3100 or code in (0xFEFF, 0x1F600)]
 

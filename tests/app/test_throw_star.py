@@ -5,10 +5,10 @@ from xml.etree import ElementTree
 
 import pytest
 
+from app.calculations.schemas.evaluations import Output
 from app.reports.pictures import MOST_PINS, pictures
 from app.reports.plots import drawn
 from app.reports.throw_star import RAY, rays, throw_star
-from app.schemas.evaluations import Output
 
 V8 = [45.0, 45.0, 135.0, 135.0, 315.0, 315.0, -135.0, 225.0]
 DECLARED = SimpleNamespace(

@@ -3,7 +3,7 @@
 import pytest
 from serving import API, created, paper, revision
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 from templates import get
 
 WIDTH = {"value": 18, "unit": "mm", "plus": 0.1, "minus": "0.05 mm"}

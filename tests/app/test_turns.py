@@ -119,7 +119,7 @@ class TestTurns:
     def test_a_job_that_is_given_back_keeps_its_turn(self, put, database):
         put(ANNA, "first"), put(BEN, "second")
         job = database.write(repository.claim)
-        database.write(lambda session: repository.give_back(session, job, 1))
+        database.write(lambda session: repository.requeue(session, job, 1))
         assert database.write(repository.claim).id == job.id
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
 from app.presentation.units import shown_unit, shown_value
 from templates.core.units.units import compatible, unit
 

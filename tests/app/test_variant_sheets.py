@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 from openpyxl import Workbook, load_workbook
 from seeds import examples
 
+from app.designs.schemas.variants import VariantColumn, VariantsOut
 from app.designs.variant_sheets.csv_files import read_csv, write_csv
-from app.designs.variant_sheets.grid import address
+from app.designs.variant_sheets.grid import address, refuse
 from app.designs.variant_sheets.reading import read_variants
 from app.designs.variant_sheets.writing import rows_of, sheet_columns
 from app.designs.variant_sheets.xlsx_files import MOST_UNPACKED, read_xlsx, write_xlsx
-from app.schemas.variants import VariantColumn, VariantsOut
-from templates.core.errors import InvalidInputs, refuse
+from templates.core.errors import InvalidInputs
 
 UNITS = {
     "clearance": "um",

@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import uvicorn
 from fastapi import FastAPI
 
-from app.api.gate.streams import Streams
-from app.api.routes.jobs import router
 from app.catalogue.catalogues import Catalogues
+from app.http.server import on_stop_signal
+from app.http.streams import Streams
+from app.jobs.routes import router
 from app.jobs.service import Jobs
-from app.jobs.shutdown import on_stop_signal
 from app.settings import Settings
 from app.storage.database import Database
 from app.workers.inline import Inline

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from app.solids.finding import throw_of
+from app.solids.analysis_process import throw_of
 from app.solids.questions import Question
 from cad.cranks.chain_throw import shaft_of_throws, sizes_of_throw, throws_apart
 from cad.cranks.split_parameters import least_gap

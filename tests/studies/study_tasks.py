@@ -1,11 +1,11 @@
 """Studies as a calculation process gets them, without a service."""
 
 from app.catalogue.catalogues import Catalogues
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
 from app.designs.document import Document
 from app.designs.service import resolved
-from app.studies.planning import planned
-from app.studies.searching import Search
+from app.studies.plan import planned
+from app.studies.search_slice import Search
 from app.studies.task import Task
 from cad.catalogue import models
 

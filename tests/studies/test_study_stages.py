@@ -8,7 +8,7 @@ from functools import partial
 import pytest
 from study_tasks import NEVER, planned_search
 
-from app.studies import searching, task
+from app.studies import search_slice, task
 from app.studies.methods import evolution
 from app.studies.methods.front import Effort, pareto_front
 
@@ -38,7 +38,7 @@ class Watch:
 def searched_on(asked, search, chunks):
     """Slice after slice until the end; what is in `chunks` is what a process leaves behind."""
     while True:
-        part = searching.searched(asked, search, tuple(chunks))
+        part = search_slice.searched(asked, search, tuple(chunks))
         if part.chunk is not None:
             chunks.append(part.chunk.content)
         if part.outcome is not None:
@@ -56,8 +56,8 @@ def plain(outcome):
 @pytest.mark.parametrize("times", [1, pytest.param(3, marks=pytest.mark.slow)])
 @pytest.mark.slow
 def test_an_interrupted_front_repeats_no_finished_generation(monkeypatch, times):
-    monkeypatch.setattr(searching, "pareto_front", partial(pareto_front, effort=SMALL))
-    monkeypatch.setattr(searching, "SLICE_SECONDS", 0.2)
+    monkeypatch.setattr(search_slice, "pareto_front", partial(pareto_front, effort=SMALL))
+    monkeypatch.setattr(search_slice, "SLICE_SECONDS", 0.2)
     asked, search = planned_search(minimise=[LOSS], maximise=[FILM])
     watch, undisturbed = Watch(monkeypatch), []
     outcome = searched_on(asked, search, undisturbed)
@@ -84,15 +84,15 @@ def test_an_interrupted_front_repeats_no_finished_generation(monkeypatch, times)
 
 @pytest.mark.slow
 def test_each_level_shows_its_front_its_promise_and_what_is_true_of_it(monkeypatch):
-    monkeypatch.setattr(searching, "pareto_front", partial(pareto_front, effort=SMALL))
-    monkeypatch.setattr(searching, "ALONE", SMALL)
+    monkeypatch.setattr(search_slice, "pareto_front", partial(pareto_front, effort=SMALL))
+    monkeypatch.setattr(search_slice, "ALONE", SMALL)
     goals = {"minimise": [LOSS], "maximise": [FILM]}
     asked, search = planned_search(**goals, explore={"tolerance": 0.2}, confirm={"tolerance": 1e-3})
     outcome = searched_on(asked, search, [])
     names = [dict(search.levels[one.level])["film"] for one in outcome.trade]
     assert names[0] == "fit"
     assert "short_bearing" in names
-    assert dict(search.levels[searching.CONFIRM])["film"] == "map"
+    assert dict(search.levels[search_slice.CONFIRM])["film"] == "map"
     for name, one in zip(names, outcome.trade, strict=True):
         off = [place.promise[1] / place.confirmed[1] - 1 for place in one.places]  # of the film
         assert len(one.places) > 1, name
@@ -102,11 +102,11 @@ def test_each_level_shows_its_front_its_promise_and_what_is_true_of_it(monkeypat
 
 @pytest.mark.slow
 def test_a_front_that_has_no_rows_left_for_other_levels_says_so(monkeypatch):
-    monkeypatch.setattr(searching, "pareto_front", partial(pareto_front, effort=SMALL))
+    monkeypatch.setattr(search_slice, "pareto_front", partial(pareto_front, effort=SMALL))
     goals = {"minimise": [LOSS], "maximise": [FILM]}
     asked, search = planned_search(**goals, explore={"tolerance": 0.2}, confirm={"tolerance": 1e-3})
     first = searched_on(asked, search, []).trade[0]
     few = replace(search, most=first.rows + 1000)
     outcome = searched_on(asked, few, [])
-    assert [one.level for one in outcome.trade] == [searching.EXPLORE]
+    assert [one.level for one in outcome.trade] == [search_slice.EXPLORE]
     assert outcome.notes == (f"not every level is compared: a search takes at most {few.most} rows",)

@@ -19,7 +19,7 @@ from sqlalchemy import text
 from app.settings import Settings
 from app.storage.engines import writing_engine
 from app.storage.folder import DataFolder
-from app.storage.opening import opened_store
+from app.storage.stores import opened_store
 from app.team.errors import DidNotStart
 from app.team.object_store import AWS
 

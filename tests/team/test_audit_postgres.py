@@ -8,14 +8,14 @@ from sqlalchemy import text
 from sqlalchemy.exc import DatabaseError
 
 from app.approvals.errors import ApprovalError
+from app.approvals.schemas import ApprovalIn
 from app.approvals.service import Approving
 from app.designs import repository
 from app.designs.repository import Written
 from app.identity import chain
-from app.identity.acting import Principal, acting_as
 from app.identity.audit import record
-from app.identity.sealing import Sealer
-from app.schemas.approvals import ApprovalIn
+from app.identity.principal import Principal, acting_as
+from app.identity.sealer import Sealer
 from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.storage.tables import ApprovalRow

@@ -15,7 +15,7 @@ from app.settings import Settings
 from app.storage.copies import Copies
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, ArtifactsUnreachable
 from app.storage.folder import DataFolder
-from app.storage.opening import Figures, opened_store
+from app.storage.stores import Figures, opened_store
 
 obstore = pytest.importorskip("obstore", reason="the client of S3 is not installed")
 buckets = pytest.importorskip("app.storage.bucket")
@@ -165,7 +165,7 @@ class TestPuts:
             from pathlib import Path
             from app.settings import Settings
             from app.storage.folder import DataFolder
-            from app.storage.opening import opened_store
+            from app.storage.stores import opened_store
             import sys
             folder = DataFolder(Path(sys.argv[1]))
             place = {{"artifacts_url": "{s3.url}/{tmp_path.name}", "s3_endpoint": "{s3.endpoint}"}}

@@ -12,7 +12,7 @@ from app.solids import rows
 from app.storage.database import Database
 from app.storage.folder import DataFolder
 from app.storage.migrations import migrate
-from app.storage.opening import opened_store
+from app.storage.stores import opened_store
 
 BYTES = os.urandom(10_000)
 

@@ -94,4 +94,4 @@ def group_of(group):
     """The processes of a group that have become what they shall be."""
     lines = subprocess.run(["ps", "-eo", "pgid,pid,args"], capture_output=True, text=True, check=True).stdout
     split = (line.split(None, 2) for line in lines.splitlines()[1:])
-    return {int(pid) for number, pid, name in split if int(number) == group and "app.team.tied" not in name}
+    return {int(pid) for number, pid, name in split if int(number) == group and "app.team.tether" not in name}

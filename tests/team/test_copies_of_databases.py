@@ -16,7 +16,7 @@ from app.storage.copies_of_databases import NOTE, DatabaseCopied, require_only_c
 from app.storage.database import Database
 from app.storage.errors import ArtifactsUnreachable
 from app.storage.folder import DataFolder
-from app.storage.opening import opened_store
+from app.storage.stores import opened_store
 
 pytestmark = pytest.mark.slow  # .ci/run runs these always, beside the kills
 

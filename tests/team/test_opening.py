@@ -11,7 +11,7 @@ from app.settings import Settings
 from app.storage.artifacts import ArtifactStore
 from app.storage.errors import StoreRefused
 from app.storage.folder import DataFolder
-from app.storage.opening import opened_store
+from app.storage.stores import opened_store
 
 
 @pytest.fixture

@@ -12,8 +12,8 @@ from app.storage.database import Database
 from app.storage.errors import StoreRefused
 from app.storage.folder import DataFolder
 from app.storage.migrations import migrate
-from app.storage.opening import opened_store
 from app.storage.ownership import claim
+from app.storage.stores import opened_store
 
 
 @pytest.fixture(params=["folder", "bucket"])

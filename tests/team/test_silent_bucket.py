@@ -7,7 +7,7 @@ from silence import Silence
 from app.settings import Settings
 from app.storage.errors import ArtifactsUnreachable, StoreRefused
 from app.storage.folder import DataFolder
-from app.storage.opening import opened_store
+from app.storage.stores import opened_store
 from app.team.object_store import AWS
 
 s3 = pytest.importorskip("app.storage.s3", reason="the client of S3 is not installed")

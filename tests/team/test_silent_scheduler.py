@@ -8,7 +8,7 @@ from dask_processes import commanded
 from patience import until
 from silence import Silence
 
-from app.api.readiness import Processes
+from app.observation.readiness import Processes
 from app.settings import Settings
 
 pytest.importorskip("distributed", reason="Dask is not installed")

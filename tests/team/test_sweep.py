@@ -9,10 +9,10 @@ from sqlalchemy.orm import Session
 from app.retention.files import Sweep
 from app.settings import Settings
 from app.solids import rows
-from app.storage.alone import alone
 from app.storage.database import Database
 from app.storage.folder import DataFolder
-from app.storage.opening import opened_store
+from app.storage.locks import alone
+from app.storage.stores import opened_store
 
 pytestmark = pytest.mark.slow  # .ci/run runs these always, beside the kills
 

@@ -10,7 +10,7 @@ from serving import API, PATIENCE, created, folder_of_models, moody, patched, re
 from app.cli.main import main
 from app.settings import Settings
 from app.storage.folder import DataFolder
-from app.storage.opening import opened_store
+from app.storage.stores import opened_store
 
 pytestmark = pytest.mark.slow  # .ci/run runs these always, beside the kills
 

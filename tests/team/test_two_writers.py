@@ -243,7 +243,7 @@ class TestClaims:
             database.write(lambda session: repository.add(session, "k", {}, None, None))
         for owner in ("one", "other"):
             database.write(lambda session, owner=owner: repository.claim(session, owner=owner, lease=30.0))
-        assert len(database.write(lambda session: repository.give_back_all(session, "one"))) == 1
+        assert len(database.write(lambda session: repository.requeue_all(session, "one"))) == 1
         with database.read() as session:
             owners = session.scalars(select(JobRow.owner).where(JobRow.state == "running")).all()
         assert owners == ["other"]

@@ -6,7 +6,7 @@ import pytest
 from browsing import from_example
 from playwright.sync_api import expect
 
-from app.presentation.sparkline import course
+from app.presentation.environment import course
 
 WAVE = [float((7 * n) % 31) for n in range(31)]
 

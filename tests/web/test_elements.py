@@ -9,7 +9,7 @@ from playwright.sync_api import expect
 from serving import API
 
 from app.presentation.numbers import plain as plain_number
-from app.solids.schemas import THROW
+from app.solids.bodies import THROW
 
 PATIENCE = 90_000  # for a solid to be built and analysed [ms]
 SERIOUS = ("serious", "critical")

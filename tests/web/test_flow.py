@@ -5,7 +5,7 @@ from random import Random
 
 import pytest
 
-from app.schemas.networks import DesignNetwork, NetworkBlock, NetworkRelation
+from app.designs.schemas.network import DesignNetwork, NetworkBlock, NetworkRelation
 from app.web.flow import drawing
 
 

@@ -140,7 +140,7 @@ def saves(page, place, url):
 @pytest.mark.slow
 @pytest.mark.parametrize("site", ["127.0.0.1", "localhost"])
 def test_a_page_of_another_origin(browser, served, http, paper, site, caplog):
-    caplog.set_level(logging.INFO, "app.api.gate.guard")
+    caplog.set_level(logging.INFO, "app.http.guard")
     context = browser.new_context()
     own, page = context.new_page(), context.new_page()
     own.goto(f"{served.url}/templates/third/1")  # the user has a session
@@ -152,7 +152,7 @@ def test_a_page_of_another_origin(browser, served, http, paper, site, caplog):
         outcome = page.evaluate("window.outcome")
         framed = [frame.url for frame in page.frames[1:]]
     assert state(http, paper) == before
-    refused = [record for record in caplog.records if record.name == "app.api.gate.guard"]
+    refused = [record for record in caplog.records if record.name == "app.http.guard"]
     assert len(refused) == len(outcome) == 40  # each reached the service
     assert not {name: how for name, how in outcome.items() if how.startswith("read")}
     loads = ("image", "script", "plain script", "style", "events", "socket")

@@ -5,7 +5,7 @@ import re
 import pytest
 from serving import API, created, patched
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 from app.designs import drives, stored_results
 from app.web import sections
 

@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import expect
 from serving import API, created
 
-from app.calculations.schemas import OIL_FILM
+from app.calculations.bodies import OIL_FILM
 from app.web.sections import MOST_IN_FULL
 
 

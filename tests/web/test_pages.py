@@ -7,10 +7,10 @@ from browsing import created, settled
 from patience import until
 from sqlalchemy import text
 
-from app.api.gate.guard import PAGE_POLICY
+from app.designs.schemas.designs import Design
+from app.http.guard import PAGE_POLICY
+from app.presentation.input_text import text_of, value_of
 from app.presentation.numbers import aligned, in_line, percent, unit
-from app.presentation.typed import text_of, value_of
-from app.schemas.designs import Design
 from app.web.forms import kept, patch_of
 from templates.physics.films.reynolds import extrapolated_film
 

@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from app.calculations.schemas.evaluations import Output, UsedInput
 from app.reports.pictures import Picture, pictures
 from app.reports.plots import drawn
-from app.schemas.evaluations import Output, UsedInput
 from app.web.blocks import painted
 
 CYCLE = [0.0, 90.0, 180.0, 270.0]

@@ -8,7 +8,7 @@ from patience import patient, until
 from playwright.sync_api import expect
 from serving import API
 
-from app.schemas.evaluations import Jump
+from app.calculations.schemas.evaluations import Jump
 
 PAGE = "/templates/journal_friction/1/solve"
 INPUTS = {

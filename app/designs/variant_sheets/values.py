@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from app.plain import Raw
+from app.presentation.input_text import text_of, value_of
 from app.presentation.spreadsheets import Value
-from app.presentation.typed import text_of, value_of
 from templates.core.errors import FaultyText
 from templates.core.units.quantity import read
 from templates.core.units.relation import is_relation, parse

@@ -6,14 +6,14 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from app.designs.schemas.variants import VariantColumn, VariantResult, VariantsOut
 from app.designs.variant_sheets.reading import FIRST, RELATION, RESULTS
 from app.designs.variant_sheets.values import Shape, shape
 from app.designs.variant_sheets.xlsx_files import number_text
 from app.presentation.criteria import WORDS
+from app.presentation.input_text import text_of
 from app.presentation.spreadsheets import Value
-from app.presentation.typed import text_of
 from app.schemas.criteria import Criterion
-from app.schemas.variants import VariantColumn, VariantResult, VariantsOut
 
 DIGITS = 4  # of a utilisation, behind the point
 UNIT = "unit"

@@ -6,12 +6,12 @@ from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document
 from app.designs.graph import Graph, build_graph
 from app.designs.network import Cell
+from app.designs.schemas.variants import VariantColumn
 from app.designs.variants.outcome import base_unit
 from app.designs.variants.table import places
 from app.plain import JsonObject
 from app.reference import Reference
 from app.schemas.answers import Shown
-from app.schemas.variants import VariantColumn
 from templates.core.errors import FaultyText
 from templates.core.language.spec import Choice, Input
 from templates.core.units.quantity import Typed, read, read_any

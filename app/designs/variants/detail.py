@@ -10,19 +10,19 @@ from dataclasses import dataclass, replace
 
 from app.calculations import rendering
 from app.calculations.criteria import rendered
+from app.calculations.schemas.evaluations import Output
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.graph import raise_if
 from app.designs.questions import Reply
+from app.designs.schemas.variants import VariantDetail
 from app.designs.stored_solids import analysed, built
 from app.designs.variants.names import BASE
 from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available, together
 from app.presentation.units import System
-from app.schemas.evaluations import Output
-from app.schemas.variants import VariantDetail
 from app.storage.database import Database
 from app.storage.errors import NotFound
 from templates.core.errors import Fault, InvalidInputs, unknown_names

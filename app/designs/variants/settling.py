@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from app.designs.calculation_cache import Prepared
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.errors import NotConverged
 from app.designs.naming import named
-from app.designs.recent import Prepared
 from app.designs.variants.outcome import Outcome, outcome_of
 from app.jobs.service import JobContext
 from app.plain import JsonObject

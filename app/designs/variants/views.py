@@ -9,10 +9,7 @@ from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository
-from app.designs.variants.columns import columns
-from app.designs.variants.names import BASE, natural
-from app.plain import Json, JsonObject
-from app.schemas.variants import (
+from app.designs.schemas.variants import (
     Governing,
     ModelState,
     VariantModel,
@@ -20,6 +17,9 @@ from app.schemas.variants import (
     VariantsOut,
     VariantState,
 )
+from app.designs.variants.columns import columns
+from app.designs.variants.names import BASE, natural
+from app.plain import Json, JsonObject
 from app.solids import measures, rows
 from app.storage.tables import BuildRow, RevisionModelRow, RevisionRow
 from templates.core.errors import InvalidInputs, unknown_names

@@ -2,7 +2,6 @@
 
 from app.storage.tables.approvals import ApprovalRow, CommentRow
 from app.storage.tables.base import NAMING, Base, JsonText, NotWritten, canonical_json
-from app.storage.tables.brought import BroughtModelRow
 from app.storage.tables.designs import (
     DesignRow,
     DesignTagRow,
@@ -10,6 +9,7 @@ from app.storage.tables.designs import (
     RevisionRow,
     variant_of,
 )
+from app.storage.tables.imported_models import BroughtModelRow
 from app.storage.tables.jobs import CounterRow, EventRow, JobRow
 from app.storage.tables.people import ApiKeyRow, PrincipalRow, SessionRow, StorageRow, UsageRow
 from app.storage.tables.records import AuditRow, IdempotencyRow

@@ -13,7 +13,7 @@ from typing import Protocol, cast
 
 import numpy as np
 
-from app.studies.methods.corrected import Corrected, Seen
+from app.studies.methods.correction import Corrected, Seen
 from app.studies.methods.extras import extra
 from app.studies.methods.stages import Stages
 from templates.core.arrays import Array

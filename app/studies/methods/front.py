@@ -13,8 +13,8 @@ from typing import Literal
 import numpy as np
 
 from app.studies.methods.answers import Answer, Problem
-from app.studies.methods.confirming import WITHIN, Round, Run, State, unmet
-from app.studies.methods.corrected import Corrected
+from app.studies.methods.confirmation import WITHIN, Round, Run, State, unmet
+from app.studies.methods.correction import Corrected
 from app.studies.methods.evolution import evolved
 from app.studies.methods.polish import Scaled, polished
 from app.studies.methods.search import best, middle_and_width

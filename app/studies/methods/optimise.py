@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from app.studies.methods.answers import Answer, Problem
-from app.studies.methods.confirming import WITHIN, Round, Run, State, unmet
+from app.studies.methods.confirmation import WITHIN, Round, Run, State, unmet
 from app.studies.methods.search import best
 from templates.core.arrays import Array
 

@@ -15,7 +15,7 @@ from typing import Literal, TypedDict
 import numpy as np
 from scipy.optimize import minimize
 
-from app.studies.methods.corrected import Corrected
+from app.studies.methods.correction import Corrected
 from templates.core.arrays import Array, Mask
 
 STEP = 1e-5

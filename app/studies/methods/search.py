@@ -12,7 +12,7 @@ from math import prod
 import numpy as np
 
 from app.studies.methods.answers import Answer, Columns, Problem, all_refused
-from app.studies.methods.corrected import Corrected, Seen
+from app.studies.methods.correction import Corrected, Seen
 from app.studies.methods.points import Grid, sobol_sequence
 from app.studies.methods.polish import ROUGH, Place, Scaled, polished, rank, relaxed
 from app.studies.methods.space import Space, Values

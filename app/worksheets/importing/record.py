@@ -19,7 +19,7 @@ STATES: tuple[State, ...] = ("verified", "differs", "unverified", "shown", "refu
 
 
 class RegionRecord(TypedDict):
-    """One region; `app.schemas.worksheet_imports.ImportedRegion` says what each member is."""
+    """One region; `app.worksheets.schemas.imports.ImportedRegion` says what each member is."""
 
     region: str
     kind: str

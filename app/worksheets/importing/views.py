@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from app.schemas.worksheet_imports import SheetImport, SheetOrigin
 from app.storage.errors import NotFound
 from app.storage.tables import WorksheetVersionRow as Row
 from app.worksheets.importing.record import ImportRecord, counted, record_of, unresolved
+from app.worksheets.schemas.imports import SheetImport, SheetOrigin
 
 
 def origin(row: Row) -> SheetOrigin | None:

@@ -378,9 +378,3 @@ def left_by_HTHS(hths: Array, hot: Array, endless: Array, eta: Array) -> Array:
     """
     left = (hths - endless * hot) / ((1 - endless) * hot)
     return np.where(np.isnan(eta), left, np.nan)[()]
-
-
-def groove_alone(D: Array, W: Array, width: Array, start: Array, extent: Array) -> Feeding:
-    """Return a groove in the sleeve, and no hole; see `Feeding`."""
-    none = np.full_like(np.asarray(D, float), np.nan)
-    return Feeding(D, W, width, start, extent, none, none, none, none, none, none)

@@ -16,7 +16,6 @@ from templates.physics.films.film_dynamics import plain_coefficients
 from templates.physics.films.film_map import mapped_coefficients, mapped_load
 from templates.physics.films.short_bearing import load_Ocvirk_1952
 from templates.physics.films.short_dynamics import coefficients_Holmes_1960
-from templates.physics.journals.whirl import threshold_mass
 
 _CENTRED = 1e-6
 """Eccentricity at which a centred journal's coefficients are taken: their limit [-]."""
@@ -36,30 +35,6 @@ class Linear:
     B_yy: Array
     M_c: Array
     """M omega² c psi²/(B D eta omega_h), M of the rotor's share; infinite where every mass is stable."""
-
-
-def linear_at(
-    level: str,
-    eps: Array,
-    ratio: Array,
-    attitude: Array | float = 0.0,
-    pressure: Array | float = 0.0,
-    grooves: tuple[tuple[float, float], ...] = (),
-) -> Linear:
-    """Return the stiffness, damping and threshold mass; NaN at points that are NaN and at level fit [-].
-
-    Arguments as of `coefficients_at`.
-    """
-    K, B = coefficients_at(level, eps, ratio, attitude, pressure, grooves)
-    entries = {
-        f"{name}_{xy}": matrix[..., i, j][()]
-        for name, matrix in (("K", K), ("B", B))
-        for xy, i, j in (("xx", 0, 0), ("xy", 0, 1), ("yx", 1, 0), ("yy", 1, 1))
-    }
-    valid = np.asarray(np.isfinite(K).all(axis=(-1, -2)))
-    unit = np.broadcast_to(np.eye(2), K.shape)
-    mass = threshold_mass(*(np.where(valid[..., None, None], matrix, unit) for matrix in (K, B)))
-    return Linear(**entries, M_c=np.where(valid, mass, np.nan)[()])
 
 
 def coefficients_at(

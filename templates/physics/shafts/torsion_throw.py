@@ -52,12 +52,6 @@ def reason(overlap: Array, effective_throw: Array) -> Any:
     return _selected(cases, [TOO_SHORT, OVERLAPPING, APART])
 
 
-@units("m", "N*m/rad", "N*m/rad", returns="N*m/rad", latex=r"{2}\text{{ if }}{0}>0\text{{, else }}{1}")
-def recommended_stiffness(overlap: Array, carter: Array, wilson: Array) -> Array:
-    """Return the stiffness [N m/rad] after the formula that is recommended at this overlap [m]."""
-    return np.where(overlap > 0, wilson, carter)[()]
-
-
 def _selected(cases: list[Any], words: list[str]) -> Any:
     texts = np.select(cases, words, "")
     return texts if texts.ndim else str(texts)

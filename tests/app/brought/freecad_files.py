@@ -7,7 +7,7 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from app.brought.finding import find
+from app.imported_models.freecad import find
 from cad.errors import ProgramMissing
 
 BINARY = {"Content-Type": "application/octet-stream"}

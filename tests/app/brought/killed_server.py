@@ -4,8 +4,8 @@ import sys
 import threading
 from pathlib import Path
 
-from app.brought.drawing_process import FreeCadProcess
-from app.brought.finding import find
+from app.imported_models.freecad import find
+from app.imported_models.freecad_process import FreeCadProcess
 from app.workers.base import Limits
 
 if __name__ == "__main__":

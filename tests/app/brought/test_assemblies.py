@@ -9,7 +9,7 @@ from cadquery import Location, Vector, Workplane
 from freecad_files import ended, imported, post
 from serving import API, created, faults, paper, patched
 
-from app.brought.assembling import AssemblyFiles
+from app.imported_models.assemblies import AssemblyFiles
 from app.maintenance.rows import SENT
 from app.retention.rows import referenced_files
 from app.storage.errors import ArtifactMissing

@@ -9,9 +9,9 @@ from creoson import RECORDED, creoson
 from freecad_files import ended, imported, post
 from serving import API, created, paper, patched, problem
 
-from app.brought.creo.manifest import read
-from app.brought.creo.session import CreoDrawing, Creoson
-from app.brought.programs import CreoModels
+from app.imported_models.creo.manifest import read
+from app.imported_models.creo.session import CreoDrawing, Creoson
+from app.imported_models.programs import CreoModels
 from app.workers.errors import DeadlineExceeded, JobCancelled
 from cad.errors import GeometryError, ProgramMissing, UnreadableModel
 

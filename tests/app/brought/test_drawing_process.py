@@ -7,9 +7,9 @@ import time
 
 import pytest
 
-from app.brought.describing import _parameters
-from app.brought.drawing_process import FreeCadProcess
-from app.brought.finding import FreeCad
+from app.imported_models.descriptions import _parameters
+from app.imported_models.freecad import FreeCad
+from app.imported_models.freecad_process import FreeCadProcess
 from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded
 from cad.errors import GeometryError, UnreadableModel

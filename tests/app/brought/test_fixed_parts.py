@@ -6,7 +6,7 @@ import pytest
 from freecad_files import BINARY, ended, imported, post
 from serving import API, created, paper, problem
 
-from app.brought.finding import find
+from app.imported_models.freecad import find
 from cad.errors import ProgramMissing
 from cad.regenerate import regenerate
 

@@ -13,8 +13,8 @@ from freecad_files import bush, ended, imported, needs_freecad, post
 from patience import until
 from serving import API, created, paper, patched, problem
 
-from app.brought.shelf import Shelf
 from app.catalogue.catalogues import Catalogues
+from app.imported_models.registry import ImportedModelRegistry
 from app.retention.rows import referenced_files
 from cad.catalogue import models as find_models
 
@@ -149,7 +149,7 @@ def test_a_macro_beside_the_document_is_left_out(http, served):
 def test_a_service_that_starts_again_has_the_model(served, model):
     services = served.app.state.services
     catalogues = Catalogues(services.catalogues.templates, find_models())
-    Shelf(services.database, catalogues, is_shared=False)
+    ImportedModelRegistry(services.database, catalogues, is_shared=False)
     assert catalogues.models.get("bush", 1) is services.catalogues.models.get("bush", 1)
 
 

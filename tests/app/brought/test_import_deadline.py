@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from app.brought.describing import described_freecad
-from app.brought.drawing_process import Answered
+from app.imported_models.descriptions import described_freecad
+from app.imported_models.freecad_process import Answered
 from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded
 from cad.imported_models import Drawn

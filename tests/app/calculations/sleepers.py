@@ -3,7 +3,7 @@
 from serving import API
 from test_workers import eventually
 
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
 
 SLEEPER = f"{API}/templates/sleeper/versions/1"
 

@@ -12,11 +12,11 @@ from sleeping import folder_of_sleeper
 from test_damage import delete, flip, truncate
 from test_workers import alive, eventually
 
-from app.brought.programs import assembled
+from app.calculations.bodies import EvaluateIn, SolveIn
 from app.calculations.operations import LARGE
-from app.calculations.schemas import EvaluateIn, SolveIn
 from app.cli.main import main
 from app.client import Client, Problem
+from app.imported_models.programs import assembled
 from app.jobs import repository
 from app.maintenance.repair import Repair
 from app.maintenance.rows import Named

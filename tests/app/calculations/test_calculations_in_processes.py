@@ -11,10 +11,10 @@ from sleepers import FILM, FILM_PLACE, SLEEPER, begun, followed, sleep, without_
 from sleeping import folder_of_sleeper
 from test_workers import alive, eventually
 
-from app.calculations.schemas import EvaluateIn, SolveIn
+from app.calculations.bodies import EvaluateIn, SolveIn
 from app.calculations.service import run_evaluate, run_solve
 from app.calculations.worksheet import run_worksheet
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
 from app.settings import Settings
 
 

@@ -32,11 +32,11 @@ def test_what_a_killed_server_left_running_runs_again(jobs, database):
 def test_only_the_newest_claim_may_write(database, jobs):
     id = put(jobs, database)
     old = database.write(repository.claim)
-    database.write(repository.give_back_all)
+    database.write(repository.requeue_all)
     new = database.write(repository.claim)
     assert (old.attempt, new.attempt) == (1, 2)
     assert not database.write(lambda session: repository.end(session, old, "done", []))
-    assert not database.write(lambda session: repository.give_back(session, old, 1))
+    assert not database.write(lambda session: repository.requeue(session, old, 1))
     assert jobs.get(id).state == "running"
     assert database.write(lambda session: repository.end(session, new, "done", []))
     assert not database.write(lambda session: repository.end(session, new, "failed", []))

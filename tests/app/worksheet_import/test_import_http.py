@@ -10,7 +10,7 @@ from app.client import Problem
 from app.retention.rows import referenced_files
 from app.worksheets.importing import service
 from app.worksheets.importing.record import unresolved
-from app.worksheets.naming import RESERVED
+from app.worksheets.names import RESERVED
 
 BINARY = {"Content-Type": "application/octet-stream"}
 SOUND = prime(

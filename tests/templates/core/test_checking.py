@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from newest import older_slow
 
-from app.catalogue.checking import check_content
+from app.catalogue.check import check_content
 from cad.catalogue import models
 from templates.core.catalogue import golden
 from templates.core.catalogue.digests import digest

@@ -4,7 +4,7 @@ from itertools import product
 
 import pytest
 
-from app.catalogue.finding import find_templates
+from app.catalogue.discovery import find_templates
 from cad.catalogue import models
 from templates.core.language.evaluate import evaluate
 from templates.core.paper.mathml import mathml, symbol, symbols

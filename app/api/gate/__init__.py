@@ -1,1 +1,0 @@
-"""The checks of a request before its route: hosts, origins, sizes, times."""

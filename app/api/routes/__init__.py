@@ -1,1 +1,0 @@
-"""Every route of the REST interface, by resource."""

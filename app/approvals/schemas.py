@@ -1,0 +1,199 @@
+"""Approvals of revisions and comments on them, as the interface takes and shows them."""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated, Literal, Self
+
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, model_validator
+
+from app.schemas.answers import Answer, Page
+from app.schemas.approval_steps import ApprovalState, Step
+from app.schemas.bounds import Bounded
+from app.schemas.texts import BLANK
+
+Files = dict[str, dict[str, str]]
+"""SHA-256 of files of solids, by the name of the model and the kind of the file."""
+
+LONGEST_TEXT = 4000  # letters of a comment or a reason
+LONGEST_SUBJECT = 140
+_CONTROL = r"\x00-\x08\x0b\x0c\x0e-\x1f\x7f"
+PLAIN = f"^[^{_CONTROL}]*$"
+"""Lines of text, without control characters."""
+
+WRITTEN = rf"^[^{_CONTROL}]*[^{_CONTROL}{BLANK}][^{_CONTROL}]*$"
+"""Lines of text with at least one letter."""
+
+
+def _written(text: object) -> object:
+    """Return whatever it is, unless it is a text without a letter or with control characters.
+
+    Raises ValueError.
+    """
+    if isinstance(text, str) and not re.search(WRITTEN, text):
+        plain = re.search(PLAIN, text)
+        raise ValueError(
+            "the text needs at least one letter" if plain else "leave out the control characters"
+        )
+    return text
+
+
+Text = Annotated[
+    str,
+    Field(min_length=1, max_length=LONGEST_TEXT, pattern=WRITTEN),
+    BeforeValidator(_written),
+    AfterValidator(str.strip),
+]
+
+
+class Signed(Answer):
+    """The signed content; `digest` of its step is the SHA-256 of this as canonical JSON.
+
+    Canonical: names sorted, no blanks, letters beyond ASCII as they are, UTF-8; `reason` only where there is
+    one.
+    """
+
+    design: str
+    revision: int
+    title: str = Field(description="name of the design in this revision")
+    step: Step
+    principal: str
+    name: str = Field(description="of the principal at that time")
+    at: str
+    document: str = Field(description="SHA-256 of what its user wrote, as canonical JSON")
+    results: str = Field(description="SHA-256 of what was calculated, likewise")
+    files: Files = Field(description="of every file of its solids that there was, at least STEP")
+    previous: str | None = Field(description="digest of the step before; null in the first one")
+    reason: str | None = Field(None, description="of a withdrawal")
+
+
+class Approval(Answer):
+    """One step of the approval of a revision."""
+
+    step: Step
+    principal: str
+    name: str = Field(description="of the principal at that time")
+    at: str
+    digest: str
+    content: Signed
+
+
+class Present(Answer):
+    """The present content of a revision, to be compared with the signed one."""
+
+    document: str
+    results: str
+    files: Files
+
+
+class Approvals(Answer):
+    """The approval of a revision: calculated by its author, checked and released by two others."""
+
+    design: str
+    revision: int
+    state: ApprovalState
+    steps: list[Approval] = Field(description="in the order in which they were taken")
+    next: Step | None = Field(description="the step that comes next; null where none does")
+    obstacle: str | None = Field(description="why whoever asks cannot take it now; null where nothing is")
+    to_sign: str = Field(description="digest of what there is to sign: send it as If-Match; also the ETag")
+    present: Present
+    supersedes: int | None = Field(description="the released revision that this one replaces")
+    superseded_by: int | None = Field(description="the newest released revision, if it is a later one")
+
+
+class Released(Answer):
+    """The newest released revision of a design, and where its files are."""
+
+    design: str
+    revision: int
+    title: str
+    approval: Approval
+    report: str = Field(description="link to its report (PDF)")
+    files: Files = Field(description="links to the files of its solids")
+
+
+class Comment(Answer):
+    """A comment on a revision. Its text is plain."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    id: str
+    design: str
+    revision: int
+    name: str = Field(description="of whoever wrote it, at that time")
+    subject: str | None = Field(description="the name in the design that it is about")
+    text: str
+    created: str
+    resolved: str | None = Field(description="since when")
+    resolved_by: str | None = Field(description="name of whoever resolved it")
+
+
+class CommentList(Page[Comment]):
+    """A page of comments, newest first."""
+
+
+class ApprovalIn(Bounded):
+    """A step of the approval of a revision."""
+
+    model_config = ConfigDict(
+        strict=True,
+        extra="forbid",
+        json_schema_extra={
+            "examples": [{"step": "calculated"}],
+        },
+    )
+
+    step: Step
+    reason: Text | None = Field(None, description="of a withdrawal, which needs one; nothing else has one")
+
+    @model_validator(mode="after")
+    def with_its_reason(self) -> Self:
+        """A withdrawal and its reason; raises ValueError."""
+        if (self.step == "withdrawn") != (self.reason is not None):
+            raise ValueError("a withdrawal needs a `reason`, and no other step has one")
+        return self
+
+
+class CommentIn(Bounded):
+    """A new comment on a revision."""
+
+    model_config = ConfigDict(
+        strict=True,
+        extra="forbid",
+        json_schema_extra={
+            "examples": [{"text": "Why 22 mm? The case allows 24.", "subject": "film.bearing_width"}]
+        },
+    )
+
+    text: Text
+    subject: str | None = Field(
+        None,
+        min_length=1,
+        max_length=LONGEST_SUBJECT,
+        description="a name in the design: a parameter, a block, or a value of one such as "
+        "`film.bearing_width`",
+    )
+
+
+ATTACHMENT = "approval.json"
+
+
+class BlockStep(Answer):
+    """A step that had been taken when the report was printed."""
+
+    step: Step
+    name: str = Field(max_length=1000)
+    at: str = Field(max_length=40)
+    digest: str = Field(pattern=r"^[0-9a-f]{64}$")
+
+
+class Block(Answer):
+    """The revision of a report, and the progress of its approval."""
+
+    format: Literal[1]
+    design: str = Field(pattern=r"^[A-Za-z0-9_]{1,64}$")
+    revision: int = Field(ge=1, le=10**9)
+    units: Literal["si", "us"]
+    has_variants: bool = Field(False, description="whether it is the report of all variants")
+    state: ApprovalState
+    steps: list[BlockStep] = Field(max_length=4)

@@ -1,0 +1,85 @@
+"""Request and answer bodies for single templates."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import ConfigDict, Field, StringConstraints
+
+from app.plain import JsonObject
+from app.schemas.bounds import Bounded, at_most
+from app.schemas.values import Given, Limits
+
+Text = Annotated[str, StringConstraints(max_length=100)]
+MOST_NAMES = 2000  # in one request
+
+OIL_FILM: JsonObject = {
+    "radial_load": "25 kN",
+    "diametral_clearance": "0.055 mm",
+    "bearing_diameter": "48 mm",
+    "bearing_width": "18 mm",
+    "speed": "5000 rpm",
+    "oil_inlet_temperature": "80 degC",
+    "oil_outlet_temperature": "87.762 degC",
+}
+
+
+class Asked(Bounded):
+    """Inputs and what is wanted of them."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+
+    inputs: Annotated[dict[str, Given], at_most(MOST_NAMES)] = Field(
+        max_length=MOST_NAMES,
+        description='quantities by name: `"25 kN"` or `{"value": 25, "unit": "kN"}`',
+    )
+    outputs: Annotated[list[Text], Field(max_length=200)] | None = Field(
+        None, description="compute these only; all, if not given"
+    )
+    level: Text | None = Field(None, description="a fidelity by name")
+    tolerance: float | None = Field(None, gt=0, lt=1, description="largest relative error wanted")
+    units: Annotated[dict[str, Text], at_most(200)] = Field(
+        {}, max_length=200, description="units in which outputs are wanted"
+    )
+
+
+class EvaluateIn(Asked):
+    """Evaluate a template."""
+
+    per_point: bool = Field(
+        False, description="with a tolerance: the cheapest level at each point, not one level for all points"
+    )
+
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"inputs": OIL_FILM, "outputs": ["minimum_film_thickness"]}]}
+    )
+
+    limits: Limits = {}
+
+
+class SolveIn(Asked):
+    """Find the input that gives a wanted output."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [
+                {
+                    "inputs": {name: value for name, value in OIL_FILM.items() if name != "bearing_width"},
+                    "unknown": "bearing_width",
+                    "bounds": ["10 mm", "80 mm"],
+                    "target": {"minimum_film_thickness": "3.2449 um"},
+                }
+            ]
+        }
+    )
+
+    unknown: Text = Field(description="the input to find")
+    bounds: list[Given] = Field(
+        description="the lowest and the highest value to try",
+        json_schema_extra={"minItems": 2, "maxItems": 2},
+    )
+    target: dict[str, Given] = Field(
+        max_length=200,
+        description="one output and its wanted value",
+        json_schema_extra={"minProperties": 1, "maxProperties": 1},
+    )

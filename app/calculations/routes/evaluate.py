@@ -1,0 +1,178 @@
+"""`/templates/{id}/versions/{n}/evaluate` and `…/solve` and `…/worksheet`.
+
+What is cheap is calculated here, in the event loop or a thread; what is expensive, or comes in a large body,
+goes to a calculation process as it is.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated
+
+from fastapi import APIRouter, Header, Request, Response
+from pydantic_core import to_json
+from starlette.concurrency import run_in_threadpool
+
+from app.api.answering import to_try
+from app.api.dependencies import Units, services_of
+from app.api.waiting import LATER
+from app.calculations.array_files import NPY, Form, npy
+from app.calculations.bodies import EvaluateIn, SolveIn
+from app.calculations.cost import EXPENSIVE, estimated_seconds, is_quick, solving_seconds, writing_seconds
+from app.calculations.operations import LARGE, OPERATIONS, Question
+from app.calculations.schemas.evaluations import Evaluation, Solution, Worksheet
+from app.calculations.service import evaluated, run_evaluate, run_solve
+from app.calculations.size import points
+from app.calculations.worksheet import run_worksheet
+from app.catalogue.routes.templates import Id, Number
+from app.http.roles import needs
+from app.http.strict_requests import PlainRoute, StrictRequest
+from app.presentation.units import System
+from app.schemas.problems import Responses, refusals
+from app.workers.pieces import Pieces
+
+LONGEST_ID, PLAIN_NUMBER = 64, re.compile("[1-9][0-9]{0,5}")
+FEW = 100  # points and names that are taken in the event loop, if every level is quick: a thread costs more
+SYSTEMS: dict[str | None, System] = {None: "si", "si": "si", "us": "us"}
+
+DECLARED = {**LATER, **refusals(404, 429)}
+ARRAYS = "with `Accept: application/x-npy` the outputs as one structured array, a field for each"
+AS_ARRAY: Responses = {
+    200: {"description": ARRAYS, "content": {NPY: {"schema": {"type": "string", "format": "binary"}}}}
+}
+Prefer = Annotated[
+    str | None, Header(description="`wait=5` or `respond-async`, for what takes long: it goes on as a job")
+]
+
+
+class LargeRoute(PlainRoute):
+    """A route with a template, its version and a body, which hands a large body on without parsing it.
+
+    To parse 16 MB holds the interpreter, and with it the server, for a second.
+    """
+
+    async def admit(self, request: StrictRequest) -> None:
+        """Refuse a large body before it comes, if the pool has no room for its calculation."""
+        if int(request.headers.get("content-length", 0)) > LARGE and _system(request) and _is_plain(request):
+            await services_of(request).answering.admit(request, *_template(request))
+
+    async def shortcut(self, request: StrictRequest) -> Response | None:
+        """The answer to a large body."""
+        system, body = _system(request), await request.pieces()
+        if system is None or len(body) <= LARGE or not _is_plain(request):
+            return None
+        operation = self.path.rpartition("/")[2]
+        question = Question(*_template(request), operation, body, system, _form(request, operation))
+        return await services_of(request).answering.answer(request, question)
+
+
+def _is_plain(request: Request) -> bool:
+    """Return whether the path names a template and a version in their usual form."""
+    id, number = request.path_params["id"], request.path_params["number"]
+    return len(id) <= LONGEST_ID and PLAIN_NUMBER.fullmatch(number) is not None
+
+
+def _template(request: Request) -> tuple[str, int]:
+    """The template and the version that a plain path names."""
+    return request.path_params["id"], int(request.path_params["number"])
+
+
+def _system(request: Request) -> System | None:
+    """The units that the request wants to read; None for a word that names none."""
+    return SYSTEMS.get(request.query_params.get("units"))
+
+
+router = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=LargeRoute)
+
+
+@router.post(
+    "/{id}/versions/{number}/evaluate",
+    response_model=Evaluation,
+    responses={**DECLARED, **AS_ARRAY, **refusals(406)},
+    dependencies=[needs("viewer")],
+)
+async def evaluate_template(
+    request: StrictRequest,
+    id: Id,
+    number: Number,
+    body: EvaluateIn,
+    prefer: Prefer = None,
+) -> Response:
+    """Evaluate a template: inputs in any unit, scalars or arrays; only what is asked for is computed."""
+    services = services_of(request)
+    cls = await to_try(services.catalogues, id, number)
+    form = _form(request, "evaluate")
+    if form == "json" and points(body.inputs) <= FEW and len(body.inputs) <= FEW and is_quick(cls):
+        return _json(to_json(run_evaluate(cls, body)))
+    if estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs) > EXPENSIVE:
+        return await services.answering.answer(request, await _question(request, id, number, "evaluate"))
+    if form == "npy":
+        return Response(await run_in_threadpool(lambda: npy(evaluated(cls, body))), media_type=NPY)
+    return _json(await run_in_threadpool(lambda: to_json(run_evaluate(cls, body))))
+
+
+@router.post(
+    "/{id}/versions/{number}/solve",
+    response_model=Solution,
+    responses=DECLARED,
+    dependencies=[needs("viewer")],
+)
+async def solve_template(
+    request: StrictRequest,
+    id: Id,
+    number: Number,
+    body: SolveIn,
+    prefer: Prefer = None,
+) -> Response:
+    """Find the input that gives a wanted output, between bounds."""
+    services = services_of(request)
+    cls = await to_try(services.catalogues, id, number)
+    seconds = solving_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs, body.target)
+    if seconds > EXPENSIVE:
+        return await services.answering.answer(request, await _question(request, id, number, "solve"))
+    return _json(await run_in_threadpool(lambda: to_json(run_solve(cls, body))))
+
+
+worksheets = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=LargeRoute)
+
+
+@worksheets.post(
+    "/{id}/versions/{number}/worksheet",
+    response_model=Worksheet,
+    responses=DECLARED,
+    dependencies=[needs("viewer")],
+)
+async def write_worksheet(
+    request: StrictRequest,
+    id: Id,
+    number: Number,
+    body: EvaluateIn,
+    units: Units = "si",
+    prefer: Prefer = None,
+) -> Response:
+    """Evaluate a template, with every formula written out: symbol = expression = numbers = result."""
+    services = services_of(request)
+    cls = await to_try(services.catalogues, id, number)
+    seconds = estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs)
+    if seconds + writing_seconds(cls, body.outputs) > EXPENSIVE:
+        return await services.answering.answer(
+            request, await _question(request, id, number, "worksheet", units)
+        )
+    return _json(await run_in_threadpool(lambda: to_json(run_worksheet(cls, body, units))))
+
+
+async def _question(
+    request: Request, id: str, number: int, operation: str, system: System = "si"
+) -> Question:
+    body = Pieces.of(await request.body())
+    return Question(id, number, operation, body, system, _form(request, operation))
+
+
+def _form(request: Request, operation: str) -> Form:
+    """Return the format that the client wants: an array if it names that before JSON."""
+    kinds = [kind.partition(";")[0].strip() for kind in request.headers.get("accept", "").split(",")]
+    return "npy" if "npy" in OPERATIONS[operation].write and kinds[0] == NPY else "json"
+
+
+def _json(content: bytes) -> Response:
+    return Response(content, media_type="application/json")

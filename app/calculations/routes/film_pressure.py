@@ -1,0 +1,42 @@
+"""`/film-pressure`: the pressure of an oil film over its unrolled surface."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+from pydantic import ConfigDict, Field
+from starlette.concurrency import run_in_threadpool
+
+from app.api.dependencies import Units
+from app.calculations.film_pressure import TYPICAL, solve_film_pressure
+from app.calculations.schemas.film_pressure import FilmPressure
+from app.http.roles import needs
+from app.http.strict_requests import StrictRoute
+from app.schemas.bounds import Bounded
+from app.schemas.values import GIVEN, Given
+
+router = APIRouter(prefix="/api/v1", tags=["templates"], route_class=StrictRoute)
+
+
+class FilmPressureIn(Bounded):
+    """A journal at rest in its film."""
+
+    model_config = ConfigDict(
+        strict=True, extra="forbid", json_schema_extra={"examples": [{"inputs": TYPICAL}]}
+    )
+
+    inputs: dict[str, Given] = Field(
+        max_length=20,
+        description="one value each, as in `evaluate`",
+        json_schema_extra={
+            "properties": dict.fromkeys(TYPICAL, GIVEN),
+            "required": list(TYPICAL),
+            "additionalProperties": False,
+        },
+    )
+
+
+@router.post("/film-pressure", dependencies=[needs("viewer")])
+async def show_film_pressure(body: FilmPressureIn, units: Units = "si") -> FilmPressure:
+    """Pressure [place along the shaft][angle from the narrowest gap, in the sense of rotation]."""
+    field = await run_in_threadpool(solve_film_pressure, body.inputs)
+    return field.in_units(units)

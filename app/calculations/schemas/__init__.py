@@ -1,0 +1,1 @@
+"""Answers of the interface about curves, evaluations and fields of pressure."""

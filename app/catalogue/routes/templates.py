@@ -1,0 +1,137 @@
+"""`/templates`: which calculations there are, and all that is known of each version."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Annotated, TypeVar
+from weakref import WeakKeyDictionary
+
+from fastapi import APIRouter, Path
+
+from app.api.dependencies import TheCatalogues
+from app.catalogue.catalogues import Catalogues
+from app.catalogue.schemas.templates import (
+    Accuracy,
+    SheetMark,
+    TemplateList,
+    TemplateSummary,
+    TemplateVersions,
+)
+from app.catalogue.schemas.templates import Template as TemplateAnswer
+from app.catalogue.sheets import Key
+from app.http.pages import Cursor, Limit, page_of
+from app.http.strict_requests import StrictRoute
+from app.schemas.problems import refusals
+from templates.core.catalogue.finding import Catalogue
+from templates.core.errors import UnknownTemplate
+from templates.core.language.levels import accuracy
+from templates.core.language.template import Template
+from templates.core.paper.schema import describe
+
+router = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=StrictRoute)
+
+Number = Annotated[int, Path(ge=1, le=10**6, examples=[1])]
+Id = Annotated[str, Path(max_length=64, examples=["oil_film"])]
+
+
+@router.get("")
+def list_templates(catalogues: TheCatalogues, limit: Limit = 100, cursor: Cursor = None) -> TemplateList:
+    """Every version of every template."""
+    return listed(catalogues.templates, limit, cursor, marks(catalogues))
+
+
+@router.get("/{id}", responses=refusals(404))
+def list_template_versions(id: Id, catalogues: TheCatalogues) -> TemplateVersions:
+    """The versions of one template."""
+    return versions_of(catalogues.templates, id, marks(catalogues))
+
+
+@router.get("/{id}/versions/{number}", responses=refusals(404))
+def show_template(id: Id, number: Number, catalogues: TheCatalogues) -> TemplateAnswer:
+    """One version: inputs and outputs as JSON Schema, formulas on paper, limits, references, errata."""
+    cls = catalogues.templates.get(id, number)
+    is_latest = cls is catalogues.templates.latest(id)
+    return TemplateAnswer.model_validate(
+        {**_description(cls), "latest": is_latest, **marks(catalogues).get((cls.id, cls.version), {})}
+    )
+
+
+@router.get("/{id}/versions/{number}/accuracy", responses=refusals(404))
+def show_accuracy(id: Id, number: Number, catalogues: TheCatalogues) -> Accuracy:
+    """Measured cost and error of each level over the parameter plane; 404 where none was measured."""
+    cls = catalogues.templates.get(id, number)
+    measured = accuracy(cls)
+    if measured is None:
+        raise UnknownTemplate(id, f"the error of {id} version {number} is not measured")
+    return Accuracy.model_validate(measured.content)
+
+
+T = TypeVar("T", bound=Template)
+
+_described: WeakKeyDictionary[type[Template], dict[str, object]] = WeakKeyDictionary()
+_titles: WeakKeyDictionary[type[Template], dict[str, str]] = WeakKeyDictionary()
+
+
+def _description(cls: type[Template]) -> Mapping[str, object]:
+    """The description of a version, which nobody changes: it follows from the class alone."""
+    if (description := _described.get(cls)) is None:
+        description = _described[cls] = describe(cls)
+    return description
+
+
+def _words(cls: type[Template]) -> Mapping[str, str]:
+    """The title and the summary of a version."""
+    if (words := _titles.get(cls)) is None:
+        words = _titles[cls] = {"title": cls.title(), "summary": cls.summary()}
+    return words
+
+
+Marks = Mapping[Key, Mapping[str, SheetMark]]
+"""The worksheet's part of an answer, by id and version."""
+
+
+def marks(catalogues: Catalogues) -> Marks:
+    """The worksheet's part of the answer about each template."""
+    return {
+        key: {
+            "worksheet": SheetMark(
+                state=sheet.state,
+                author=sheet.author,
+                reviewer=sheet.reviewer,
+                review_verified=sheet.is_verified,
+            )
+        }
+        for key, sheet in catalogues.snapshot.sheets.released.items()
+    }
+
+
+def listed(
+    catalogue: Catalogue[T], limit: int, cursor: str | None, marked: Marks = MappingProxyType({})
+) -> TemplateList:
+    """One page of all versions in a catalogue."""
+    return page_of(TemplateList, list(catalogue), limit, cursor, lambda cls: summary(cls, catalogue, marked))
+
+
+def versions_of(catalogue: Catalogue[T], id: str, marked: Marks = MappingProxyType({})) -> TemplateVersions:
+    """All versions of one template or model.
+
+    Raises
+    ------
+    UnknownTemplate
+        If there is none.
+    """
+    items = [summary(cls, catalogue, marked) for cls in catalogue.of(id).values()]
+    return TemplateVersions(id=id, items=items, next=None)
+
+
+def summary(cls: type[Template], catalogue: Catalogue[T], marked: Marks) -> TemplateSummary:
+    """One version in a list."""
+    return TemplateSummary(
+        id=cls.id,
+        version=cls.version,
+        **_words(cls),
+        status="withdrawn" if cls.withdrawn else "released",
+        latest=cls is catalogue.latest(cls.id),
+        **marked.get((cls.id, cls.version), {}),
+    )

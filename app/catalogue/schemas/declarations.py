@@ -1,0 +1,83 @@
+"""The declarations of inputs, parameters and outputs of a template or model, read from its JSON Schemas."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property, lru_cache
+
+from pydantic import BaseModel, Field, JsonValue, TypeAdapter
+
+from app.catalogue.schemas.templates import Schema
+
+
+class Declared(BaseModel):
+    """One input, parameter or output; the schema says more, which the pages do not use."""
+
+    title: str
+    symbol: str | None = None
+    unit: str | None = None
+    along: str | None = None  # of a curve: the name of its axis
+    enum: tuple[str, ...] = ()
+    library: str | None = None  # of a limit: the table of the library whose rows may be named
+    filled_by: str | None = Field(None, alias="from")  # of a limit: the table whose rows have a value for it
+    default: JsonValue = None
+    default_formula: str | None = None
+    examples: list[JsonValue] = []
+    anyOf: list[dict[str, JsonValue]] = []  # the forms in which it may be given
+
+    @property
+    def has_default(self) -> bool:
+        """Return whether a value stands for an empty field."""
+        return "default" in self.model_fields_set
+
+    @cached_property
+    def is_list(self) -> bool:
+        """Return whether it is a list of values or a curve, as its forms say, or its example."""
+        has_list = any(_holds_list(example) for example in self.examples)
+        return has_list or (bool(self.anyOf) and all(_is_list(form) for form in self.anyOf))
+
+
+def _holds_list(example: JsonValue) -> bool:
+    return isinstance(example.get("value") if isinstance(example, dict) else example, list)
+
+
+def _is_list(form: dict[str, JsonValue]) -> bool:
+    """Return whether one form of a value is that of a list, or of a quantity with one."""
+    match form:
+        case {"type": "array"} | {"properties": {"value": {"type": "array"}}}:
+            return True
+    return False
+
+
+_PROPERTIES = TypeAdapter(dict[str, Declared])
+_NAMES = TypeAdapter(frozenset[str])
+
+
+class _Same:
+    """A schema, equal to itself alone: to compare or digest its text would cost as much as to read it."""
+
+    __slots__ = ("schema",)
+
+    def __init__(self, schema: Schema) -> None:
+        self.schema = schema
+
+    def __hash__(self) -> int:
+        return id(self.schema)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and self.schema is other.schema
+
+
+def properties(schema: Schema) -> Mapping[str, Declared]:
+    """Return the declarations in a schema, by name, in its order; read once while steps share the schema."""
+    return _read(_Same(schema))
+
+
+@lru_cache(maxsize=64)
+def _read(same: _Same) -> Mapping[str, Declared]:
+    return _PROPERTIES.validate_python(same.schema.get("properties", {}))
+
+
+def required(schema: Schema) -> frozenset[str]:
+    """Return the names without which the schema refuses an object."""
+    return _NAMES.validate_python(schema["required"])

@@ -1,0 +1,128 @@
+"""Request bodies for designs, besides the design itself."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+from pydantic.config import JsonDict
+from pydantic.json_schema import SkipJsonSchema
+
+from app.calculations.bodies import OIL_FILM
+from app.designs.document import (
+    CRITERION,
+    NAME,
+    WORD,
+    CriterionName,
+    Document,
+    Iteration,
+    Model,
+    Name,
+    Step,
+    WrittenCriterion,
+)
+from app.designs.variants.names import MOST_VARIANTS, PLACE
+from app.schemas.bounds import Bounded
+from app.schemas.values import FORMS, GIVEN, Given
+
+PAPER: JsonDict = {
+    "name": "435 cc main bearing",
+    "parameters": {"scale": "1"},
+    "steps": {
+        "film": {
+            "template": "oil_film",
+            "version": 1,
+            "inputs": {**OIL_FILM, "bearing_diameter": "= scale * 48 mm"},
+        }
+    },
+    "model": {
+        "id": "ball_bearing",
+        "version": 1,
+        "parameters": {"inner_diameter": "= film.bearing_diameter"},
+    },
+}
+"""The paper's demonstration as a design."""
+
+LONGEST_NOTE = 1000  # letters
+Note = Field(None, max_length=LONGEST_NOTE, description="why, for the list of revisions")
+
+
+class DesignIn(Document):
+    """A new design."""
+
+    model_config = ConfigDict(
+        strict=True,
+        extra="forbid",
+        allow_inf_nan=False,
+        json_schema_extra={"examples": [PAPER], "not": {"required": ["model", "models"]}},
+    )
+
+    model: Model | SkipJsonSchema[None] = Field(
+        None, description="short for `models` with one entry named `model`"
+    )
+    note: str | None = Note
+
+
+class RestoreIn(Bounded):
+    """A note for the revision that a restore makes."""
+
+    model_config = ConfigDict(strict=True, extra="forbid")
+    note: str | None = Note
+
+
+class CopyIn(Bounded):
+    """A name for the copy."""
+
+    model_config = ConfigDict(strict=True, extra="forbid")
+    name: Name | None = None
+
+
+class DecideIn(Bounded):
+    """The criteria to decide, and the time that may take."""
+
+    model_config = ConfigDict(
+        strict=True,
+        extra="forbid",
+        json_schema_extra={"examples": [{"criteria": ["film.film"], "budget": "30 s"}]},
+    )
+    criteria: Annotated[list[CriterionName], Field(max_length=200)] | None = Field(
+        None, description="by name; all that are undecided, if not given"
+    )
+    budget: Given = Field("30 s", description="after which no further level begins")
+
+
+def _named(values: JsonDict) -> JsonDict:
+    return {"type": ["object", "null"], "propertyNames": {"pattern": WORD}, "additionalProperties": values}
+
+
+def _part(cls: type[BaseModel]) -> JsonDict:
+    names: JsonDict = {name: {} for name in cls.model_fields}
+    return {"type": ["object", "null"], "properties": names, "additionalProperties": False}
+
+
+PATCH: JsonDict = {
+    "title": "DesignPatch",
+    "type": "object",
+    "examples": [{"parameters": {"scale": "1.01"}, "note": "next size"}],
+    "additionalProperties": False,
+    "properties": {
+        "name": {"type": "string", "minLength": 1, "maxLength": 200, "pattern": NAME},
+        "parameters": _named({**GIVEN, "anyOf": [*FORMS, {"type": "null"}]}),
+        "steps": _named(_part(Step)),
+        "model": {**_part(Model), "description": "short for `models` with one entry named `model`"},
+        "models": _named(_part(Model)),
+        "criteria": {
+            "type": ["object", "null"],
+            "propertyNames": {"pattern": CRITERION},
+            "additionalProperties": _part(WrittenCriterion),
+        },
+        "variants": {
+            **_named({"type": ["object", "null"], "propertyNames": {"pattern": PLACE}}),
+            "maxProperties": MOST_VARIANTS,
+            "description": "null removes a variant, or one of its values",
+        },
+        "iterations": {"type": ["array", "null"], "maxItems": 10, "items": _part(Iteration)},
+        "note": {"type": ["string", "null"], "maxLength": LONGEST_NOTE},
+    },
+}
+"""What a merge patch of a design may name; null removes. What it leads to is checked as a whole design."""

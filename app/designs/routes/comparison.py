@@ -1,0 +1,40 @@
+"""`/designs/{id}/compare`: what differs between two revisions, of one design or of two."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Query
+
+from app.api.dependencies import TheDatabase, Units
+from app.designs.comparing import Pair, compare
+from app.designs.schemas.comparison import Comparison
+from app.http.strict_requests import StrictRoute
+from app.schemas.problems import refusals
+
+router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
+
+Id = Annotated[str, Path(max_length=64)]
+Number = Annotated[
+    int | None,
+    Query(ge=1, le=10**9, description="of this design; its newest, or the one before `with`, if not given"),
+]
+With = Annotated[
+    int | None,
+    Query(alias="with", ge=1, le=10**9, description="of the other side; its newest, if not given"),
+]
+Other = Annotated[str | None, Query(max_length=64, description="another design; this one, if not given")]
+
+
+@router.get("/{id}/compare", responses=refusals(404))
+def compare_revisions(
+    id: Id,
+    database: TheDatabase,
+    revision: Number = None,
+    number: With = None,
+    design: Other = None,
+    units: Units = "si",
+) -> Comparison:
+    """Compare a revision of this design with another one, or with a revision of another design."""
+    with database.read() as session:
+        return compare(session, Pair(id, revision, design or None, number)).in_units(units)

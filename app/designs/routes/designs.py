@@ -1,0 +1,297 @@
+"""`/designs`: create, list, change, delete, preview, map, copy, measure, explain."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Body, Path, Query, Request, Response
+from pydantic import WithJsonSchema
+from pydantic.config import JsonDict
+
+from app.api.dependencies import (
+    ExpensiveSteps,
+    IdempotencyKey,
+    TheDatabase,
+    TheDesigns,
+    TheJobs,
+    TheOnce,
+    ThePreviews,
+    TheThreads,
+    Units,
+    expensive_steps,
+    get_once,
+    services_of,
+)
+from app.api.waiting import accepted, later, written
+from app.designs import repository, views
+from app.designs.bodies import LONGEST_NOTE, PATCH, CopyIn, DesignIn
+from app.designs.filtering import TEMPLATE, DesignFilter
+from app.designs.labels import key_of, tags_of
+from app.designs.preview import Previewed
+from app.designs.releases import released_of
+from app.designs.routes.answers import (
+    CHANGED,
+    Id,
+    IfMatch,
+    Prefer,
+    Within,
+    answer_saved,
+    seconds_waited,
+    shown,
+)
+from app.designs.schemas.designs import (
+    Design,
+    DesignList,
+    DesignSummary,
+    Explanation,
+    MappedDesign,
+    ModelMeasurements,
+    Preview,
+    Proposals,
+    State,
+)
+from app.designs.schemas.labels import MOST_TAGS, Tag
+from app.designs.service import Saved
+from app.http.clients import TheClient, get_client
+from app.http.pages import Cursor, Limit, page
+from app.http.roles import needs
+from app.http.strict_requests import PlainRoute, StrictRequest, StrictRoute
+from app.plain import JsonObject
+from app.schemas.problems import refusals
+from app.storage.idempotency import Once
+from app.storage.tables import DesignRow
+from templates.core.errors import Fault, InvalidInputs
+
+PRINTABLE = r"^[^\x00-\x1f\x7f]*$"  # no control characters, as in names of designs
+
+router = APIRouter(
+    prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
+)
+saves = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=PlainRoute)
+"""What is called most: create and PATCH."""
+
+Explained = Annotated[str, Path(max_length=140, description="`model.width`; `film.film`, a criterion")]
+NamePart = Annotated[
+    str | None,
+    Query(max_length=200, pattern=PRINTABLE, description="part of the name, in upper or lower case"),
+]
+InState = Annotated[State | None, Query(description="state of the newest revision")]
+WithTags = Annotated[
+    list[Tag], Query(alias="tag", max_length=MOST_TAGS, description="a tag that it has; repeat it for more")
+]
+Archived = Annotated[
+    Literal["false", "true", "any"],
+    Query(description="`false`: without archived designs; `true`: these alone; `any`: these as well"),
+]
+UsedTemplate = Annotated[
+    str | None,
+    Query(
+        description="a template or model that the newest revision uses, in any version or in one: "
+        "`oil_film`, `oil_film/2`",
+        json_schema_extra={"pattern": TEMPLATE},
+    ),
+]
+Patch = Annotated[
+    JsonObject,
+    Body(
+        title="DesignPatch",
+        description="a merge patch of the design, with an optional `note`; null removes",
+    ),
+    WithJsonSchema(PATCH),
+]
+MERGE_PATCH: JsonDict = {"requestBody": {"content": {"application/merge-patch+json": {"schema": PATCH}}}}
+
+
+@saves.post("", status_code=201, response_model=Design, responses={**later(Design), **refusals(429)})
+async def create_design(
+    request: StrictRequest,
+    body: DesignIn,
+    prefer: Prefer = None,
+    idempotency_key: IdempotencyKey = None,
+) -> Response:
+    """A new design; its models are built. 201 when they are ready, 202 while they are being built."""
+    raw, note = document_of(body)
+    create = services_of(request).designs.create
+    return await _saved(request, prefer, idempotency_key, partial(create, raw, note))
+
+
+@router.get("")
+def list_designs(
+    database: TheDatabase,
+    limit: Limit = 50,
+    cursor: Cursor = None,
+    name: NamePart = None,
+    state: InState = None,
+    tag: WithTags = [],  # noqa: B006 - FastAPI copies it
+    archived: Archived = "false",
+    template: UsedTemplate = None,
+) -> DesignList:
+    """Designs, newest first: all, or those that fit every filter given."""
+    tags = tuple(dict.fromkeys(map(key_of, tag)))
+    wanted = DesignFilter(name, state, tags, archived, template)
+    with database.read() as session:
+        rows = repository.designs(session, limit, cursor, wanted)
+        ids = [row.id for row in rows]
+        labels, released = tags_of(session, ids), released_of(session, ids)
+
+        def show(row: DesignRow) -> DesignSummary:
+            newest = repository.revision(session, row.id, row.head)
+            return views.listed(row, newest, labels[row.id], released.get(row.id))
+
+        return page(DesignList, rows, limit, show, lambda row: row.id)
+
+
+@router.get("/{id}", response_model=Design, responses=refusals(404))
+def show_design(id: Id, designs: TheDesigns) -> Response:
+    """A design as of its newest revision; the ETag is that revision."""
+    return shown(designs.show(id))
+
+
+@saves.patch("/{id}", response_model=Design, responses=CHANGED, openapi_extra=MERGE_PATCH)
+async def change_design(
+    request: StrictRequest,
+    id: Id,
+    body: Patch,
+    if_match: IfMatch = None,
+    prefer: Prefer = None,
+    idempotency_key: IdempotencyKey = None,
+) -> Response:
+    """A new revision; models are rebuilt only where one of their parameters changed.
+
+    A new name alone keeps all results: nothing is calculated.
+    """
+    patch, note = noted(body)
+    change = services_of(request).labelling.change
+    return await _saved(request, prefer, idempotency_key, partial(change, id, patch, note, if_match))
+
+
+async def _saved(
+    request: StrictRequest, prefer: str | None, key: str | None, save: Callable[[Once], Saved]
+) -> Response:
+    """Save a design in a thread that may wait for the pool; return the answer."""
+    services, client = services_of(request), await get_client(request)
+    once = await get_once(request, client, key)
+    await expensive_steps(request, client)
+    saved = await services.threads.run_within(seconds_waited(prefer), request, save, once)
+    return await answer_saved(services.designs, services.jobs, saved, prefer)
+
+
+@router.delete("/{id}", status_code=204, responses=refusals(404, 409))
+def delete_design(id: Id, designs: TheDesigns) -> Response:
+    """Take a design from the lists; its revisions are kept."""
+    designs.delete(id)
+    return Response(status_code=204)
+
+
+@router.post(
+    "/{id}/preview",
+    response_model=Preview,
+    responses={**later(Preview), **refusals(404, 429)},
+    dependencies=[needs("viewer")],
+)
+async def preview_design(
+    id: Id,
+    body: Patch,
+    previews: ThePreviews,
+    threads: TheThreads,
+    client: TheClient,
+    request: Request,
+    worksheet: Annotated[bool, Query(description="also every step, its formulas written out")] = False,
+    units: Units = "si",
+    within: Within = None,
+    prefer: Prefer = None,
+) -> Response:
+    """Preview the effect of a change on outputs and model parameters; nothing is saved."""
+    change = Previewed(id, noted(body)[0], worksheet, units)
+    if within is not None:
+        return written(await threads.run_within(within, request, previews.known, change))
+    answer, job = await threads.run_within(seconds_waited(prefer), request, previews.in_parts, change, client)
+    return accepted(job, answer) if job else written(answer)
+
+
+@router.post("/{id}/auto-map", response_model=MappedDesign | Proposals, responses=CHANGED)
+async def map_design(
+    id: Id,
+    designs: TheDesigns,
+    threads: TheThreads,
+    jobs: TheJobs,
+    once: TheOnce,
+    request: Request,
+    apply: Annotated[bool, Query(description="save the proposals as a new revision")] = False,
+    if_match: IfMatch = None,
+    prefer: Prefer = None,
+) -> Response:
+    """Proposals for model parameters that are not set: relations to quantities of the same kind and role.
+
+    A quantity fits if it is measured alike, is called as the parameter is, or as it is also known, and
+    belongs to the same part. Each proposal says why. With `apply` all are saved as a new revision.
+    """
+    proposals, saved = await threads.run_within(
+        seconds_waited(prefer), request, designs.auto_map, id, apply, if_match, once
+    )
+    if not saved:
+        return written(Proposals(proposals=proposals))
+    return await answer_saved(designs, jobs, saved, prefer, proposals)
+
+
+@router.post("/{id}/copy", status_code=201, response_model=Design, responses=CHANGED)
+async def copy_design(
+    id: Id,
+    designs: TheDesigns,
+    threads: TheThreads,
+    jobs: TheJobs,
+    once: TheOnce,
+    request: Request,
+    body: CopyIn | None = None,
+    prefer: Prefer = None,
+) -> Response:
+    """A new design with the newest document of this one."""
+    saved = await threads.run_within(
+        seconds_waited(prefer), request, designs.copy, id, body.name if body else None, once
+    )
+    return await answer_saved(designs, jobs, saved, prefer)
+
+
+@router.get("/{id}/measurements", responses=refusals(404))
+def show_measurements(id: Id, database: TheDatabase, units: Units = "si") -> dict[str, ModelMeasurements]:
+    """Measurements of the newest good models, with dimensions read back from the STEP files."""
+    with database.read() as session:
+        measured = views.measurements(session, id)
+        return {name: model.in_units(units) for name, model in measured.items()}
+
+
+@router.get("/{id}/explain/{name}", responses=refusals(404))
+async def explain_name(
+    id: Id,
+    name: Explained,
+    designs: TheDesigns,
+    threads: TheThreads,
+    request: Request,
+    units: Units = "si",
+) -> Explanation:
+    """Where a model parameter or the verdict of a criterion comes from.
+
+    Of a parameter: dimension ← relation ← output ← formula ← inputs. Of a criterion such as `film.film`:
+    verdict ← value ← formula ← inputs, and limit ← who gave it. `sensitivities` are local slopes to the
+    quantities as typed.
+    """
+    return await threads.run_for(request, designs.explanation, id, name, units)
+
+
+def document_of(body: DesignIn) -> tuple[JsonObject, str | None]:
+    """Return the document of a new design, and its note."""
+    raw = body.model_dump()  # not in JSON's mode, which hides a NaN as null
+    note = raw.pop("note")
+    raw.pop("model")
+    return raw, note
+
+
+def noted(body: JsonObject) -> tuple[JsonObject, str | None]:
+    """A patch and its note."""
+    patch = {key: value for key, value in body.items() if key != "note"}
+    note = body.get("note")
+    if note is not None and not (isinstance(note, str) and len(note) <= LONGEST_NOTE):
+        raise InvalidInputs([Fault("note", "string", f"a note is a text of at most {LONGEST_NOTE} letters")])
+    return patch, note

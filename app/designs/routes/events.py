@@ -1,0 +1,49 @@
+"""`/designs/{id}/events`: a design's revisions and regenerations as they happen (server-sent events)."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+
+from fastapi import APIRouter, Depends
+from fastapi.sse import EventSourceResponse, ServerSentEvent
+from starlette.concurrency import run_in_threadpool
+
+from app.api.dependencies import OneStream, TheDatabase, TheJobs
+from app.api.resuming import LastEvent, allowed, identity, listening
+from app.designs.news import Standing, can_resume, standing
+from app.designs.routes.answers import Id
+from app.designs.routes.designs import show_design
+from app.http.strict_requests import StrictRoute
+from app.storage.database import Database
+
+router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
+
+# How a design names the events of its job.
+NAMES = {"queued": "regenerating", "running": "regenerating", "done": "current", "cancelled": "failed"}
+
+
+@router.get("/{id}/events", response_class=EventSourceResponse, dependencies=[Depends(show_design)])
+async def watch_design(
+    id: Id, database: TheDatabase, jobs: TheJobs, place: OneStream, last: LastEvent
+) -> AsyncIterator[ServerSentEvent]:
+    """The state first, then `revision`, `regenerating`, `progress`, `current`, `failed` as they come.
+
+    In place of the state, a client that comes back gets the events after its last one, if they are kept.
+    """
+    async with listening(jobs.events, f"design:{id}") as events:
+        now = await run_in_threadpool(_start, database, id, last)
+        if now is None:
+            events.resume(last or 0)
+        else:
+            events.number = now.number
+            data = {"revision": now.revision, "state": now.state, "problem": now.problem}
+            yield ServerSentEvent(id=identity(now.number), event=now.state, data=data)
+        async for event in allowed(events, place):
+            name = NAMES.get(event.name, event.name)
+            yield ServerSentEvent(id=identity(event.number), event=name, data=event.message)
+
+
+def _start(database: Database, id: str, last: int | None) -> Standing | None:
+    """Return the state of a design; None if the reader can go on after its last event."""
+    with database.read() as session:
+        return None if can_resume(session, id, last) else standing(session, id)

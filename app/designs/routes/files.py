@@ -1,0 +1,261 @@
+"""`/designs/{id}/model` and its kin: the newest good model, or that of a revision, in the kind asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Header, Query, Response
+from fastapi.responses import FileResponse
+from sqlalchemy.orm import Session
+from starlette.concurrency import run_in_threadpool
+
+from app.api.dependencies import (
+    TheDatabase,
+    TheHealing,
+    TheJobs,
+    TheModels,
+    ThePress,
+    TheSettings,
+    TheStore,
+)
+from app.api.stored import UNAVAILABLE, UNCHANGED, lost
+from app.api.waiting import LATER, accepted, accepted_weights, finished
+from app.designs import stamps, views
+from app.designs.routes.answers import Id, Number, Prefer
+from app.designs.routes.title_blocks import TheTitleBlock, TitleBlock
+from app.http import problems
+from app.http.attachments import MemoryFile, disposition, http_time, is_at_hand, tag, unchanged
+from app.http.clients import TheClient
+from app.http.query_names import KNOWN_NAMES
+from app.http.strict_requests import StrictRoute
+from app.jobs.service import Jobs
+from app.reports.paper import Press
+from app.schemas.problems import RouteOptions, refusals
+from app.solids.models import File, Models
+from app.solids.repair import Healing
+from app.solids.routes.models import PATIENCE, send_file
+from app.storage.artifacts import Artifacts
+from app.storage.database import Database
+from app.storage.errors import NotFound
+from app.storage.tables import RevisionModelRow
+from cad.deflection import with_deflection
+from cad.drafting.paper import TYPESETTER
+from cad.export import DRAWINGS, MEDIA_TYPES
+from cad.stamp import STAMPED, Stamp, stamped, takes_stamp
+
+router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
+
+FILES: RouteOptions = {
+    "dependencies": [KNOWN_NAMES],
+    "response_class": FileResponse,
+    "responses": {
+        200: {"content": {media: {} for media in MEDIA_TYPES.values()}},
+        **LATER,
+        **UNCHANGED,
+        **UNAVAILABLE,
+        **refusals(404, 429),
+    },
+}
+
+PRINTED = {"drawing.pdf": "drawing.svg"}
+"""Kinds that are typeset of another one with its stamp: nothing can be written into a finished PDF."""
+
+Accept = Annotated[str | None, Header(description=", ".join(MEDIA_TYPES.values()))]
+Deflection = Annotated[
+    str | None,
+    Query(
+        max_length=60,
+        description="of GLB and STL, how far a facet may lie from the true surface: a length of 1/10 000 "
+        "to 1/10 of the diagonal of the largest body's box",
+        examples=["0.05 mm"],
+    ),
+]
+BuildSeen = Annotated[
+    str | None,
+    Query(
+        max_length=64,
+        description="changes nothing: a page writes the key of the build that it shows, so that a browser "
+        "fetches the file of another build again",
+    ),
+]
+IfNoneMatch = Annotated[str | None, Header(description="the ETags of files that are at hand")]
+
+
+@dataclass(frozen=True)
+class FileRequest:
+    """A request for a file of a model, with the services that answer it."""
+
+    database: Database
+    store: Artifacts
+    models: Models
+    jobs: Jobs
+    healing: Healing
+    press: Press
+    owner: str
+    client: str
+    accept: str | None
+    prefer: str | None
+    if_none_match: str | None
+    deflection: str | None
+    title_block: TitleBlock
+
+    async def answer(self, find: Callable[[Session], RevisionModelRow], kind: str | None) -> Response:
+        """The file, of the kind that the path names or the client likes best, of the model that `find` finds.
+
+        Raises
+        ------
+        NotFound
+            If there is no such kind, or no such model.
+        InvalidInputs
+            If the deflection is no length, or the kind has no facets; if the kind has no title block, or what
+            was typed contradicts the approval.
+        """
+        wanted = kind or _accepted(self.accept)
+        prefer = self.prefer or PATIENCE
+        if wanted not in MEDIA_TYPES:
+            raise NotFound(f"there is no model.{wanted[:20]}; there are {', '.join(MEDIA_TYPES)}")
+        key, stored_kind, stamp, old = await run_in_threadpool(self._lookup, find, wanted)
+        answer = await lost(old.sha256, self.healing, self.jobs, prefer) if old else None
+        if answer is None and (
+            old is None or await run_in_threadpool(_is_outdated, self.models, key, stored_kind)
+        ):
+            answer = await self._unless_ready(key, stored_kind, prefer, has_older=bool(old))
+        if answer:
+            return answer
+        file = await run_in_threadpool(lambda: self.models.file(key, stored_kind))
+        assert file is not None, "a job that has done its work left its file"
+        return await run_in_threadpool(self._sent, file, stamp, wanted)
+
+    def _lookup(
+        self, find: Callable[[Session], RevisionModelRow], wanted: str
+    ) -> tuple[str, str, Stamp, File | None]:
+        """The key of the model's build, the kind of file that is stored, its stamp, and an older file."""
+        with self.database.read() as session:
+            model = find(session)
+            kind = self._stored_kind(wanted)
+            is_drawing = kind in DRAWINGS
+            stamp = stamps.signed(session, model, self.owner) if is_drawing else stamps.stamp(session, model)
+            stamp = self.title_block.on(stamp, wanted)
+            return model.build_key or "", kind, stamp, views.file(session, model, kind)
+
+    def _stored_kind(self, wanted: str) -> str:
+        """The kind of file that is stored for one that is wanted."""
+        if self.deflection is not None:
+            return with_deflection(wanted, self.deflection)
+        return PRINTED.get(wanted, wanted)
+
+    async def _unless_ready(self, key: str, kind: str, prefer: str, *, has_older: bool) -> Response | None:
+        """None once a file is made; 202 if the client does not wait so long, or why it cannot be made."""
+        job = await run_in_threadpool(self.models.request_file, key, kind, self.client)
+        if not await finished(self.jobs, job, prefer):
+            return accepted(job)
+        problem = await run_in_threadpool(self.jobs.problem, job)
+        return problems.answer(problem) if problem and not has_older else None
+
+    def _sent(self, file: File, stamp: Stamp, kind: str) -> Response:
+        """A file under its name, or 304; with its stamp, if it is of a kind that has one."""
+        plain, wide = f"{stamp.stem}.{kind}", f"{stamp.wide_stem}.{kind}"
+        headers = {
+            "Design-Revision": str(stamp.revision),
+            "Vary": "Accept",
+            "Cache-Control": "no-cache",
+            "Content-Disposition": disposition(plain, wide),
+        }
+        content = stamped(self.store.read(file.sha256), file.kind, stamp) if file.kind in STAMPED else None
+        if content is None:
+            headers["ETag"] = f'"{file.sha256}"'
+        else:  # of what is typeset, that from which and with what: so a client that has it waits for nothing
+            headers["ETag"] = tag(content + TYPESETTER.encode() if kind in PRINTED else content)
+        if is_at_hand(self.if_none_match, headers["ETag"]):
+            return unchanged(headers)
+        if content is not None and kind in PRINTED:
+            content = self.press.draw(content)
+        if content is None:
+            return send_file(self.store, file, headers)
+        return MemoryFile(content, MEDIA_TYPES[kind], {**headers, "Last-Modified": http_time(stamp.date)})
+
+
+async def plain_file_request(
+    database: TheDatabase,
+    store: TheStore,
+    models: TheModels,
+    jobs: TheJobs,
+    healing: TheHealing,
+    press: ThePress,
+    settings: TheSettings,
+    client: TheClient,
+    accept: Accept = None,
+    prefer: Prefer = None,
+    if_none_match: IfNoneMatch = None,
+) -> FileRequest:
+    """The parts of a request that all routes of files have in common."""
+    return FileRequest(
+        database,
+        store,
+        models,
+        jobs,
+        healing,
+        press,
+        settings.owner,
+        client,
+        accept,
+        prefer,
+        if_none_match,
+        deflection=None,
+        title_block=TitleBlock({}),
+    )
+
+
+ThePlainFileRequest = Annotated[FileRequest, Depends(plain_file_request)]
+
+
+async def file_request(
+    plain: ThePlainFileRequest,
+    title_block: TheTitleBlock,
+    deflection: Deflection = None,
+    build: BuildSeen = None,
+) -> FileRequest:
+    """The same, with the options of a mesh and of a drawing."""
+    return replace(plain, deflection=deflection, title_block=title_block)
+
+
+TheFileRequest = Annotated[FileRequest, Depends(file_request)]
+
+
+@router.get("/{id}/model", **FILES)
+@router.get("/{id}/model.{kind}", **FILES)
+@router.get("/{id}/models/{name}/model", **FILES)
+@router.get("/{id}/models/{name}/model.{kind}", **FILES)
+@router.get("/{id}/revisions/{number}/model", **FILES)
+@router.get("/{id}/revisions/{number}/model.{kind}", **FILES)
+@router.get("/{id}/revisions/{number}/models/{name}/model", **FILES)
+@router.get("/{id}/revisions/{number}/models/{name}/model.{kind}", **FILES)
+async def read_model_file(
+    id: Id,
+    request: TheFileRequest,
+    name: Id | None = None,
+    kind: Id | None = None,
+    number: Number | None = None,
+) -> Response:
+    """A file of a model, which names its design, model and revision.
+
+    Other kinds than STEP are made when first asked for. The answer waits for that, and is 202 if it takes
+    longer than the client waits. STEP files and drawings also say inside whose they are, and
+    drawings who signed them.
+    """
+    return await request.answer(lambda session: views.good_model(session, id, name, number), kind)
+
+
+def _is_outdated(models: Models, key: str, kind: str) -> bool:
+    """True if a drawing is one of an older program, which had no room for a stamp; it is drawn again."""
+    file = models.file(key, kind) if kind in DRAWINGS else None
+    return file is not None and not takes_stamp(models.store.read(file.sha256), kind)
+
+
+def _accepted(accept: str | None) -> str:
+    """The kind that the client likes best, of those it likes equally the first; STEP by default."""
+    kinds = {media: kind for kind, media in MEDIA_TYPES.items()}
+    liked = [(weight, kinds[media]) for media, weight in accepted_weights(accept).items() if media in kinds]
+    return max(liked, key=lambda pair: pair[0], default=(1.0, "step"))[1]

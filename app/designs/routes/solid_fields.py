@@ -1,0 +1,115 @@
+"""`…/models/{name}/fields`: what can be painted on a crankshaft, as GLB and as a picture."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Literal
+
+from fastapi import APIRouter, Response
+from starlette.concurrency import run_in_threadpool
+
+from app.api.dependencies import TheCatalogues, TheDatabase
+from app.api.stored import UNAVAILABLE, UNCHANGED
+from app.api.waiting import LATER
+from app.designs import views
+from app.designs.routes.answers import Id, Number
+from app.designs.routes.files import ThePlainFileRequest
+from app.designs.schemas import solid_fields as schemas
+from app.designs.solid_fields import SolidField, field_of, fields_of
+from app.http.attachments import MemoryFile, disposition, is_at_hand, tag, unchanged
+from app.http.strict_requests import StrictRoute
+from app.schemas.problems import RouteOptions, refusals
+from app.storage.artifacts import Artifacts
+from app.storage.database import Database
+from cad.export import MEDIA_TYPES
+from cad.naming import name as wide_name
+from cad.naming import plain_name
+from cad.painting import Glb
+
+router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
+
+Painted = Literal["glb", "png"]
+PAINTED: RouteOptions = {
+    "response_class": Response,
+    "responses": {
+        200: {"content": {MEDIA_TYPES[kind]: {} for kind in ("glb", "png")}},
+        **LATER,
+        **UNCHANGED,
+        **UNAVAILABLE,
+        **refusals(404),
+    },
+}
+
+
+@router.get("/{id}/revisions/{number}/models/{name}/fields", responses=refusals(404))
+def list_solid_fields(
+    id: Id, number: Number, name: Id, database: TheDatabase, catalogues: TheCatalogues
+) -> schemas.SolidFieldList:
+    """The fields that can be painted on a model: the load use of its fillets, shapes of torsional modes.
+
+    A `fatigue_life` that takes its tensors from `unit_loads` of the model, and has the output `load_use`,
+    gives the first; a `forced_torsion` that takes stiffnesses from its `chain` gives the others.
+    """
+    with database.read() as session:
+        fields = fields_of(session, catalogues.models, id, number, name)
+    base = f"/api/v1/designs/{id}/revisions/{number}/models/{name}/fields"
+    return schemas.SolidFieldList(items=[_shown(one, base) for one in fields.values()])
+
+
+def _shown(one: SolidField, base: str) -> schemas.SolidField:
+    glb, png = (f"{base}/{one.id}.{kind}" for kind in ("glb", "png"))
+    return schemas.SolidField(
+        id=one.id, title=one.title, unit=one.unit, low=one.low, high=one.high, glb=glb, png=png
+    )
+
+
+@router.get("/{id}/revisions/{number}/models/{name}/fields/{field}.{kind}", **PAINTED)
+async def read_painted_solid(
+    id: Id,
+    number: Number,
+    name: Id,
+    field: Id,
+    kind: Painted,
+    request: ThePlainFileRequest,
+    catalogues: TheCatalogues,
+) -> Response:
+    """A model with a field as the colours of its surface: a GLB file, or a picture.
+
+    Where the field has no value the part is grey. The title of the field and the values of the first and
+    the last colour stand in the GLB file's root node, and in the list of fields.
+    """
+    database, store = request.database, request.store
+    chosen = await run_in_threadpool(_chosen, database, catalogues, (id, number, name), field)
+    plain = replace(request, if_none_match=None)
+    answer = await plain.answer(lambda session: views.good_model(session, id, name, number), "glb")
+    if answer.status_code != 200:  # it is still being made, or cannot be
+        return answer
+    painted = await run_in_threadpool(_painted, database, store, (id, number, name), chosen, kind)
+    called = f"{name}_r{number}_{field}.{kind}"
+    headers = {
+        "ETag": tag(painted),
+        "Cache-Control": "no-cache",
+        "Content-Disposition": disposition(plain_name(called), wide_name(called), "inline"),
+    }
+    if is_at_hand(request.if_none_match, headers["ETag"]):
+        return unchanged(headers)
+    return MemoryFile(painted, MEDIA_TYPES[kind], headers)
+
+
+def _chosen(
+    database: Database, catalogues: TheCatalogues, place: tuple[str, int, str], field: str
+) -> SolidField:
+    with database.read() as session:
+        return field_of(fields_of(session, catalogues.models, *place), field)
+
+
+def _painted(
+    database: Database, store: Artifacts, place: tuple[str, int, str], chosen: SolidField, kind: Painted
+) -> bytes:
+    id, number, name = place
+    with database.read() as session:
+        file = views.file(session, views.good_model(session, id, name, number), "glb")
+    assert file is not None, "it was answered a moment ago"
+    glb = Glb(store.read(file.sha256))
+    field = chosen.on(glb)
+    return glb.painted(field) if kind == "glb" else glb.picture(field)

@@ -1,0 +1,116 @@
+"""Fields of a drawing's title block that a client types at a download; what an approval says stays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Annotated
+from unicodedata import normalize
+
+from fastapi import Depends, Query
+
+from app.schemas.approval_steps import ORDER
+from cad.export import DRAWINGS
+from cad.stamp import Stamp
+from templates.core.errors import Fault, InvalidInputs
+
+LONGEST = 80  # letters; a field shows what has room in it
+
+Typed = Annotated[str, Query(max_length=LONGEST)]
+
+_SIGNED = {"author": "created_by", "checker": "checked_by", "approver": "approved_by"}
+"""Names that steps of an approval give, and the parameters that type them."""
+_ONLY_SIGNED = {"checker", "approver"}
+"""Those that nobody types: a drawing would say on a client's word that it was checked or approved."""
+
+
+@dataclass(frozen=True)
+class TitleBlock:
+    """The typed texts by parameter; an empty text leaves a field as it is."""
+
+    texts: dict[str, str]
+
+    def on(self, stamp: Stamp, kind: str) -> Stamp:
+        """The stamp with these texts.
+
+        Raises
+        ------
+        InvalidInputs
+            If the kind of file has no title block, or a text contradicts the approval.
+        """
+        typed = {name: plain for name, text in self.texts.items() if (plain := _shown(text))}
+        if typed and kind not in DRAWINGS:
+            detail = f"only {', '.join(DRAWINGS)} have a title block; leave it out for {kind}"
+            raise InvalidInputs(Fault(name, "not_offered", detail) for name in typed)
+        if faults := [*_contradictions(typed, stamp)]:
+            raise InvalidInputs(faults)
+        return replace(
+            stamp,
+            owner=typed.get("legal_owner", stamp.owner),
+            title=typed.get("drawing_title", ""),
+            number=typed.get("drawing_number", ""),
+            mark=typed.get("drawing_revision", ""),
+            author=typed.get("created_by", stamp.author),
+            checker=typed.get("checked_by", stamp.checker),
+            approver=typed.get("approved_by", stamp.approver),
+            status=typed.get("document_status", stamp.status),
+        )
+
+
+def _contradictions(typed: dict[str, str], stamp: Stamp) -> list[Fault]:
+    """Names and states that only an approval gives."""
+    faults = []
+    for field, name in _SIGNED.items():
+        signed = getattr(stamp, field)
+        if typed.get(name, signed) == signed:
+            continue
+        if signed:
+            detail = f"this revision has {signed!r} here, from its record; leave it out"
+            faults.append(Fault(name, "signed_otherwise", detail))
+        elif field in _ONLY_SIGNED:
+            detail = "nobody has signed here; only a step of the approval gives this name: leave it out"
+            faults.append(Fault(name, "signed_otherwise", detail))
+    status = typed.get("document_status", stamp.status)
+    if status != stamp.status and (stamp.status in ORDER or _letters(status) in ORDER):
+        detail = (
+            f"the approval of this revision says {stamp.status!r}; only a step of the approval changes it"
+        )
+        faults.append(Fault("document_status", "signed_otherwise", detail))
+    return faults
+
+
+def _shown(text: str) -> str:
+    """A text as a drawing shows it, without room about it: signs that do not print are spaces there."""
+    return "".join(sign if sign.isprintable() else " " for sign in text).strip()
+
+
+def _letters(text: str) -> str:
+    """The small Latin letters of a text: a reader sees `released` in `Released.` and in `ｒeleased` too."""
+    return "".join(sign for sign in normalize("NFKD", text).lower() if "a" <= sign <= "z")
+
+
+def title_block(
+    legal_owner: Typed = "",
+    drawing_title: Typed = "",
+    drawing_number: Typed = "",
+    drawing_revision: Typed = "",
+    created_by: Typed = "",
+    checked_by: Typed = "",
+    approved_by: Typed = "",
+    document_status: Typed = "",
+) -> TitleBlock:
+    """The texts of the request: fields of ISO 7200, of a drawing only."""
+    return TitleBlock(
+        {
+            "legal_owner": legal_owner,
+            "drawing_title": drawing_title,
+            "drawing_number": drawing_number,
+            "drawing_revision": drawing_revision,
+            "created_by": created_by,
+            "checked_by": checked_by,
+            "approved_by": approved_by,
+            "document_status": document_status,
+        }
+    )
+
+
+TheTitleBlock = Annotated[TitleBlock, Depends(title_block)]

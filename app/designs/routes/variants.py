@@ -1,0 +1,288 @@
+"""`/designs/{id}/variants`: the table of a design's variants, their files one by one, and all in a ZIP."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Iterator, Sequence
+from functools import partial
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Query, Request, Response
+from fastapi.responses import StreamingResponse
+from pydantic import ConfigDict, Field
+from pydantic.config import JsonDict
+from starlette.concurrency import run_in_threadpool
+
+from app.api.dependencies import (
+    ExpensiveSteps,
+    TheCatalogues,
+    TheDatabase,
+    TheDesigns,
+    TheHealing,
+    TheJobs,
+    TheOnce,
+    TheStore,
+    TheThreads,
+    TheVariantDetails,
+    Units,
+)
+from app.api.stored import UNAVAILABLE, lost
+from app.api.waiting import LATER, accepted, finished, later, patience, written
+from app.catalogue.catalogues import Catalogues
+from app.designs.bodies import Note
+from app.designs.document import Overrides, Word
+from app.designs.routes.answers import Id, IfMatch, Number, Prefer
+from app.designs.routes.files import FILES, IfNoneMatch, TheFileRequest
+from app.designs.routes.sheet_types import ANSWERS, BODIES
+from app.designs.schemas.variants import VariantDetail, VariantsOut
+from app.designs.service import Designs, Saved
+from app.designs.variants import views
+from app.designs.variants.detail import WantedVariant
+from app.designs.variants.files import STEP, Entry, entries, variant_model
+from app.designs.variants.names import MOST_VARIANTS
+from app.designs.variants.saving import replace_variants as replaced
+from app.http.archives import MEDIA_TYPE, archived, distinct
+from app.http.attachments import is_at_hand, named, unchanged
+from app.http.clients import TheClient
+from app.http.strict_requests import StrictRoute
+from app.jobs.service import Jobs
+from app.presentation.units import System
+from app.schemas.bounds import Bounded, at_most
+from app.schemas.problems import Responses, refusals
+from app.storage.artifacts import Artifacts
+from app.storage.database import Database
+from cad.stamp import stamped
+
+router = APIRouter(
+    prefix="/api/v1/designs", tags=["variants"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
+)
+
+VariantName = Annotated[str, Path(max_length=64, examples=["main_2"])]
+MISSING = "Variants-Missing"
+"""A header: models of variants that have no finished solid, and so no file in the ZIP."""
+Outputs = Annotated[
+    list[str],
+    Query(
+        alias="output",
+        max_length=100,
+        description="an output of a step to show, by its name in relations; repeat it for more",
+    ),
+]
+
+
+class VariantsIn(Bounded):
+    """The whole table of a design's variants."""
+
+    model_config = ConfigDict(
+        strict=True,
+        extra="forbid",
+        json_schema_extra={
+            "examples": [{"variants": {"small": {"scale": "0.9"}, "large": {"scale": "1.1"}}, "note": "two"}]
+        },
+    )
+
+    variants: Annotated[dict[Word, Overrides], Field(max_length=MOST_VARIANTS), at_most(MOST_VARIANTS)] = (
+        Field(description="by name; whatever is not named here is removed")
+    )
+    note: str | None = Note
+
+
+@router.get("/{id}/variants", responses={200: {"content": ANSWERS}, **refusals(404)})
+@router.get("/{id}/revisions/{number}/variants", responses=refusals(404))
+def show_variants(
+    id: Id,
+    database: TheDatabase,
+    catalogues: TheCatalogues,
+    response: Response,
+    number: Number | None = None,
+    output: Outputs = [],  # noqa: B006 - FastAPI copies it
+    units: Units = "si",
+) -> VariantsOut:
+    """The variants of a design: what each overrides, its verdicts and models; the worst one governs.
+
+    The ETag is the revision, which `PUT` takes as If-Match.
+    """
+    out = variants_of(id, number, database, catalogues, output, units)
+    response.headers["ETag"] = f'"{out.revision}"'
+    return out
+
+
+def variants_of(
+    id: str,
+    number: int | None,
+    database: Database,
+    catalogues: Catalogues,
+    outputs: Sequence[str] = (),
+    units: System = "si",
+) -> VariantsOut:
+    """Return the variants of a revision, the newest if none is named, with some outputs of steps."""
+    with database.read() as session:
+        return views.variants(session, id, number, catalogues, dict.fromkeys(outputs)).in_units(units)
+
+
+@router.put(
+    "/{id}/variants",
+    response_model=VariantsOut,
+    responses={**later(VariantsOut), **refusals(404, 429)},
+    openapi_extra=BODIES,
+)
+async def replace_variants(
+    id: Id,
+    body: VariantsIn,
+    designs: TheDesigns,
+    threads: TheThreads,
+    jobs: TheJobs,
+    once: TheOnce,
+    request: Request,
+    if_match: IfMatch = None,
+    prefer: Prefer = None,
+) -> Response:
+    """A new revision with this table of variants; the same table makes none.
+
+    Solids are built once for each distinct set of parameters. A variant whose solid fails says why; the
+    others are not touched.
+    """
+    save = partial(replaced, designs, id, body.variants, body.note, if_match, once)
+    saved = await threads.run_within(patience(prefer, math.inf), request, save)
+    return await answer_table(designs, jobs, saved, prefer)
+
+
+async def answer_table(designs: Designs, jobs: Jobs, saved: Saved, prefer: str | None) -> Response:
+    """The table as it was saved: 200, or 202 while solids are built."""
+    is_done = not saved.is_deferred and await finished(jobs, saved.job, prefer)
+    return await run_in_threadpool(_table, designs, saved, is_done)
+
+
+def _table(designs: Designs, saved: Saved, is_done: bool) -> Response:
+    with designs.database.read() as session:
+        out = views.variants(session, saved.design, saved.revision, designs.catalogues)
+    place = (
+        f"/api/v1/jobs/{saved.job}"
+        if saved.job and not is_done
+        else f"/api/v1/designs/{saved.design}/variants"
+    )
+    headers = {"ETag": f'"{saved.revision}"', "Location": place}
+    return written(out, 200 if is_done else 202, headers)
+
+
+@router.get(
+    "/{id}/variants/{variant}", response_model=VariantDetail, responses={**LATER, **refusals(404, 422, 429)}
+)
+@router.get(
+    "/{id}/revisions/{number}/variants/{variant}",
+    response_model=VariantDetail,
+    responses={**LATER, **refusals(404, 422, 429)},
+)
+async def show_variant(
+    id: Id,
+    variant: VariantName,
+    details: TheVariantDetails,
+    threads: TheThreads,
+    client: TheClient,
+    request: Request,
+    number: Number | None = None,
+    output: Outputs = [],  # noqa: B006 - FastAPI copies it
+    units: Units = "si",
+    prefer: Prefer = None,
+) -> Response:
+    """One variant with its outputs, curves included; `base` is the design itself. Nothing is saved."""
+    wanted = WantedVariant(id, variant, tuple(dict.fromkeys(output)), number, units)
+    seconds = patience(prefer, details.steps.deadline)
+    answer, job = await threads.run_within(seconds, request, details.answer, wanted, client)
+    return accepted(job) if answer is None else written(answer)
+
+
+@router.get("/{id}/variants/{variant}/model", **FILES)
+@router.get("/{id}/variants/{variant}/model.{kind}", **FILES)
+@router.get("/{id}/variants/{variant}/models/{name}/model", **FILES)
+@router.get("/{id}/variants/{variant}/models/{name}/model.{kind}", **FILES)
+@router.get("/{id}/revisions/{number}/variants/{variant}/model", **FILES)
+@router.get("/{id}/revisions/{number}/variants/{variant}/model.{kind}", **FILES)
+@router.get("/{id}/revisions/{number}/variants/{variant}/models/{name}/model", **FILES)
+@router.get("/{id}/revisions/{number}/variants/{variant}/models/{name}/model.{kind}", **FILES)
+async def read_variant_file(
+    id: Id,
+    variant: VariantName,
+    request: TheFileRequest,
+    name: Id | None = None,
+    kind: Id | None = None,
+    number: Number | None = None,
+) -> Response:
+    """A file of a variant's model, which names its design, variant and revision.
+
+    Of the newest revision in which the variant has a finished solid, if none is named.
+    """
+    return await request.answer(lambda session: variant_model(session, id, variant, name, number), kind)
+
+
+ZIP_FILE: JsonDict = {"type": "string", "format": "binary"}
+ZIPPED: Responses = {
+    200: {
+        "content": {MEDIA_TYPE: {"schema": ZIP_FILE}},
+        "headers": {
+            MISSING: {"description": "models without a finished solid", "schema": {"type": "string"}}
+        },
+    },
+    304: {"description": "as it was when the ETag of If-None-Match was sent"},
+    **UNAVAILABLE,
+    **refusals(404),
+}
+
+
+@router.get("/{id}/variants.zip", response_class=StreamingResponse, responses=ZIPPED)
+@router.get("/{id}/revisions/{number}/variants.zip", response_class=StreamingResponse, responses=ZIPPED)
+async def read_variants_file(
+    id: Id,
+    database: TheDatabase,
+    store: TheStore,
+    jobs: TheJobs,
+    healing: TheHealing,
+    number: Number | None = None,
+    prefer: Prefer = None,
+    if_none_match: IfNoneMatch = None,
+) -> Response:
+    """The STEP files of all variants in a ZIP, each named by design, variant and revision.
+
+    Equal files give equal bytes. Models that have no finished solid are left out, and named in the header
+    `Variants-Missing`.
+    """
+
+    def find() -> tuple[int, list[Entry], list[str], str]:
+        with database.read() as session:
+            revision, ready, missing = entries(session, id, number)
+            return revision, ready, missing, ready[0].stamp.design
+
+    revision, ready, missing, design = await run_in_threadpool(find)
+    names = distinct(entry.name for entry in ready)
+    headers = {
+        "ETag": _tag(names, ready),
+        "Cache-Control": "no-cache",
+        "Design-Revision": str(revision),
+        "Content-Disposition": named(f"{design} variants", revision, "zip", "attachment"),
+        **({MISSING: ", ".join(missing)} if missing else {}),
+    }
+    if is_at_hand(if_none_match, headers["ETag"]):
+        return unchanged(headers)
+    for sha in dict.fromkeys(entry.sha256 for entry in ready):
+        if answer := await lost(sha, healing, jobs, prefer):
+            return answer
+    return StreamingResponse(_zip(store, names, ready), media_type=MEDIA_TYPE, headers=headers)
+
+
+def _zip(store: Artifacts, names: Sequence[str], ready: Sequence[Entry]) -> Iterator[bytes]:
+    pairs = zip(names, ready, strict=True)
+    return archived((name, partial(_file, store, entry)) for name, entry in pairs)
+
+
+def _file(store: Artifacts, entry: Entry) -> bytes:
+    return stamped(store.read(entry.sha256), STEP, entry.stamp)
+
+
+def _tag(names: Sequence[str], ready: Sequence[Entry]) -> str:
+    """A strong ETag: the ZIP is a pure function of these."""
+    parts = (
+        f"{name}\0{entry.sha256}\0{entry.stamp.date}\0{entry.stamp.material}\n"
+        for name, entry in zip(names, ready, strict=True)
+    )
+    return f'"{hashlib.sha256("".join(parts).encode()).hexdigest()}"'

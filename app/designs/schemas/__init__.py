@@ -1,0 +1,1 @@
+"""Answers of the interface about designs, revisions and what is asked of them."""

@@ -1,0 +1,37 @@
+"""Answers of `solve` on a design: every value of an unknown that gives a target, with the curve between."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from app.calculations.schemas.evaluations import Jump, Root, TracedCurve
+from app.schemas.answers import Answer, Measured, Warning
+from app.schemas.criteria import Word
+
+
+class DesignRoot(Root):
+    """A value of the unknown that gives the target, and what the criteria of the design say there."""
+
+    verdicts: dict[str, Word] = Field(description="verdict of every criterion at this value, by its name")
+
+
+class Target(Measured):
+    """The output and the value that is wanted of it."""
+
+    name: str
+    value: float
+    unit: str
+
+
+class DesignSolution(Answer):
+    """Every value of one parameter or input that gives a wanted output; nothing is saved."""
+
+    revision: int = Field(description="the revision that was solved")
+    unknown: str = Field(description="the parameter or input that was varied")
+    target: Target
+    roots: list[DesignRoot] = Field(description="every crossing of the target within the bounds, ascending")
+    touching: list[DesignRoot] = Field(description="extrema that just reach the target, ascending")
+    jumps: list[Jump] = Field(description="where the output jumps across the target")
+    curve: TracedCurve
+    warnings: list[Warning]
+    levels: dict[str, str | None] = Field(description="the level of each step along the curve")

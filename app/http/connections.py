@@ -1,0 +1,200 @@
+"""Connections that nobody holds for ever: uvicorn's protocol, with limits on slow heads and slow readers.
+
+uvicorn waits without limit for the head of a request, and until a client has read its answer.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import socket
+import struct
+from asyncio import Transport
+from dataclasses import dataclass
+
+from starlette.types import ASGIApp
+from uvicorn.protocols.http.httptools_impl import STATUS_LINE
+
+from app.http.heads import LONGEST_HEAD
+from app.http.targets import WholeTarget
+from app.http.timeouts import WHOLE
+from app.observation import logs, metrics
+from app.plain import JsonObject
+
+_RESERVE = 64  # connections beyond the limit that are still answered, with 503
+
+_DEAD = 60.0  # how much longer than a slow reader a silent machine is waited for [s]
+_USER_TIMEOUT = getattr(socket, "TCP_USER_TIMEOUT", 0)  # Linux
+
+
+@dataclass(frozen=True)
+class ConnectionLimits:
+    """Limits that one server sets to the connections of its clients.
+
+    Parameters
+    ----------
+    count
+        Connections at the same time.
+    header_seconds
+        Longest time from the first byte of a request to the end of its head [s].
+    write_seconds
+        Longest time in which a client reads less than `rate` asks for [s].
+    rate
+        What a client must read on average [bytes/s].
+    """
+
+    count: int
+    header_seconds: float
+    write_seconds: float
+    rate: float
+
+
+class TimedProtocol(WholeTarget):
+    """One connection. `limits` and `busy`, which answers beyond their count, are set by `protocol`."""
+
+    limits: ConnectionLimits
+    busy: ASGIApp
+
+    _head_timer: asyncio.TimerHandle | None = None
+    _write_timer: asyncio.TimerHandle | None = None
+    _in_head = False
+
+    def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
+        """Begin to wait for the first request."""
+        super().connection_made(transport)
+        self._drop_dead_peer()
+        surplus = len(self.connections) - self.limits.count
+        if surplus > _RESERVE:
+            self._cut("too many")
+            return
+        if surplus > 0:
+            self.app = self.busy
+        self._head_timer = self.loop.call_later(self.limits.header_seconds, self._head_is_late)
+
+    def _drop_dead_peer(self) -> None:
+        """Have the kernel end the connection of a machine that is gone, as it notices by a stream's pings."""
+        sock = self.transport.get_extra_info("socket")
+        if sock is not None and sock.family in (socket.AF_INET, socket.AF_INET6) and _USER_TIMEOUT:
+            milliseconds = int(1000 * (self.limits.write_seconds + _DEAD))  # a slow reader is judged before
+            sock.setsockopt(socket.IPPROTO_TCP, _USER_TIMEOUT, milliseconds)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Forget the timers."""
+        for timer in (self._head_timer, self._write_timer):
+            if timer is not None:
+                timer.cancel()
+        super().connection_lost(exc)
+
+    def data_received(self, data: bytes) -> None:
+        """Parse; while nothing is being answered, what comes must become a request in time.
+
+        That is also so for the rest of a body of which the head was refused.
+        """
+        before = self.cycle
+        is_idle = before is None or before.response_complete
+        super().data_received(data)
+        if self.cycle is not before:
+            if self._head_timer is not None:
+                self._head_timer.cancel()
+                self._head_timer = None
+        elif is_idle and self._head_timer is None and not self.transport.is_closing():
+            self._head_timer = self.loop.call_later(self.limits.header_seconds, self._head_is_late)
+
+    def _unsupported_upgrade_warning(self) -> None:
+        """Upgrades are ignored, which HTTP permits; uvicorn would advise to install something."""
+
+    def on_message_begin(self) -> None:
+        """Called by the parser at the first byte of a request."""
+        self._in_head = True
+        super().on_message_begin()
+
+    def on_headers_complete(self) -> None:
+        """Called by the parser at the end of a head."""
+        self._in_head = False
+        super().on_headers_complete()
+
+    def on_message_complete(self) -> None:
+        """Called by the parser at the end of a request."""
+        self.scope[WHOLE] = True  # type: ignore[literal-required]
+        super().on_message_complete()
+
+    def _head_is_late(self) -> None:
+        self._head_timer = None
+        if self._in_head:
+            detail = f"send the request line and all headers within {self.limits.header_seconds:g} s"
+            self._refuse(408, "too-slow", "The request arrives too slowly", detail)
+        else:
+            self._cut("silent")
+
+    def refuse_head(self) -> None:
+        """Answer a head that is too large."""
+        detail = f"send the request line and all headers in at most {LONGEST_HEAD} bytes"
+        self._refuse(431, "head-too-large", "The headers are too large", detail)
+
+    def send_400_response(self, msg: str) -> None:
+        """Answer what is not HTTP."""
+        self._refuse(400, "not-http", "Not HTTP", msg)
+
+    def _refuse(self, status: int, slug: str, title: str, detail: str) -> None:
+        metrics.CUT.labels(slug).inc()
+        about = {"type": f"/problems/{slug}", "title": title, "status": status, "detail": detail}
+        self._write_problem(status, about)
+
+    def _write_problem(self, status: int, about: JsonObject) -> None:
+        """Answer without the application, and close."""
+        if self.transport.is_closing():
+            return
+        id_ = logs.new_id()
+        body = json.dumps({**about, "request_id": id_}).encode()
+        lines = [
+            STATUS_LINE[status].rstrip(),
+            *(name + b": " + value for name, value in self.server_state.default_headers),
+            b"content-type: application/problem+json",
+            b"x-request-id: " + id_.encode(),
+            b"content-length: %d" % len(body),
+            b"connection: close",
+        ]
+        self.transport.write(b"\r\n".join(lines) + b"\r\n\r\n" + body)
+        self.transport.close()
+
+    def pause_writing(self) -> None:
+        """Called by the transport when the client does not read what is sent."""
+        super().pause_writing()
+        self._watch_reader()
+
+    def resume_writing(self) -> None:
+        """Called by the transport when the client has read most of it."""
+        super().resume_writing()
+        if self._write_timer is not None:
+            self._write_timer.cancel()
+            self._write_timer = None
+
+    def _watch_reader(self) -> None:
+        left = self.transport.get_write_buffer_size()
+        self._write_timer = self.loop.call_later(self.limits.write_seconds, self._judge_reader, left)
+
+    def _judge_reader(self, before: int) -> None:
+        """Cut the connection unless its client has read enough meanwhile."""
+        read = before - self.transport.get_write_buffer_size()
+        if read < self.limits.rate * self.limits.write_seconds:
+            self._reset_on_close()
+            self._cut("unread")
+        else:
+            self._watch_reader()
+
+    def _cut(self, why: str) -> None:
+        metrics.CUT.labels(why).inc()
+        if self.cycle is not None:  # else it might write before it learns of the loss
+            self.cycle.disconnected = True
+        self.transport.abort()
+
+    def _reset_on_close(self) -> None:
+        """Have the kernel drop what it holds for the client, instead of delivering megabytes for hours."""
+        sock = self.transport.get_extra_info("socket")
+        if sock is not None and sock.family in (socket.AF_INET, socket.AF_INET6):
+            sock.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+
+
+def protocol(limits: ConnectionLimits, busy: ASGIApp) -> type[TimedProtocol]:
+    """The protocol for a server with these limits; `busy` answers beyond the number of connections."""
+    return type("Protocol", (TimedProtocol,), {"limits": limits, "busy": staticmethod(busy)})

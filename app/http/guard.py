@@ -1,0 +1,203 @@
+"""The outermost layer of the application: no other site reads, writes or frames anything through a browser.
+
+Three rules, before any route (docs/decisions/018-hosts-and-origins.md has the reasons):
+
+1. The header `Host` names a host that the service answers to.
+2. What changes something comes from the service's own pages, or from no page at all. Other sites may link to
+   a page; they may not load anything from here.
+3. Every answer forbids sniffing, framing and reading by other origins.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterable
+
+from fastapi import FastAPI, Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.http.strict_requests import HttpError
+from app.http.targets import is_mere_path
+from app.settings.hosts import LONGEST, SETTING, Authority, Hosts, parse
+
+logger = logging.getLogger(__name__)
+
+SAFE = {"GET", "HEAD", "OPTIONS"}
+OWN = {b"same-origin", b"none"}  # of Sec-Fetch-Site: our own pages, and what the user typed
+SCHEMES = {"http": "http", "https": "https", "ws": "http", "wss": "https"}  # of connection: of its page
+POLICY = "default-src 'none'; frame-ancestors 'none'"
+PAGE_POLICY = (
+    "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+)
+"""No inline script or style, no eval, no outside address: on every page, without an exception."""
+HEADERS = (
+    (b"content-security-policy", POLICY.encode()),
+    (b"x-content-type-options", b"nosniff"),
+    (b"x-frame-options", b"DENY"),
+    (b"cross-origin-resource-policy", b"same-origin"),
+    (b"cross-origin-opener-policy", b"same-origin"),
+    (b"referrer-policy", b"same-origin"),
+)
+"""Headers of every answer, unless its route sets others."""
+
+LOOKED_AT = {b"host", b"origin", b"upgrade", b"sec-fetch-site", b"sec-fetch-mode", b"sec-fetch-dest"}
+Looked = dict[bytes, list[bytes]]
+
+
+class BadHost(HttpError):
+    """The request names no host, several, or something that is not a host."""
+
+
+class HostNotAllowed(HttpError):
+    """The service does not answer to the host that the request names."""
+
+
+class CrossSite(HttpError):
+    """The request comes from a page of another site."""
+
+
+class Guard:
+    """ASGI middleware with the three rules.
+
+    Parameters
+    ----------
+    app
+        The application.
+    hosts
+        The hosts that it answers to.
+    refuse
+        Makes the answer to an error.
+    """
+
+    def __init__(self, app: ASGIApp, hosts: Hosts, refuse: Callable[[HttpError], Response]) -> None:
+        self.app, self.hosts, self.refuse = app, hosts, refuse
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Refuse, or pass on; add the headers to what is answered."""
+        if scope["type"] not in ("http", "websocket"):
+            await self.app(scope, receive, send)
+            return
+        try:
+            check(scope, self.hosts)
+        except HttpError as error:
+            await self._refused(error, scope, receive, send)
+            return
+        await self.app(scope, receive, protected(send))
+
+    async def _refused(self, error: HttpError, scope: Scope, receive: Receive, send: Send) -> None:
+        logger.info("refused %s %.200r: %s", scope.get("method", "websocket"), scope["path"], error)
+        if scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 1008, "reason": type(error).__name__})
+            return
+        await self.refuse(error)(scope, receive, protected(send))
+
+
+def install(app: FastAPI, hosts: Hosts, refuse: Callable[[HttpError], Response]) -> None:
+    """Put the guard around all of an app, its answer to an unexpected error included."""
+    # `add_middleware` would leave Starlette's handler of unexpected errors outside.
+    build = app.build_middleware_stack
+    app.build_middleware_stack = lambda: Guard(build(), hosts, refuse)  # type: ignore[method-assign]
+
+
+def protected(send: Send) -> Send:
+    """A `send` that adds the headers which an answer does not have."""
+
+    async def add(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            given = list(message.get("headers", ()))
+            names = {name.lower() for name, _ in given}
+            message = {**message, "headers": given + [pair for pair in HEADERS if pair[0] not in names]}
+        await send(message)
+
+    return add
+
+
+def check(scope: Scope, hosts: Hosts) -> None:
+    """Refuse what another site may have had a browser send.
+
+    Raises
+    ------
+    BadHost, HostNotAllowed
+        If the request is not for this service by a name that it answers to.
+    CrossSite
+        If it comes from another site and is not a mere link.
+    """
+    looked = _looked_at(scope["headers"])
+    scheme = SCHEMES[scope["scheme"]]
+    asked = _host(looked, scope)
+    if not hosts.allows(asked, scheme, scope.get("server")):
+        name = f"[{asked.name}]" if ":" in asked.name else asked.name
+        raise HostNotAllowed(
+            f"this service does not answer to the host {name!r}; if that is its name, the operator allows it "
+            f"by the setting {SETTING}, a JSON list: {SETTING}='[\"{name}\"]'"
+        )
+    if scope.get("method") in SAFE:
+        _check_link(looked)
+        if b"upgrade" in looked:  # a WebSocket: browsers let pages of any site try one
+            _check_origin(looked, asked, scheme, hosts)
+    else:
+        _check_site(looked)
+        _check_origin(looked, asked, scheme, hosts)
+
+
+def _looked_at(headers: Iterable[tuple[bytes, bytes]]) -> Looked:
+    looked: Looked = {}
+    for name, value in headers:
+        if name in LOOKED_AT:
+            looked.setdefault(name, []).append(value)
+    return looked
+
+
+def _host(looked: Looked, scope: Scope) -> Authority:
+    given = looked.get(b"host", [])
+    if len(given) != 1:
+        raise BadHost(f"send exactly one header Host; there are {len(given)}")
+    if not is_mere_path(scope):
+        raise BadHost("send the path alone as the target of the request, such as /healthz, without a host")
+    asked = parse(given[0].decode("latin-1"))
+    if asked is None:
+        raise BadHost(f"the header Host holds no host with or without a port: {_shown(given[0])}")
+    return asked
+
+
+def _check_site(looked: Looked) -> None:
+    """Refuse what the browser itself calls foreign."""
+    if foreign := [site for site in looked.get(b"sec-fetch-site", ()) if site not in OWN]:
+        raise CrossSite(
+            f"the browser says that this request comes from another site (Sec-Fetch-Site: "
+            f"{_shown(foreign[0])}); only the service's own pages may send it"
+        )
+
+
+def _check_link(looked: Looked) -> None:
+    """Let other sites link to a page, and refuse whatever else of theirs loads something from here."""
+    modes, places = looked.get(b"sec-fetch-mode", ()), looked.get(b"sec-fetch-dest", ())
+    if any(mode != b"navigate" for mode in modes) or any(place != b"document" for place in places):
+        _check_site(looked)
+
+
+def _check_origin(looked: Looked, asked: Authority, scheme: str, hosts: Hosts) -> None:
+    """Refuse what a page of another origin sends; a client that is not a browser sends no Origin."""
+    for origin in looked.get(b"origin", ()):
+        if not _is_own(origin.decode("latin-1"), asked, scheme, hosts):
+            raise CrossSite(
+                f"a page of {_shown(origin)} may not send this request to {asked.name}; only the service's "
+                f"own pages may. Behind a reverse proxy, the operator lists its public name in {SETTING}"
+            )
+
+
+def _is_own(origin: str, asked: Authority, scheme: str, hosts: Hosts) -> bool:
+    """Return whether an origin is that of the service's own pages, for the host that was asked."""
+    kind, _, rest = origin.partition("://")
+    source = parse(rest)
+    if source is None or kind not in ("http", "https"):
+        return False
+    same = (source.name, source.port_of(kind)) == (asked.name, asked.port_of(kind))
+    if same and (kind == scheme or (kind == "https" and hosts.lists(asked))):
+        return True
+    return kind == "https" and hosts.publishes(source)
+
+
+def _shown(value: bytes) -> str:
+    """A text of the client in a form that is safe in a message."""
+    return ascii(value[:LONGEST].decode("latin-1"))

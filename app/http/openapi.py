@@ -1,0 +1,163 @@
+"""The description of the interface at /openapi.json, made to say what the service does, and its page /docs.
+
+FastAPI derives it from the routes. It is wrong in four things, which are corrected here: a parameter of
+a path, query or header has no null; a change needs If-Match; a name that does not fit the pattern of names is
+refused; `itemSchema` is OpenAPI 3.2. Some things are put so that generators of clients understand them.
+Problems that follow from what an operation takes are added here too; a route declares those of its own.
+
+`Any` is what FastAPI's dictionaries hold: parts of a description, of any depth.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from base64 import b64encode
+from collections.abc import Iterator
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.openapi.docs import get_swagger_ui_html
+from fastapi.responses import HTMLResponse
+from fastapi.routing import APIRoute
+
+from app.schemas.problems import Fault, Problem, refusals
+
+REFERENCE = "#/components/schemas/{model}"
+
+
+def operation_id(route: APIRoute) -> str:
+    """The name of an operation in a generated client: `evaluate_template`, `show_report_of_revision_as`.
+
+    It is the name of the route's function; one that serves several paths says which.
+    """
+    if not route.name.endswith(("_report", "_worksheet", "_file", "show_variant", "show_variants")):
+        return route.name
+    ends = (("/revisions/{number}", "_of_revision"), ("/models/{name}", "_of_model"), (".{kind}", "_as"))
+    return route.name + "".join(end for part, end in ends if part in route.path)
+
+
+def describe_interface(app: FastAPI) -> dict[str, Any]:
+    """Return the OpenAPI 3.1 description of the application."""
+    if app.openapi_schema is None:
+        FastAPI.openapi(app)
+        assert app.openapi_schema is not None
+        for method, operation in _operations(app.openapi_schema):
+            _drop_item_schemas(operation)
+            _drop_nulls(operation)
+            _declare_preconditions(method, operation)
+            _declare_problems(operation)
+        schemas = app.openapi_schema["components"]["schemas"]
+        for _, operation in _operations(app.openapi_schema):
+            _name_bodies(operation, schemas)
+        for model in (Problem, Fault):
+            schemas[model.__name__] = model.model_json_schema(ref_template=REFERENCE)
+            schemas[model.__name__].pop("$defs", None)
+        for schema in schemas.values():
+            _simplify(schema)
+    return app.openapi_schema
+
+
+def _operations(described: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    for item in described["paths"].values():
+        yield from item.items()
+
+
+def _name_bodies(operation: dict[str, Any], schemas: dict[str, Any]) -> None:
+    """Give an object that stands in an operation a name of its own, under which generators make one class."""
+    for content in operation.get("requestBody", {}).get("content", {}).values():
+        schema = content["schema"]
+        if schema.get("type") == "object" and "title" in schema:
+            schemas[schema["title"]] = schema
+            content["schema"] = {"$ref": REFERENCE.format(model=schema["title"])}
+
+
+def _drop_item_schemas(operation: dict[str, Any]) -> None:
+    for response in operation["responses"].values():
+        for content in response.get("content", {}).values():
+            content.pop("itemSchema", None)
+
+
+def _drop_nulls(operation: dict[str, Any]) -> None:
+    """An optional parameter may be absent; there is no way to write null in a URL or a header."""
+    for parameter in operation.get("parameters", ()):
+        schema = parameter["schema"]
+        kinds = [kind for kind in schema.get("anyOf", ()) if kind != {"type": "null"}]
+        if len(kinds) == 1:
+            del schema["anyOf"]
+            parameter["schema"] = {**kinds[0], **schema}
+
+
+def _declare_preconditions(method: str, operation: dict[str, Any]) -> None:
+    """If-Match is needed for PATCH and PUT and compared wherever it is sent."""
+    matching = [one for one in operation.get("parameters", ()) if one["name"] == "if-match"]
+    if not matching:
+        return
+    is_change = method in ("patch", "put")
+    matching[0]["required"] = is_change
+    _refused(operation, *((412, 428) if is_change else (412,)))
+
+
+def _declare_problems(operation: dict[str, Any]) -> None:
+    """Declare the refusals of every operation that takes a body or a parameter, or uses stored rows."""
+    if "requestBody" in operation:
+        _refused(operation, 408, 413, 415, 422)
+    if operation.get("parameters"):
+        _refused(operation, 422)
+    if operation["tags"] != ["health"] and operation["tags"] != ["problems"]:
+        _refused(operation, 503)
+
+
+def _refused(operation: dict[str, Any], *statuses: int) -> None:
+    for status, response in refusals(*statuses).items():
+        operation["responses"].setdefault(str(status), response)
+
+
+def _simplify(schema: Any) -> None:
+    """Say the same in words that generators of clients understand, here and in all parts.
+
+    Names that follow a pattern are `propertyNames`, and no others are taken; one allowed text is a choice of
+    one (openapi-python-client compares every value of a union with a `const`).
+    """
+    if isinstance(schema, list):
+        for part in schema:
+            _simplify(part)
+    if isinstance(schema, dict):
+        if len(schema.get("patternProperties", ())) == 1:
+            ((pattern, values),) = schema.pop("patternProperties").items()
+            schema.update(propertyNames={"pattern": pattern}, additionalProperties=values)
+        if isinstance(schema.get("const"), str):
+            schema["enum"] = [schema.pop("const")]
+        for part in schema.values():
+            _simplify(part)
+
+
+FILES = "/static-offline-docs"  # where fastapi_offline serves Swagger UI
+_INLINE = re.compile(rb"<script>(.*?)</script>", re.DOTALL)
+
+
+def install(app: FastAPI) -> None:
+    """Add `/docs`, Swagger UI from local files; its script holds `app.swagger_ui_parameters` of now."""
+    page = get_swagger_ui_html(
+        openapi_url=app.openapi_url or "/openapi.json",
+        title=f"{app.title} - Swagger UI",
+        swagger_js_url=f"{FILES}/swagger-ui-bundle.js",
+        swagger_css_url=f"{FILES}/swagger-ui.css",
+        swagger_favicon_url=f"{FILES}/favicon.png",
+        swagger_ui_parameters=app.swagger_ui_parameters,
+    )
+    headers = {"Content-Security-Policy": policy(bytes(page.body))}
+
+    @app.get("/docs", include_in_schema=False)
+    async def docs() -> HTMLResponse:
+        return HTMLResponse(page.body, headers=headers)
+
+
+def policy(page: bytes) -> str:
+    """The policy of a page with inline scripts: they may run, and nothing else that is not from here."""
+    digests = (b64encode(hashlib.sha256(script).digest()).decode() for script in _INLINE.findall(page))
+    hashes = " ".join(f"'sha256-{digest}'" for digest in digests)
+    return (
+        f"default-src 'self'; script-src 'self' {hashes}; img-src 'self' data:; object-src 'none'; "
+        "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    )

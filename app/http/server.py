@@ -1,0 +1,178 @@
+"""The web server: uvicorn with limits on connections, and an end within the drain time whatever still runs.
+
+SIGTERM and SIGINT begin the end. Requests in flight have most of the drain time to be answered, then jobs are
+put back into the queue and all rows are committed. What hangs all the same is ended hard: first by a thread,
+and if that cannot run because something keeps the interpreter lock, by the interpreter's own watchdog. A
+second signal ends at once. The process leaves without Python's own clean-up, which would wait for threads and
+run the destructors of the geometry kernel.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import faulthandler
+import logging
+import os
+import signal
+import socket
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from types import FrameType
+from typing import NoReturn
+
+import uvicorn
+from fastapi import FastAPI
+from starlette.types import Receive, Scope, Send
+
+from app.http import problems
+from app.http.connections import ConnectionLimits, protocol
+from app.http.problem_kinds import CROWDED
+from app.http.request_log import Observed, what_is_in_flight
+from app.observation import logs
+from app.settings import Settings
+from app.workers import family
+from app.workers.priority import answer_promptly
+
+logger = logging.getLogger(__name__)
+
+STARTUP_FAILURE = 3  # uvicorn's exit code
+_IDLE = ("threading.py", "queue.py", "selectors.py", "thread.py", "connection.py", "_threads.py", "socket.py")
+
+
+def configuration(app: FastAPI, settings: Settings, port: int | None = None) -> uvicorn.Config:
+    """Uvicorn's configuration with the service's limits, on the port of the settings or on another."""
+    limits = ConnectionLimits(
+        settings.connections,
+        settings.header_seconds,
+        settings.write_seconds,
+        settings.slowest_rate,
+    )
+    return uvicorn.Config(
+        app,
+        host=settings.host,
+        port=settings.port if port is None else port,
+        http=protocol(limits, Observed(_busy)),
+        ws="none",
+        timeout_keep_alive=settings.keep_alive_seconds,
+        timeout_graceful_shutdown=settings.drain_seconds - settings.stop_seconds,  # type: ignore[arg-type]  # waits parts of seconds too
+        log_config=None,
+        access_log=False,
+    )
+
+
+async def _busy(scope: Scope, receive: Receive, send: Send) -> None:
+    """Answer a request on a connection beyond the limit."""
+    about = problems.problem(CROWDED, "too many connections are open; close some, or try again")
+    await problems.answer(about, {"Retry-After": "5", "Connection": "close"})(scope, receive, send)
+
+
+def run(app: FastAPI, settings: Settings) -> NoReturn:
+    """Serve until a signal; does not return."""
+    flush = logs.configure(settings.log_level, settings.log_format)
+    answer_promptly()
+    server = Server(configuration(app, settings), settings.drain_seconds, flush)
+    try:
+        server.run()
+    finally:  # it has left already, unless it could not start
+        flush()
+    sys.exit(0 if server.started else STARTUP_FAILURE)
+
+
+class Server(uvicorn.Server):
+    """uvicorn's server with a limit on the time of its end [s]; `flush` writes the last lines of the log."""
+
+    def __init__(self, config: uvicorn.Config, drain_seconds: float, flush: Callable[[], object]) -> None:
+        super().__init__(config)
+        self.drain_seconds, self.flush = drain_seconds, flush
+        self._is_signalled = False
+        # An `Event` would not do: a second signal may come while the handler of the first holds its lock.
+        self._signals: SimpleQueue[int] = SimpleQueue()
+        # Made now, because a signal may come while the main thread holds the lock with which threads start.
+        threading.Thread(target=self._guard, name="end", daemon=True).start()
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        """Begin the end, or hurry it."""
+        self._is_signalled = True
+        self._signals.put(sig)
+        self.should_exit = True
+        faulthandler.dump_traceback_later(self.drain_seconds + 1, exit=True)
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Answer what is in flight, run the end of the lifespan, and leave if a signal was the cause."""
+        await super().shutdown(sockets)
+        if self._is_signalled:
+            if running := what_runs():
+                logger.warning("stopped in order, but cut: %s", "; ".join(running))
+            self._leave(0)
+
+    def _guard(self) -> None:
+        """Wait for a signal, then for the drain time or a second one, and end what is left."""
+        self._signals.get()
+        start = time.monotonic()
+        logger.info("stopping: requests in flight are answered within %g s", self.drain_seconds)
+        hurried = True
+        try:
+            self._signals.get(timeout=self.drain_seconds)
+        except Empty:
+            hurried = False
+        why = "ended at once by a second signal" if hurried else "did not stop in time, ended hard"
+        running = "; ".join(what_runs()) or "nothing that is known"
+        logger.error("%s after %.1f s; still ran: %s", why, time.monotonic() - start, running)
+        self._leave(1)
+
+    def _leave(self, code: int) -> NoReturn:
+        """Kill the family, write the log, and end this process."""
+        family.kill()
+        writer = threading.Thread(target=self.flush, daemon=True)  # standard error may take nothing any more
+        writer.start()
+        writer.join(1.0)
+        os._exit(code)
+
+
+def what_runs() -> list[str]:
+    """Return what the server is busy with: requests, threads, processes."""
+    count = family.use().count
+    return [*what_is_in_flight(), *_busy_threads(), *([f"{count} processes"] if count else [])]
+
+
+def _busy_threads() -> list[str]:
+    """Return the threads that do more than wait for work, and where they are."""
+    frames, busy = sys._current_frames(), []
+    for thread in threading.enumerate():
+        frame = frames.get(thread.ident or 0)
+        if frame is None or thread is threading.current_thread() or thread.name in ("MainThread", "end"):
+            continue
+        file = Path(frame.f_code.co_filename)
+        if file.name not in _IDLE:
+            busy.append(f"thread {thread.name} in {file.name}:{frame.f_lineno}")
+    return busy
+
+
+@contextmanager
+def on_stop_signal(act: Callable[[], None]) -> Iterator[None]:
+    """Act at SIGINT and SIGTERM, then do what the server does; for use within its lifespan."""
+    if threading.current_thread() is not threading.main_thread():  # a server in a thread gets no signals
+        yield
+        return
+    loop = asyncio.get_running_loop()
+    previous = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+
+    def close(number: int, frame: FrameType | None) -> None:
+        loop.call_soon_threadsafe(act)  # not here: a handler may interrupt who holds the lock
+        handler = previous[signal.Signals(number)]
+        if callable(handler):
+            handler(number, frame)
+
+    for number, handler in previous.items():
+        if callable(handler):
+            signal.signal(number, close)
+    try:
+        yield
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)

@@ -1,0 +1,45 @@
+"""Limits of open streams of events: each holds memory and a connection as long as its client likes."""
+
+from __future__ import annotations
+
+import threading
+from collections import Counter
+
+from app.http.strict_requests import HttpError
+
+
+class TooManyStreams(HttpError):
+    """The client, or all clients together, have as many streams open as there may be."""
+
+    headers = {"Retry-After": "5"}
+
+
+class Streams:
+    """The open streams, by client."""
+
+    def __init__(self, most: int, most_of_client: int) -> None:
+        self.most, self.most_of_client = most, most_of_client
+        self.open: Counter[str] = Counter()
+        self._lock = threading.Lock()
+
+    def enter(self, client: str) -> None:
+        """Count a stream of a client.
+
+        Raises
+        ------
+        TooManyStreams
+            There are as many as there may be.
+        """
+        with self._lock:
+            if self.open[client] >= self.most_of_client:
+                raise TooManyStreams(f"a client may have {self.most_of_client} streams of events open")
+            if self.open.total() >= self.most:
+                raise TooManyStreams(f"{self.most} streams of events are open, the maximum")
+            self.open[client] += 1
+
+    def leave(self, client: str) -> None:
+        """Forget a stream."""
+        with self._lock:
+            self.open[client] -= 1
+            if not self.open[client]:
+                del self.open[client]

@@ -1,0 +1,412 @@
+"""Requirements for every request: a small body, valid JSON, a precondition on changes.
+
+`StrictRoute` replaces FastAPI's lenient reading of bodies: pydantic's parser refuses lone surrogates and deep
+nesting, and nothing is guessed from a missing or wrong content type. `PlainRoute` reads just as strictly, and
+calls its endpoint without FastAPI's machinery.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import AsyncIterator, Awaitable, Callable, Container, Coroutine, Mapping
+from json import JSONDecodeError
+from typing import TYPE_CHECKING, Any
+
+from fastapi import Request, Response
+from fastapi.exceptions import RequestValidationError
+from fastapi.routing import APIRoute
+from pydantic_core import from_json
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.http import nul
+from app.http.pace import Pace
+from app.plain import Json
+from app.workers.pieces import PIECE, Pieces
+
+if TYPE_CHECKING:
+    from fastapi._compat import ModelField
+
+JSON_TYPES = {"application/json"}
+PATCH_TYPES = {"application/json", "application/merge-patch+json"}
+STEP_TYPES = ("model/step", "application/step", "application/p21")
+"""The registered name of STEP's clear text, and two that were in use before it."""
+SHEET_TYPES = {"application/octet-stream", "application/zip", "application/xml", "text/xml"}
+"""Media types of a sheet of Mathcad: its own ones are not registered."""
+MODEL_TYPES = {"application/octet-stream", "application/zip", "model/step"}
+"""Media types of a model: FreeCAD's own one is not registered."""
+FORM_TYPES = {"application/x-www-form-urlencoded"}
+MOST_BRACKETS, MOST_QUOTES = 250_000, 400_000
+"""In one body. A list of numbers has one bracket; millions of them keep the parser, and the server, busy."""
+
+
+class HttpError(Exception):
+    """A request that is refused before its meaning is looked at."""
+
+
+class BodyTooLarge(HttpError):
+    """The body is larger than the service takes."""
+
+
+class HeadTooLarge(HttpError):
+    """The address and the headers are longer than the service takes."""
+
+
+class TooIntricate(HttpError):
+    """The body nests or names more than any design or table does."""
+
+
+class NotJson(HttpError):
+    """The content type is not one that the path takes."""
+
+
+class NotForm(HttpError):
+    """The content type is not that of a form."""
+
+
+class NotCsv(HttpError):
+    """The content type is not that of a table."""
+
+
+class NotStep(HttpError):
+    """The content type is not that of a STEP file."""
+
+
+class NotSheet(HttpError):
+    """The content type is not one under which a sheet of Mathcad is sent."""
+
+
+class NotModel(HttpError):
+    """The content type is not one under which a model is sent."""
+
+
+class PreconditionRequired(HttpError):
+    """A change without If-Match."""
+
+
+class StrictRequest(Request):
+    """A request whose JSON is parsed strictly, and whose body comes in pieces if it is large."""
+
+    @property
+    def pace(self) -> Pace:
+        """The pace of all large bodies and answers of the app."""
+        return self.app.state.pace  # type: ignore[no-any-return]
+
+    async def pieces(self) -> Pieces:
+        """The body as it came."""
+        if not hasattr(self, "_pieces"):
+            self._pieces = Pieces(tuple([part async for part in self._received()]))
+        return self._pieces
+
+    async def body(self) -> bytes:
+        """The body as one object; to join a large one holds the interpreter, see `pieces`."""
+        if not hasattr(self, "_body"):
+            self._body = (await self.pieces()).joined()
+        return self._body
+
+    async def discard(self) -> None:
+        """Receive the body and forget it: a client that still sends may not read an answer yet."""
+        async for _ in self._received():
+            pass
+
+    async def _received(self) -> AsyncIterator[bytes]:
+        size = 0
+        async for part in self.stream():
+            if part:
+                yield part
+            size += len(part)
+            if size > PIECE:
+                await self.pace.step()
+
+    async def json(self) -> Json:
+        """The body as JSON.
+
+        Raises
+        ------
+        JSONDecodeError
+            If it is none, no UTF-8, or nested too deep; FastAPI answers it as an invalid input.
+        """
+        if not hasattr(self, "_json"):
+            try:
+                self._json = from_json(await self.body())
+            except ValueError as error:
+                raise JSONDecodeError(str(error)[:200], "", 0) from None
+        return self._json
+
+
+class StrictRoute(APIRoute):
+    """A route that checks precondition and content type, in this order, before anything else.
+
+    Its answers leave out the fields that nobody has set.
+    """
+
+    def __init__(self, path: str, endpoint: Callable[..., object], **options: Any) -> None:  # as FastAPI
+        super().__init__(path, endpoint, **{**options, "response_model_exclude_unset": True})
+        self.takes = frozenset(self.methods or ())
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[object, None, Response]]:
+        """FastAPI's handler behind the checks."""
+        handler = super().get_route_handler()
+
+        async def strict(request: Request) -> Response:
+            strictly = StrictRequest(request.scope, request.receive)
+            await self.check(strictly)
+            return await handler(strictly)
+
+        return strict
+
+    async def check(self, request: StrictRequest) -> None:
+        """Refuse what is wrong before the meaning of a request is looked at.
+
+        Raises
+        ------
+        HttpError
+            The precondition is missing, or the body is of another type, too large or too intricate.
+        HTTPException, InvalidInputs
+            A text has U+0000.
+        """
+        await _refreshed(request)
+        nul.refuse_in_address(request)
+        is_patch = "PATCH" in self.takes
+        if (is_patch or "PUT" in self.takes) and "if-match" not in request.headers:
+            raise PreconditionRequired('send If-Match with the ETag of what you read, such as "3"')
+        if self.body_field is not None:
+            check_type(request, PATCH_TYPES if is_patch else JSON_TYPES)
+            # here, because FastAPI answers whatever is raised in its reading with 400
+            await self._admit(request)
+            if await _check_intricacy(request) and nul.has(await request.body()):
+                nul.refuse_in(await _read(request))
+
+    async def _admit(self, request: StrictRequest) -> None:
+        try:
+            await self.admit(request)
+        except Exception:
+            await request.discard()
+            raise
+
+    async def admit(self, request: StrictRequest) -> None:
+        """Raise what refuses a request by its head alone; its body has not come yet."""
+
+
+class _Parameter:
+    """A part of the path, of the query or a header, as an endpoint takes it."""
+
+    def __init__(self, kind: str, field: ModelField) -> None:
+        self.name, self.alias, self._place = field.name, field.alias, (kind, field.alias)
+        self._validate, self._default = field.validate, field.field_info.default
+        self._is_required = field.field_info.is_required()
+
+    def value(self, received: Mapping[str, str], faults: list[object]) -> object:
+        """Return the value that was received, or its default; add what is wrong with it to the faults."""
+        if (text := received.get(self.alias)) is None:
+            faults += [_missing(*self._place)] if self._is_required else ()
+            return self._default
+        value, wrong = self._validate(text, loc=self._place)
+        faults += wrong
+        return value
+
+
+class PlainRoute(StrictRoute):
+    """A route that reads a request and calls its endpoint by itself, for operations that are called most.
+
+    It is declared and described as any other, and refuses with the same errors. Its endpoint is a coroutine
+    that takes the request first, then path, query, headers and body, and returns a Response; it has no
+    dependencies but the role that it needs.
+    """
+
+    def __init__(self, path: str, endpoint: Callable[..., Awaitable[Response]], **options: Any) -> None:
+        super().__init__(path, endpoint, **options)
+        declared = self.dependant
+        self._in_path = [_Parameter("path", field) for field in declared.path_params]
+        self._in_query = [_Parameter("query", field) for field in declared.query_params]
+        self._in_headers = [_Parameter("header", field) for field in declared.header_params]
+        self._body = declared.body_params[0].name if self.body_field else None
+
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Read the request, and send what the endpoint answers."""
+        if scope["method"] not in self.takes:
+            await super().handle(scope, receive, send)  # 405
+            return
+        request = StrictRequest(scope, receive)
+        await self.check(request)
+        response = await self.shortcut(request) or await self.endpoint(request, **await self._values(request))
+        await response(scope, receive, send)
+
+    async def shortcut(self, request: StrictRequest) -> Response | None:
+        """Return an answer for which the body need not be parsed here; None in general."""
+        return None
+
+    async def _values(self, request: StrictRequest) -> dict[str, object]:
+        """Return what the endpoint takes.
+
+        Raises
+        ------
+        RequestValidationError
+            With everything that is wrong.
+        """
+        faults: list[object] = []
+        values = {one.name: one.value(request.path_params, faults) for one in self._in_path}
+        values |= {one.name: one.value(request.query_params, faults) for one in self._in_query}
+        values |= {one.name: one.value(request.headers, faults) for one in self._in_headers}
+        if self._body is not None:
+            values[self._body] = await self._read_body(request, faults)
+        if faults:
+            raise RequestValidationError(faults)
+        return values
+
+    async def _read_body(self, request: StrictRequest, faults: list[object]) -> object:
+        assert self.body_field is not None
+        if not await request.body():
+            if self.body_field.field_info.is_required():
+                faults.append(_missing("body"))
+            return None
+        try:
+            raw = await request.json()
+        except JSONDecodeError as error:
+            raise RequestValidationError([_not_json(error)]) from None
+        body, wrong = self.body_field.validate(raw, loc=("body",))
+        faults += wrong
+        return body
+
+
+def _missing(*place: str) -> dict[str, object]:
+    """Return the fault of something that is required and was not sent."""
+    return {"type": "missing", "loc": place, "msg": "Field required", "input": None}
+
+
+def _not_json(error: JSONDecodeError) -> dict[str, object]:
+    """Return the fault of a body that is no JSON."""
+    place, reason = ("body", error.pos), {"error": error.msg}
+    return {"type": "json_invalid", "loc": place, "msg": "JSON decode error", "input": {}, "ctx": reason}
+
+
+async def _refreshed(request: Request) -> None:
+    """Take notice of a team's files that have changed."""
+    services = getattr(request.app.state, "services", None)
+    if services is not None:
+        await services.catalogues.refresh()
+
+
+def check_type(request: Request, allowed: set[str], error: type[HttpError] = NotJson) -> None:
+    """Refuse a body that is of no allowed type.
+
+    Raises
+    ------
+    HttpError
+        The error given, if there is a body, and its type is another or is not named.
+    """
+    length = request.headers.get("content-length")
+    if length in (None, "0") and "transfer-encoding" not in request.headers:
+        return  # an empty body is judged by what the route needs
+    _require_type(request, allowed, error, " or ".join(sorted(allowed)))
+
+
+def _require_type(request: Request, allowed: Container[str], error: type[HttpError], right: str) -> None:
+    given = request.headers.get("content-type", "")
+    if given.partition(";")[0].strip().lower() not in allowed:
+        raise error(f"content type {given[:80]!r} is not accepted here; send {right}")
+
+
+def require_step(request: Request) -> None:
+    """Refuse a body that does not say that it is a STEP file; packed ones (`+zip`) are not understood.
+
+    Raises
+    ------
+    NotStep
+        If the content type is another, or missing.
+    """
+    _require_type(request, STEP_TYPES, NotStep, "the STEP file itself as model/step")
+
+
+def require_sheet(request: Request) -> None:
+    """Refuse a body that is said to be something else than a sheet of Mathcad.
+
+    Raises
+    ------
+    NotSheet
+        If the content type is another, or missing.
+    """
+    _require_type(request, SHEET_TYPES, NotSheet, "the file itself as application/octet-stream")
+
+
+def require_model(request: Request) -> None:
+    """Refuse a body that is said to be something else than a file of a model.
+
+    Raises
+    ------
+    NotModel
+        If the content type is another, or missing.
+    """
+    _require_type(request, MODEL_TYPES, NotModel, "the file itself as application/octet-stream")
+
+
+async def _read(request: StrictRequest) -> object:
+    """The body as JSON, or nothing if it is none: that is refused elsewhere."""
+    try:
+        return await request.json()
+    except JSONDecodeError:
+        return None
+
+
+async def _check_intricacy(request: StrictRequest) -> bool:
+    """Count what makes parsing expensive; of a large body piece by piece, so that others get their turn.
+
+    Returns whether a text may have U+0000.
+    """
+    brackets = quotes = 0
+    may_have_nul, end = False, b""
+    for number, piece in enumerate(await request.pieces()):
+        if number:
+            await request.pace.step()
+        part = bytes(piece)
+        brackets += part.count(b"[") + part.count(b"{")
+        quotes += part.count(b'"')
+        may_have_nul = may_have_nul or nul.may_have(part) or nul.may_have(end + part[:5])
+        end = part[-5:]
+    if brackets > MOST_BRACKETS or quotes > MOST_QUOTES:
+        message = f"a body may open {MOST_BRACKETS} brackets and have {MOST_QUOTES // 2} texts and names"
+        raise TooIntricate(
+            f'{message}; send numbers as one list with one unit: {{"value": [1, 2], "unit": "mm"}}'
+        )
+    return may_have_nul
+
+
+class BodyLimit:
+    """ASGI middleware that ends the reading of a body beyond the limit [bytes] with a 413 problem."""
+
+    # FastAPI's own max_body_size answers in plain text, not with a problem.
+    def __init__(self, app: ASGIApp, limit: int, refuse: Callable[[str], Response]) -> None:
+        self.app, self.limit, self.refuse = app, limit, refuse
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Refuse, or pass on."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        detail = f"a body may have at most {self.limit / 2**20:g} MiB"
+        length = dict(scope["headers"]).get(b"content-length", b"0")
+        if not length.isdigit() or int(length) > self.limit:
+            await self.refuse(detail)(scope, receive, send)
+            return
+        await self.app(scope, self._counted(receive, detail) if length == b"0" else receive, send)
+
+    def _counted(self, receive: Receive, detail: str) -> Callable[[], Awaitable[Message]]:
+        """For a body of unknown length: raise once it grows beyond the limit."""
+        size = 0
+
+        async def counted() -> Message:
+            nonlocal size
+            message = await receive()
+            size += len(message.get("body", b""))
+            if size > self.limit:
+                raise BodyTooLarge(detail)
+            return message
+
+        return counted
+
+
+async def fingerprint(request: Request) -> str:
+    """SHA-256 of a request's body; with parameters in its address, of these too."""
+    digest = hashlib.sha256(await request.body())
+    if query := request.scope["query_string"]:
+        digest.update(b"?" + query)
+    return digest.hexdigest()

@@ -1,0 +1,1 @@
+"""Answers of the interface about principals and the audit."""

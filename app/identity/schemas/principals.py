@@ -1,0 +1,136 @@
+"""Principals, keys, limits and usage as the interface shows and takes them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field
+
+from app.schemas.answers import Answer, Page
+from app.schemas.bounds import Bounded
+from app.schemas.texts import LINE
+
+Role = Literal["viewer", "author", "checker", "admin"]
+Name = Annotated[str, Field(min_length=1, max_length=100, pattern=LINE)]
+Roles = Annotated[list[Role], Field(max_length=4)]
+
+
+class Author(Answer):
+    """The author of an action."""
+
+    id: str
+    name: str
+
+
+class Limits(Answer):
+    """The limits of a principal."""
+
+    requests_per_minute: float = Field(description="of one server [1/min]")
+    storage_mb: float = Field(
+        description="what the principal was the first to have stored, deleted things too: files of builds, "
+        "surfaces of analyses, imported files, tables and rows of studies, texts of worksheets [MiB]"
+    )
+    calculation_seconds: float = Field(description="run time of jobs on one day in UTC [s]")
+    queued_jobs: int = Field(description="jobs that wait at the same time")
+
+
+class Usage(Answer):
+    """The usage of a principal today (UTC), and the bytes that it has stored."""
+
+    requests: int = Field(description="requests today; counted every few seconds")
+    jobs: int = Field(description="jobs that were queued today")
+    calculation_seconds: float = Field(description="run time of jobs today [s]")
+    storage_mb: float = Field(description="stored in all [MiB]")
+    queued_jobs: int = Field(description="jobs that wait now")
+    limits: Limits | None = Field(description="null: nothing is limited")
+
+
+class Principal(Answer):
+    """A person or a service that may use the interface."""
+
+    id: str
+    name: str
+    kind: Literal["person", "service"]
+    roles: list[Role]
+    disabled: str | None = Field(description="since when it may do nothing")
+    created: str
+
+
+class PrincipalList(Page[Principal]):
+    """A page of principals, oldest first."""
+
+
+class Me(Answer):
+    """The principal of the request, and its rights."""
+
+    id: str
+    name: str
+    kind: Literal["person", "service"]
+    roles: list[Role] = Field(description="that the key or the session allows")
+    usage: Usage
+
+
+class Key(Answer):
+    """A key, of which the service has the hash alone."""
+
+    prefix: str = Field(description="the part of the key that names it")
+    name: str
+    scopes: list[Role] = Field(description="roles it is limited to; none: all of its principal")
+    expires: str | None
+    revoked: str | None
+    made_by: str | None = Field(description="the prefix of the key that made it, and with which it ends")
+    created: str
+
+
+class KeyList(Page[Key]):
+    """The keys of a principal, oldest first."""
+
+
+class NewKey(Key):
+    """A key that was just made; only this answer has it."""
+
+    key: str
+
+
+class PrincipalIn(Bounded):
+    """A new principal."""
+
+    model_config = ConfigDict(
+        extra="forbid", json_schema_extra={"examples": [{"name": "Ada Weber", "roles": ["author"]}]}
+    )
+
+    name: Name
+    roles: Roles
+    kind: Literal["person", "service"] = "person"
+
+
+class LimitsIn(Bounded):
+    """Limits that differ from those of the settings; null: as in the settings."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    requests_per_minute: float | None = Field(None, gt=0, le=1e6, allow_inf_nan=False)
+    storage_mb: float | None = Field(None, ge=0, le=1e9, allow_inf_nan=False)
+    calculation_seconds: float | None = Field(None, ge=0, le=1e7, allow_inf_nan=False)
+    queued_jobs: int | None = Field(None, ge=1, le=10**6)
+
+
+class PrincipalPatch(Bounded):
+    """A change of a principal."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"disabled": True}]})
+
+    name: Name | None = None
+    roles: Roles | None = None
+    disabled: bool | None = None
+    limits: LimitsIn | None = None
+
+
+class KeyIn(Bounded):
+    """A new key."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"expires_days": 90}]})
+
+    name: Annotated[str, Field(max_length=100)] = ""
+    scopes: Roles = Field([], description="roles the key is limited to; none: all of its principal")
+    expires_days: float | None = Field(None, gt=0, le=36500, allow_inf_nan=False)

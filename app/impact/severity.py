@@ -1,0 +1,35 @@
+"""The order of designs that a version moves, worst first; and of the verdicts of one design."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from app.impact.schemas import DesignImpact, VerdictMoved
+
+NO_LONGER_MET, NOT_MET, REFUSED, OPEN, MOVED, UNKNOWN = range(6)
+
+
+def severity(moved: VerdictMoved) -> int:
+    """Return the rank a change of a verdict; the worst change has the least rank."""
+    if moved.new == "not_met":
+        return NO_LONGER_MET if moved.old == "met" else NOT_MET
+    if moved.old == "met":
+        return OPEN
+    return MOVED
+
+
+def worst_first(moved: Iterable[VerdictMoved]) -> list[VerdictMoved]:
+    """Return changes of verdicts, those that matter most first."""
+    return sorted(moved, key=lambda one: (severity(one), one.name, one.variant or ""))
+
+
+def rank(impact: DesignImpact) -> tuple[int, float, float, str]:
+    """Return the key by which designs are sorted."""
+    worst = min((severity(one) for one in impact.verdicts), default=MOVED)
+    if impact.effect == "refused":
+        worst = REFUSED
+    elif impact.effect == "needs_solids":
+        worst = UNKNOWN
+    lost = impact.margin.relative if impact.margin else None
+    changed = impact.output.change if impact.output else None
+    return worst, -(lost or 0.0), -abs(changed or 0.0), impact.design

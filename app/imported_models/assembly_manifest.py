@@ -1,0 +1,180 @@
+"""The manifest of an assembly: its base model, and the fixed parts with their positions."""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from pydantic import ConfigDict, Field, ValidationError, model_validator
+
+from app.imported_models.creo.manifest import LONGEST
+from app.schemas.bounds import Bounded
+from cad.assemblies import FARTHEST, MOST_COMPONENTS, SHIFTS, TURNS
+from cad.errors import UnreadableModel
+from cad.shaft import STEEL_DENSITY
+from templates.core.errors import FaultyText
+from templates.core.units.quantity import read as read_quantity
+from templates.core.units.units import unit
+
+_STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+_NAME = r"^[a-z][a-z0-9]*(_[a-z0-9]+)*$"
+_LINE = r"^[^\x00-\x1f\x7f]*$"
+_TITLE = r"^[^\x00-\x1f\x7f]*[^\x00-\x1f\x7f .][^\x00-\x1f\x7f]*$"
+_DATUM = r"^[^\x00-\x1f\x7f]{1,200}$"
+
+
+class Base(Bounded):
+    """The model of this program that the assembly stands on; its parameters are those of the assembly."""
+
+    model_config = _STRICT
+
+    model: str = Field(max_length=64, pattern=_NAME)
+    version: int | None = Field(None, ge=1, le=10**6, description="the newest if it is not given")
+
+
+class Fixed(Bounded):
+    """A fixed part: an imported STEP file, or a model of a design as one of its revisions has it."""
+
+    model_config = _STRICT
+
+    name: str = Field(max_length=40, pattern=_NAME)
+    model: str | None = Field(None, max_length=64, pattern=_NAME, description="a STEP file, or an assembly")
+    version: int | None = Field(None, ge=1, le=10**6, description="of `model`; the newest if not given")
+    design: str | None = Field(None, min_length=1, max_length=64, pattern=r"^[A-Za-z0-9_-]+$")
+    revision: int | None = Field(None, ge=1, le=10**9, description="of `design`; the newest if not given")
+    part: str | None = Field(None, max_length=200, pattern=_LINE, description="which model of `design`")
+    datum: str = Field(
+        "origin", pattern=_DATUM, description="`origin`, or a part and a place on it: `cap.low_y`"
+    )
+    x: str = Field("0 mm", max_length=60)
+    y: str = Field("0 mm", max_length=60)
+    z: str = Field("0 mm", max_length=60)
+    turn_x: str = Field("0 deg", max_length=60)
+    turn_y: str = Field("0 deg", max_length=60)
+    turn_z: str = Field("0 deg", max_length=60)
+    may_overlap: list[Annotated[str, Field(max_length=200, pattern=_LINE)]] = Field(
+        [], max_length=50, description="parts whose space it may take: a press fit"
+    )
+    density: str = Field(f"{STEEL_DENSITY:g} kg/m**3", max_length=60)
+    material: str = Field("", max_length=100, pattern=_LINE)
+
+    @model_validator(mode="after")
+    def is_one_thing(self) -> Self:
+        """The entry as it is.
+
+        Raises
+        ------
+        ValueError
+            If it names no source, or both; or a number is none.
+        """
+        if (self.model is None) == (self.design is None):
+            raise ValueError("give either `model`, an imported STEP file, or `design`")
+        if self.model and (self.revision or self.part):
+            raise ValueError("`revision` and `part` belong to `design`")
+        if self.design and self.version:
+            raise ValueError("`version` belongs to `model`; of a design give `revision`")
+        self.place()
+        self.density_si()
+        return self
+
+    def place(self) -> dict[str, float]:
+        """Return its shifts [mm] and turns [deg], by parameter.
+
+        Raises
+        ------
+        ValueError
+            If one of them is no such quantity, or too large.
+        """
+        shifts = {name: _number(name, getattr(self, name), "mm", FARTHEST) for name in SHIFTS}
+        return shifts | {name: _number(name, getattr(self, name), "deg", 360.0) for name in TURNS}
+
+    def density_si(self) -> float:
+        """Return its density [kg/m³].
+
+        Raises
+        ------
+        ValueError
+            If it is none.
+        """
+        density = _number("density", self.density, "kg/m**3", 1e5)
+        if density <= 0:
+            raise ValueError("density: give a density above 0, such as 7850 kg/m**3")
+        return density
+
+
+class AssemblyManifest(Bounded):
+    """An assembly."""
+
+    model_config = _STRICT
+
+    program: Literal["assembly"]
+    title: str = Field(max_length=100, pattern=_TITLE)
+    base: Base | None = None
+    components: list[Fixed] = Field(min_length=1, max_length=MOST_COMPONENTS)
+
+    @model_validator(mode="after")
+    def names_are_distinct(self) -> Self:
+        """The manifest as it is.
+
+        Raises
+        ------
+        ValueError
+            If two components have the same name, or names whose parameters would be the same.
+        """
+        names = [one.name for one in self.components]
+        if twice := sorted({name for name in names if names.count(name) > 1}):
+            raise ValueError(f"two components are called {', '.join(twice)}")
+        if "origin" in names:
+            raise ValueError("origin is a datum; choose another name")
+        return self
+
+
+def is_assembly(content: bytes) -> bool:
+    """Return whether some JSON says that it is the manifest of an assembly."""
+    if len(content) > LONGEST:
+        return False  # whoever reads it says that it is too large
+    try:
+        said = json.loads(content)
+    except (ValueError, RecursionError):
+        return False
+    return isinstance(said, dict) and said.get("program") == "assembly"
+
+
+def read(content: bytes) -> AssemblyManifest:
+    """Return a manifest from its JSON.
+
+    Raises
+    ------
+    UnreadableModel
+        Naming all that is wrong.
+    """
+    try:
+        return AssemblyManifest.model_validate_json(content)
+    except ValidationError as error:
+        wrong = (
+            f"{'.'.join(map(str, one['loc'])) or 'manifest'}: {one['msg']}" for one in error.errors()[:10]
+        )
+        raise UnreadableModel(
+            "manifest", f"the manifest of the assembly is wrong: {'; '.join(wrong)}"
+        ) from None
+
+
+def _number(name: str, text: str, wanted: str, most: float) -> float:
+    """Return a text as one number in a unit.
+
+    Raises
+    ------
+    ValueError
+        If it is none, or its amount is too large.
+    """
+    try:
+        typed = read_quantity(text, wanted)
+    except FaultyText as error:
+        raise ValueError(f"{name}: {error.fault(name).detail}") from None
+    if typed.tolerance is not None or np.ndim(typed.si):
+        raise ValueError(f"{name}: give a single quantity, such as 1.5 {wanted}")
+    number = float(unit(wanted).from_si(typed.si))
+    if not abs(number) <= most:
+        raise ValueError(f"{name}: {text[:60]} is beyond {most:g} {wanted}")
+    return round(number, 9) + 0.0

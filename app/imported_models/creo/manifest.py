@@ -1,0 +1,125 @@
+"""A manifest: which model of Creo, and which of its dimensions and parameters a relation may drive."""
+
+from __future__ import annotations
+
+from typing import Literal, Self
+
+from pydantic import ConfigDict, Field, ValidationError, model_validator
+
+from app.schemas.bounds import Bounded
+from cad.errors import UnreadableModel
+from cad.imported_models import Description, Parameter
+
+LONGEST = 2**18
+"""Largest size of a manifest [bytes]."""
+_STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+_LINE = r"^[^\x00-\x1f\x7f]*$"
+_PARAMETER = r"^[A-Za-z][A-Za-z0-9_-]*$"  # others CREOSON refuses
+_TITLE = r"^[^\x00-\x1f\x7f]*[^\x00-\x1f\x7f .][^\x00-\x1f\x7f]*$"
+MM: dict[str, float] = {"mm": 1.0, "inch": 25.4}
+
+
+class Driven(Bounded):
+    """One number of the model: a dimension or a parameter of Creo."""
+
+    model_config = _STRICT
+
+    name: str = Field(max_length=60, pattern=r"^[a-z][a-z0-9]*(_[a-z0-9]+)*$", description="in relations")
+    words: str = Field("", max_length=100, pattern=_LINE, description="what it is; the name if not given")
+    dimension: str | None = Field(
+        None, min_length=1, max_length=80, pattern=_LINE, description="its symbol in Creo: `D`"
+    )
+    parameter: str | None = Field(
+        None, max_length=31, pattern=_PARAMETER, description="its name in Creo: `SCALE`"
+    )
+    unit: Literal["mm", "inch", "deg", "1"] = Field(description="in which Creo has it")
+    value: float = Field(description="in the model as it is stored")
+    low: float = Field(description="the least value that is sent to Creo")
+    high: float = Field(description="the greatest value that is sent to Creo")
+    check: Literal["diameter", "radius", "distance"] | None = Field(
+        None, description="as what it is read back from every solid"
+    )
+
+    @model_validator(mode="after")
+    def is_one_number(self) -> Self:
+        """The entry as it is.
+
+        Raises
+        ------
+        ValueError
+            If it is neither, or both; or its value is out of its range.
+        """
+        if (self.dimension is None) == (self.parameter is None):
+            raise ValueError("give either the dimension or the parameter of Creo")
+        if not self.low <= self.value <= self.high:
+            raise ValueError(f"the value {self.value:g} is not from {self.low:g} to {self.high:g}")
+        if self.check and self.unit not in MM:
+            raise ValueError("only a length is read back from the solid")
+        return self
+
+    def described(self) -> Parameter:
+        """Return the entry as a parameter of the model."""
+        kind, key = ("dimension", self.dimension) if self.dimension else ("parameter", self.parameter)
+        return Parameter(
+            name=self.name,
+            words=self.words.strip() or self.name.replace("_", " "),
+            unit=self.unit,
+            value=self.value,
+            source=f"{kind}.{key}",
+            low=self.low,
+            high=self.high,
+            role=self.check or "",
+        )
+
+
+class Manifest(Bounded):
+    """A model of Creo and what may be driven."""
+
+    model_config = _STRICT
+
+    program: Literal["creo"]
+    title: str = Field(max_length=100, pattern=_TITLE)
+    file: str = Field(
+        pattern=r"^[A-Za-z0-9_][A-Za-z0-9_-]{0,30}\.(prt|asm)$",
+        description="the model in Creo: `bearing.prt`",
+    )
+    length_unit: Literal["mm", "inch"] = Field("mm", description="of the model: mass properties are in it")
+    parameters: list[Driven] = Field(min_length=1, max_length=100)
+
+    @model_validator(mode="after")
+    def names_are_distinct(self) -> Self:
+        """The manifest as it is.
+
+        Raises
+        ------
+        ValueError
+            If two entries have the same name.
+        """
+        names = [one.name for one in self.parameters]
+        if twice := sorted({name for name in names if names.count(name) > 1}):
+            raise ValueError(f"two parameters are called {', '.join(twice)}")
+        return self
+
+    def described(self, file: str, file_name: str) -> Description:
+        """Return the description of the model; `file` is the hash of the manifest."""
+        parameters = tuple(one.described() for one in self.parameters)
+        return Description("creo", file, file_name, self.title.rstrip(". "), "Creo by CREOSON", parameters)
+
+
+def read(content: bytes) -> Manifest:
+    """Return a manifest from its JSON.
+
+    Raises
+    ------
+    UnreadableModel
+        Naming all that is wrong.
+    """
+    if len(content) > LONGEST:
+        raise UnreadableModel("too_large", f"a manifest has at most {LONGEST // 1024} KiB")
+    try:
+        return Manifest.model_validate_json(content)
+    except ValidationError as error:
+        wrong = (
+            f"{'.'.join(map(str, one['loc'])) or 'manifest'}: {one['msg']}" for one in error.errors()[:10]
+        )
+        raise UnreadableModel("manifest", f"the manifest of Creo is wrong: {'; '.join(wrong)}") from None

@@ -1,0 +1,67 @@
+"""Keep the imported models of the database in the catalogue."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Iterable, Iterator
+
+from app.catalogue.catalogues import Catalogues
+from app.catalogue.sheets import Key
+from app.imported_models import repository
+from app.storage.database import Database
+from app.storage.tables import BroughtModelRow
+from cad.imported_models import ImportedModel
+from cad.model_classes import class_of
+
+logger = logging.getLogger(__name__)
+
+EVERY = 1.0
+"""Time between two looks of a server for what another one on its database has imported [s]."""
+
+
+def _classes(rows: Iterable[BroughtModelRow]) -> Iterator[tuple[Key, type[ImportedModel]]]:
+    """Yield the classes of rows; one that this program cannot read harms no other."""
+    for row in rows:
+        try:
+            yield (row.id, row.number), class_of(row.description, row.id, row.number)
+        except Exception:
+            logger.exception("Model %s version %d cannot be read", row.id, row.number)
+
+
+class ImportedModelRegistry:
+    """Publishes brought models; a version is read once."""
+
+    def __init__(self, database: Database, catalogues: Catalogues, *, is_shared: bool) -> None:
+        self.database, self.catalogues = database, catalogues
+        self._is_shared, self._ending = is_shared, threading.Event()
+        self._looking, self._count = threading.Lock(), 0
+        self._thread = threading.Thread(target=self._watch, name="brought models", daemon=True)
+        self.look()
+
+    def start(self) -> None:
+        """Look what other servers import, if there may be others on this database."""
+        if self._is_shared:
+            self._thread.start()
+
+    def stop(self) -> None:
+        """Look no more."""
+        self._ending.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def look(self) -> None:
+        """Take notice of new versions."""
+        with self._looking, self.database.read() as session:
+            if (count := repository.count(session)) == self._count:
+                return
+            rows = repository.all_rows(session)
+            self.catalogues.bring(dict(_classes(rows)))
+            self._count = count
+
+    def _watch(self) -> None:
+        while not self._ending.wait(EVERY):
+            try:
+                self.look()
+            except Exception:
+                logger.exception("The brought models could not be looked at")

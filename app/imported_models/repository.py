@@ -1,0 +1,69 @@
+"""All SQL of brought models; every function runs in its caller's transaction."""
+
+from __future__ import annotations
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from app.identity.principal import BUILT_IN, acting
+from app.storage.errors import NotFound
+from app.storage.identity import now
+from app.storage.tables import BroughtModelRow as Row
+from app.storage.upserts import insert_new
+from cad.imported_models import Description
+
+
+def all_rows(session: Session) -> list[Row]:
+    """Return every version of every brought model."""
+    return list(session.scalars(select(Row).order_by(Row.id, Row.number)))
+
+
+def count(session: Session) -> int:
+    """Return the number of versions: rows never change and are never deleted."""
+    return session.scalar(select(func.count()).select_from(Row)) or 0
+
+
+def version(session: Session, id: str, number: int) -> Row:
+    """Return one version of a brought model.
+
+    Raises
+    ------
+    NotFound
+        If there is none.
+    """
+    if (row := session.get(Row, (id, number))) is None:
+        raise NotFound(f"model {id[:64]!r} version {number} was not imported from a file")
+    return row
+
+
+def numbers(session: Session, id: str) -> list[int]:
+    """Return the versions of a brought model, ascending."""
+    return list(session.scalars(select(Row.number).where(Row.id == id).order_by(Row.number)))
+
+
+def add(session: Session, id: str, described: Description, sent: str) -> int:
+    """Add a version, the next of its id; the number of one that is the same already."""
+    rows = list(session.scalars(select(Row).where(Row.id == id).order_by(Row.number)))
+    for row in rows:
+        if row.description == described.text:
+            return row.number
+    number = (rows[-1].number if rows else 0) + 1
+    while not insert_new(session, _row(id, number, described, sent)):
+        number += 1  # another server was quicker
+    return number
+
+
+def _row(id: str, number: int, described: Description, sent: str) -> Row:
+    who = acting()
+    author, principal = (None, None) if who.id in BUILT_IN else (who.name, who.id)
+    return Row(
+        id=id,
+        number=number,
+        program=described.program,
+        description=described.text,
+        file_sha256=described.file,
+        sent_sha256=sent,
+        author=author,
+        author_principal=principal,
+        created=now(),
+    )

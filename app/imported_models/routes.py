@@ -1,0 +1,101 @@
+"""`/models/import`: models from FreeCAD, and STEP files as fixed parts."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Query, Request, Response
+
+from app.api.dependencies import TheDatabase, TheModelImports, TheOnce, TheStore, TheThreads
+from app.api.stored import UNCHANGED, StoredFile
+from app.api.waiting import LATER, accepted
+from app.catalogue.routes.templates import Number
+from app.http.strict_requests import MODEL_TYPES, StrictRoute, require_model
+from app.imported_models.programs import SET_CREO
+from app.imported_models.schemas import DrawingProgram, DrawingPrograms, ModelOrigin
+from app.imported_models.views import origin
+from app.schemas.problems import refusals
+from app.solids.routes.models import Id
+
+router = APIRouter(prefix="/api/v1/models", tags=["models"], route_class=StrictRoute)
+
+BINARY = {"schema": {"type": "string", "format": "binary"}}
+BODY = {"requestBody": {"required": True, "content": dict.fromkeys(sorted(MODEL_TYPES), BINARY)}}
+NewId = Annotated[
+    str,
+    Query(
+        max_length=64,
+        pattern=r"^[a-z][a-z0-9]*(_[a-z0-9]+)*$",
+        description="of the model: small letters, digits and single _",
+        examples=["main_cap"],
+    ),
+]
+FileName = Annotated[
+    str, Query(max_length=200, pattern=r"^[^\x00-\x1f\x7f]+$", description="how the file is called")
+]
+
+
+@router.get("/import")
+def list_programs(imports: TheModelImports) -> DrawingPrograms:
+    """The programs that draw brought models; of one that is missing how to install it."""
+    reason, place = imports.available()
+    freecad = DrawingProgram(
+        name="FreeCAD",
+        files=".FCStd",
+        available=reason is None,
+        detail=reason or f"its modules are in {place}",
+    )
+    fixed = DrawingProgram(
+        name="STEP", files=".step, .stp", available=True, detail="a fixed part without parameters"
+    )
+    drives = "creo" in imports.programs.by_name
+    creo = DrawingProgram(
+        name="Creo",
+        files=".json, a manifest",
+        available=drives,
+        detail="driven through CREOSON" if drives else SET_CREO,
+    )
+    return DrawingPrograms(items=[freecad, creo, fixed])
+
+
+@router.post(
+    "/import",
+    status_code=202,
+    responses={**LATER, **refusals(409, 429, 503)},
+    openapi_extra=BODY,
+    dependencies=[Depends(require_model)],
+)
+async def import_model(
+    request: Request,
+    imports: TheModelImports,
+    threads: TheThreads,
+    once: TheOnce,
+    id: NewId,
+    file: FileName = "model",
+) -> Response:
+    """A file of FreeCAD (.FCStd) or a manifest for Creo as a model, or a STEP file as a fixed part.
+
+    Aliases of spreadsheet cells and named constraints of sketches become parameters. Macros and Python
+    features never run: a file that has them is refused. The job answers with the version of the model once it
+    has ended. A file under an id that is there becomes its next version.
+    """
+    body = await request.body()
+    return accepted(await threads.run(imports.begin, body, id, file, once))
+
+
+@router.get("/{id}/versions/{number}/origin", responses=refusals(404))
+def read_origin(id: Id, number: Number, database: TheDatabase) -> ModelOrigin:
+    """The file from which a model was imported, its parameters there, and how far to trust its solids."""
+    return origin(database, id, number)
+
+
+@router.get(
+    "/{id}/versions/{number}/original",
+    response_class=Response,
+    responses={200: {"content": {"application/octet-stream": {}}}, **UNCHANGED, **refusals(404, 503)},
+)
+def read_original_model(id: Id, number: Number, database: TheDatabase, store: TheStore) -> Response:
+    """The file that a model was imported from, as it was sent."""
+    shown = origin(database, id, number)
+    headers = {"ETag": f'"{shown.sha256}"'}
+    return StoredFile(store, shown.sha256, "application/octet-stream", headers, shown.file)

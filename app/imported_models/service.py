@@ -1,0 +1,164 @@
+"""Imports of models as jobs: the file is kept by its hash, examined, and becomes a version of a model."""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+from typing import Literal
+
+from sqlalchemy.orm import Session
+
+from app.catalogue.catalogues import Catalogues
+from app.identity.usage import note_bytes
+from app.imported_models import repository
+from app.imported_models.assemblies import described_assembly
+from app.imported_models.assembly_manifest import is_assembly
+from app.imported_models.assembly_manifest import read as read_assembly
+from app.imported_models.creo.manifest import read
+from app.imported_models.descriptions import described_creo, described_freecad, described_step
+from app.imported_models.errors import ModelIdTaken
+from app.imported_models.names import require_free
+from app.imported_models.programs import Programs
+from app.imported_models.registry import ImportedModelRegistry
+from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.plain import JsonObject
+from app.storage.artifacts import Artifacts
+from app.storage.database import Database, after_commit
+from app.storage.errors import ArtifactDamaged, ArtifactMissing
+from app.storage.idempotency import Once
+from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
+from cad.errors import GeometryError, ProgramMissing, UnreadableModel, UnreadableStep
+from cad.imported_models import Description
+from cad.model_classes import class_of
+from templates.core.errors import TemplateError
+
+IMPORT = "model_import"
+Kind = Literal["freecad", "creo", "step", "assembly"]
+FAILURES = (
+    UnreadableModel, UnreadableStep, GeometryError, ModelIdTaken, TemplateError, DeadlineExceeded,
+    MemoryExceeded, JobCrashed, ArtifactMissing, ArtifactDamaged,
+)  # fmt: skip
+"""Errors that a file causes."""
+
+
+class ModelImports:
+    """Queues imports of models, and is the handler of such jobs."""
+
+    def __init__(
+        self,
+        database: Database,
+        store: Artifacts,
+        jobs: Jobs,
+        catalogues: Catalogues,
+        programs: Programs,
+        registry: ImportedModelRegistry,
+    ) -> None:
+        self.database, self.store, self.jobs, self.catalogues = database, store, jobs, catalogues
+        self.programs, self.registry = programs, registry
+
+    def begin(self, content: bytes, id: str, file: str, once: Once) -> str:
+        """Queue the import of a file as a model; the id of the job.
+
+        Raises
+        ------
+        UnreadableModel
+            If the file is empty, or of no kind that is taken.
+        ProgramMissing
+            If the program that draws it is not here.
+        ModelIdTaken, InvalidInputs
+            If no brought model may have the id.
+        QueueFull
+            Too many jobs are waiting.
+        """
+        require_free(id, self.catalogues)
+        kind = kind_of(content)
+        if kind == "freecad":
+            self.programs.freecad.warm.find()
+        if kind == "creo":
+            read(content)
+        if kind == "assembly":
+            read_assembly(content)
+        sha = self.store.put(content)
+        name = PurePath(file.replace("\\", "/")).name or "model"
+        payload = {
+            "file": sha,
+            "id": id,
+            "name": name,
+            "kind": kind,
+            "client": once.client,
+        }
+
+        def unit(session: Session) -> str:
+            if before := once.begin(session):
+                return str(before["job"])
+            job = self.jobs.enqueue(session, IMPORT, payload, client=once.client)
+            note_bytes(session, len(content))
+            once.keep(session, 202, {"job": job})
+            return job
+
+        job = self.database.write(unit)
+        self.jobs.wake()
+        return job
+
+    def __call__(self, job: Job, context: JobContext) -> Completion:
+        """Import the file of a job; its result is the version of the model.
+
+        Raises
+        ------
+        JobFailed
+            The file is not taken, or the id is taken meanwhile.
+        """
+        id, sha, name, kind = (job.payload[key] for key in ("id", "file", "name", "kind"))
+        try:
+            described = self._described(kind, self.store.read(sha), id, name, context)
+            class_of(described.text, id, 1)  # it can be published
+            require_free(id, self.catalogues)
+        except FAILURES as error:
+            raise JobFailed(error) from error
+
+        def completion(session: Session) -> str:
+            number = repository.add(session, id, described, sha)
+            after_commit(session, self.registry.look)
+            return f"/api/v1/models/{id}/versions/{number}"
+
+        return completion
+
+    def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
+        """Do nothing: a failed import leaves nothing behind, and retention takes its file."""
+
+    def available(self) -> tuple[str | None, str | None]:
+        """Return the reason why FreeCAD cannot draw here, or None; and the folder in which it is."""
+        try:
+            return None, self.programs.freecad.warm.find().modules
+        except ProgramMissing as error:
+            return str(error), None
+
+    def _described(self, kind: Kind, content: bytes, id: str, name: str, context: JobContext) -> Description:
+        if kind == "assembly":
+            return described_assembly(content, id, name, self.database, self.store, self.catalogues)
+        if kind == "step":
+            return described_step(content, name, self.store, context)
+        if kind == "creo":
+            return described_creo(content, name, self.store, self.programs, context)
+        return described_freecad(content, name, self.store, self.programs, context)
+
+
+def kind_of(content: bytes) -> Kind:
+    """Return the kind of a file, by its first bytes.
+
+    Raises
+    ------
+    UnreadableModel
+        If it is none that is taken.
+    """
+    if content.startswith(b"PK\x03\x04"):
+        return "freecad"
+    if content[:200].lstrip().startswith(b"ISO-10303-21"):
+        return "step"
+    if content[:200].lstrip().startswith(b"{"):
+        return "assembly" if is_assembly(content) else "creo"
+    what = "the body is empty" if not content else "it begins as no model does"
+    raise UnreadableModel(
+        "not_a_model",
+        f"{what}: send a .FCStd of FreeCAD, a STEP file (ISO 10303-21), or a manifest (JSON) for Creo or of "
+        "an assembly",
+    )

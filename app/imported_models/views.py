@@ -1,0 +1,40 @@
+"""Brought models as the interface shows them."""
+
+from __future__ import annotations
+
+from app.imported_models import repository
+from app.imported_models.schemas import BroughtParameter, ModelOrigin
+from app.storage.database import Database
+from cad.model_classes import description_of
+
+
+def origin(database: Database, id: str, number: int) -> ModelOrigin:
+    """Return the origin of a brought model.
+
+    Raises
+    ------
+    NotFound
+        If it was not brought, or is not there.
+    """
+    with database.read() as session:
+        row = repository.version(session, id, number)
+        described = description_of(row.description)
+        return ModelOrigin(
+            program=described.program,
+            file=described.file_name,
+            sha256=row.sent_sha256,
+            made_with=described.made_with,
+            trust=described.trust,
+            author=row.author,
+            created=row.created,
+            parameters=[
+                BroughtParameter(
+                    name=one.name,
+                    unit=one.unit,
+                    value=one.value,
+                    source=one.source,
+                    read_back=one.role or None,
+                )
+                for one in described.parameters
+            ],
+        )

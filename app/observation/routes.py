@@ -1,0 +1,44 @@
+"""`/healthz`, `/readyz` and `/metrics`, at the root."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Response
+from fastapi.responses import PlainTextResponse
+from prometheus_client import CONTENT_TYPE_LATEST
+
+from app.api.dependencies import TheDatabase, TheJobs, TheReadiness
+from app.api.waiting import written
+from app.http import problems
+from app.http.problem_kinds import NOT_READY
+from app.http.roles import needs, public
+from app.observation import metrics
+from app.observation.schemas import Health, Ready
+from app.schemas.problems import refusals
+
+router = APIRouter(tags=["health"])
+
+
+@router.get("/healthz", dependencies=[public()])
+async def show_health() -> Health:
+    """The process is alive."""
+    return Health(status="ok")
+
+
+@router.get("/readyz", response_model=Ready, responses=refusals(503), dependencies=[public()])
+async def show_readiness(readiness: TheReadiness) -> Response:
+    """The service can write, has space, and its job processes answer. Checked at most once a second."""
+    said = await readiness.failures()
+    listed = [{"name": n, "code": "not_ready", "detail": text} for n, text in said.items() if text]
+    if not listed:
+        return written(Ready(status="ready", checks=dict.fromkeys(said, "ok")))
+    detail = "; ".join(f"{fault['name']}: {fault['detail']}" for fault in listed)
+    about: dict[str, object] = {**problems.problem(NOT_READY, detail[:2000]), "errors": listed}
+    return problems.answer(about, {"Retry-After": "2"})
+
+
+@router.get("/metrics", response_class=PlainTextResponse, dependencies=[needs()])
+def show_metrics(database: TheDatabase, jobs: TheJobs) -> Response:
+    """Figures for Prometheus."""
+    with database.read() as session:
+        text = metrics.text(jobs.census(session), jobs.oldest_queued_age(session))
+    return Response(text, media_type=CONTENT_TYPE_LATEST)

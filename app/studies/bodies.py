@@ -1,0 +1,130 @@
+"""Bodies of the calls of studies."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import ConfigDict, Field, StringConstraints, ValidationError, model_validator
+from pydantic.config import JsonDict
+
+from app.calculations.errors import InvalidBody
+from app.designs.bodies import LONGEST_NOTE
+from app.designs.document import CriterionName
+from app.plain import JsonObject
+from app.schemas.bounds import Bounded, at_most
+from app.schemas.values import Given
+from app.studies.schemas import Method
+
+MOST_VARIED, MOST_OUTPUTS, MOST_BUILT, MOST_SEED = 20, 50, 200, 2**32 - 1
+MOST_ROWS = {"grid": 10**6, "table": 10**5, "sample": 10**6, "sensitivity": 10**5, "optimise": 10**5}
+"""Rows of a study by method."""
+
+_STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+_PLACE = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63}){0,2}$"
+Place = Annotated[str, StringConstraints(pattern=_PLACE)]
+"""A parameter, `step.input`, `model.parameter` or `step.output`."""
+VariantName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
+Places = Annotated[list[Place], Field(max_length=MOST_OUTPUTS)]
+
+
+class Vary(Bounded):
+    """The values of one place: anything between two bounds, or one of a list."""
+
+    model_config = _STRICT
+
+    between: Annotated[list[Given], Field(min_length=2, max_length=2)] | None = Field(
+        None, examples=[["0.03 mm", "0.09 mm"]], description="the lower and the upper bound"
+    )
+    values: Annotated[list[Given], Field(min_length=1, max_length=10_000)] | None = Field(
+        None, examples=[["18 mm", "20 mm"]]
+    )
+    spacing: Literal["linear", "log"] = "linear"
+
+    @model_validator(mode="after")
+    def one_of_both(self) -> Self:
+        """Either bounds or a list."""
+        if (self.between is None) == (self.values is None):
+            raise ValueError("give either `between`, two bounds, or `values`, a list")
+        return self
+
+
+class StageAccuracy(Bounded):
+    """Accuracy that a level must reach."""
+
+    model_config = _STRICT
+
+    tolerance: float = Field(gt=0, lt=1, description="relative error that the levels may have")
+
+
+EXAMPLE: JsonDict = {
+    "design": "00000000000001abcdef0123",
+    "method": "grid",
+    "vary": {"scale": {"between": ["0.98", "1.02"]}},
+    "steps": 5,
+    "outputs": ["film.minimum_film_thickness"],
+}
+
+
+class StudyIn(Bounded):
+    """A new study."""
+
+    model_config = ConfigDict(
+        strict=True, extra="forbid", allow_inf_nan=False, json_schema_extra={"examples": [EXAMPLE]}
+    )
+
+    design: str = Field(max_length=64)
+    revision: int | None = Field(None, ge=1, le=10**9, description="the newest, if not given")
+    variant: VariantName | None = Field(
+        None, description="which variant is studied; the design itself, if not given"
+    )
+    method: Method
+    seed: int = Field(1, ge=0, le=MOST_SEED, description="the same seed, the same rows")
+    vary: Annotated[dict[Place, Vary], Field(max_length=MOST_VARIED), at_most(MOST_VARIED)] = Field(
+        {},
+        description="parameters, `step.input` and `model.parameter`; `set_aside` names those with a relation",
+    )
+    set_aside: Annotated[list[Place], Field(max_length=MOST_VARIED)] = Field(
+        [], description="varied places that a relation sets: the relation does not hold in this study"
+    )
+    steps: int | dict[Place, int] | None = Field(None, description="of `grid`: for each interval, or by name")
+    rows: dict[Place, Given] | list[dict[Place, Given]] | None = Field(
+        None, description="of `table`: columns by name, each an array with its unit, or a list of rows"
+    )
+    points: int | None = Field(None, ge=1, description="of `sample`; the base of `sensitivity`")
+    sequence: Literal["sobol", "lhs"] = Field("sobol", description="of `sample`")
+    kind: Literal["local", "morris", "sobol"] = Field("local", description="of `sensitivity`")
+    outputs: Places = Field([], description="what each row keeps, beside what is minimised or maximised")
+    minimise: Places = []
+    maximise: Places = []
+    hold: Annotated[list[CriterionName], Field(max_length=100)] | None = Field(
+        None, description="criteria that a row must meet; all of the design if not given"
+    )
+    explore: StageAccuracy | None = Field(None, description="levels of the design itself, if not given")
+    confirm: StageAccuracy | None = Field(None, description="the best rows are calculated again to this")
+    build: (
+        Literal["none", "best", "front", "all"]
+        | Annotated[list[Annotated[int, Field(ge=0)]], Field(min_length=1, max_length=MOST_BUILT)]
+    ) = Field("none", description=f"rows that become variants of a new design, at most {MOST_BUILT}")
+
+
+def study_of(raw: JsonObject) -> StudyIn:
+    """Return a study from plain values.
+
+    Raises
+    ------
+    InvalidBody
+        With everything that is wrong.
+    """
+    try:
+        return StudyIn.model_validate(raw)
+    except ValidationError as error:
+        raise InvalidBody.of(error) from None
+
+
+class ChooseIn(Bounded):
+    """A row whose values become a revision."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", json_schema_extra={"examples": [{"row": 2}]})
+
+    row: int = Field(ge=0, le=10**9)
+    note: str | None = Field(None, max_length=LONGEST_NOTE)

@@ -1,0 +1,39 @@
+"""The criteria of a design by their names: those of its templates, and its own."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.designs.engine.net import Net, Table
+from app.designs.subjects import subjects
+from app.studies.archive import AnyArray
+from templates.core.arrays import Array
+from templates.core.judging.comparison import MET
+from templates.core.judging.criterion import Criterion
+
+
+def criterion_of(net: Net, name: str) -> Criterion:
+    """A criterion as it is judged: as the design writes it, else as the template of its step declares it."""
+    return subjects(net.graph)[name].criterion
+
+
+JUDGED = "judged/"
+SIDES = ("value", "limit", "low", "high")
+"""The values of a criterion that a search needs, in arrays `judged/<criterion>/<side>`."""
+
+
+def judged_of(net: Net, name: str, table: Table) -> dict[str, AnyArray]:
+    """Return the value, limit and margins [SI] of a criterion over the rows; at least zero is safe."""
+    column, codes = table.judged[name], np.asarray(table.verdicts[name])
+    sign = 1.0 if criterion_of(net, name).sign == ">=" else -1.0
+    ends = sign * (column.low - column.limit), sign * (column.high - column.limit)
+    margin = sign * (column.value - column.limit)
+    # The verdict knows the band of the limit as well: where that leaves it open, the bad end is not safe.
+    low = np.where((codes != MET) & (np.minimum(*ends) >= 0), -np.abs(margin), np.minimum(*ends))
+    sides = (column.value, column.limit, low, np.maximum(*ends))
+    pairs = zip(SIDES, sides, strict=True)
+    return {f"{JUDGED}{name}/{side}": _spread(values, table.count) for side, values in pairs}
+
+
+def _spread(values: Array, count: int) -> Array:
+    return np.broadcast_to(np.asarray(values, dtype=np.float64), (count,))

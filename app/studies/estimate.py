@@ -1,0 +1,77 @@
+"""Estimate the processor time of a study from a few rows, calculated before it is accepted.
+
+The tables of levels know neither criteria nor a heat balance. The size of chunks still follows from them: a
+measured one would make equal studies unequal.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.studies.chunks import Levels, called
+from app.studies.front import MOST_CONFIRMED, MOST_FRONT
+from app.studies.task import Prepared
+from templates.core.arrays import Array
+
+FEW, MANY = 8, 512  # rows of the two calls that are timed
+AFFORDABLE = 0.25  # for the call of many rows [s]
+SCANNED, CALLS = 4096, 100  # rows of the scan of a search, and calls of a few rows after it
+GENERATIONS, POPULATION = 500, 100  # calls of a search for several objectives, in all rounds; rows of each
+IN_CALL = 4096  # rows
+
+
+@dataclass(frozen=True)
+class Pace:
+    """The time of a call beside its rows, and of a row [s of processor time]."""
+
+    call: float
+    row: float
+
+    def seconds(self, rows: int, calls: int = 0) -> float:
+        """Return the time of so many rows in so many calls, by default in as few as possible [s]."""
+        return self.row * rows + self.call * (calls or -(-rows // IN_CALL))
+
+
+def estimated(
+    ready: Prepared,
+    probe: Array,
+    count: int,
+    criteria: Collection[str],
+    levels: Levels,
+    confirm: Levels | None,
+) -> float:
+    """Return the processor time of a study of so many rows [s]."""
+    body, names = ready.asked.body, tuple(criteria)
+    pace = paced(ready, probe, names, levels)
+    again = paced(ready, probe, names, confirm) if confirm is not None else pace
+    several = len(ready.asked.objectives) > 1
+    if body.method == "optimise":
+        calls, each = (GENERATIONS, POPULATION) if several else (CALLS, FEW)
+        rows = min(count, SCANNED + calls * each)
+        return pace.seconds(rows, 1 + calls) + again.seconds(MOST_CONFIRMED)
+    most = MOST_FRONT if several else MOST_CONFIRMED
+    repeated = most if confirm is not None and ready.asked.objectives else 0
+    return pace.seconds(count) + again.seconds(min(count, repeated))
+
+
+def paced(ready: Prepared, probe: Array, criteria: tuple[str, ...], levels: Levels) -> Pace:
+    """Return the pace at some levels, by a call of a few rows and one of as many as are affordable."""
+    few, many = probe[:FEW], np.resize(probe, (MANY, probe.shape[1]))
+    timed(ready, few[:1], criteria, levels)  # what is loaded once does not count
+    first = timed(ready, few, criteria, levels)
+    if first > AFFORDABLE:
+        return Pace(0.0, first / len(few))
+    size = max(2 * len(few), min(MANY, int(AFFORDABLE * len(few) / max(first, 1e-9))))
+    row = max(0.0, timed(ready, many[:size], criteria, levels) - first) / (size - len(few))
+    return Pace(max(0.0, first - row * len(few)), row)
+
+
+def timed(ready: Prepared, rows: Array, criteria: tuple[str, ...], levels: Levels) -> float:
+    """Return the processor time of a call [s]."""
+    begun = time.thread_time()
+    called(ready, rows, levels, criteria)
+    return time.thread_time() - begun

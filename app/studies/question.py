@@ -1,0 +1,207 @@
+"""Validate the request of a study against its design: places with units, rows, objectives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import prod
+
+import numpy as np
+
+from app.designs.engine.net import Net
+from app.designs.slopes import Local
+from app.plain import Raw
+from app.reference import Reference
+from app.studies.bodies import MOST_ROWS, StudyIn, Vary
+from app.studies.methods.points import Grid, LatinHypercube, Points, Sobol
+from app.studies.methods.search import scanned
+from app.studies.methods.sensitivity import MorrisPoints, SobolPoints
+from app.studies.methods.space import Interval, Space, Values, Variable
+from templates.core.errors import Fault, FaultyText, InvalidInputs
+from templates.core.units.quantity import read
+
+_STEP = 1e-3  # of the interval: how far slopes look to either side
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A study that can be calculated: its rows, and which places and outputs they have."""
+
+    body: StudyIn
+    space: Space
+    places: tuple[Reference, ...]
+    wanted: tuple[Reference, ...]
+    points: Points | None  # None: its user gave the rows, or an optimisation finds them
+
+    @property
+    def objectives(self) -> list[str]:
+        """Return the outputs that are minimised, then those that are maximised."""
+        return directions(self.body)[0]
+
+
+def asked_of(body: StudyIn, varied: Sequence[str], net: Net) -> Asked:
+    """Return a body read against the network of its design.
+
+    Raises
+    ------
+    InvalidInputs
+        With everything that is wrong.
+    """
+    _refuse(list(_contradictions(body, varied)))
+    space = Space(tuple(_variables(body, varied, net)))
+    names = dict.fromkeys([*body.minimise, *body.maximise, *body.outputs])
+    wanted = tuple(map(Reference.parse, names))
+    _refuse(_too_many(body, space))
+    points = points_of(body, space, net)
+    return Asked(body, space, tuple(map(Reference.parse, varied)), wanted, points)
+
+
+def _contradictions(body: StudyIn, varied: Sequence[str]) -> Iterator[Fault]:
+    """Yield a fault for what the method lacks, and for what means nothing with it."""
+    if not varied and body.method == "table":
+        yield Fault("rows", "missing", "give `rows`: columns by name, or a list of rows")
+    elif not varied:
+        yield Fault("vary", "missing", 'name what varies, as in {"clearance": {"between": [..]}}')
+    if body.vary and body.method == "table":
+        yield Fault("vary", "contradiction", "the rows of a table say what varies; leave `vary` out")
+    if body.method == "sample" and body.points is None:
+        yield Fault("points", "missing", "say how many rows to sample, such as 1024")
+    has_goal = bool(body.minimise or body.maximise)
+    if body.method == "optimise" and not has_goal:
+        yield Fault("minimise", "missing", "name an output to minimise or maximise")
+    elif not (body.outputs or has_goal):
+        yield Fault("outputs", "missing", "name what each row keeps, such as film.minimum_film_thickness")
+    if body.points is not None and (body.method in ("grid", "table") or _is_local(body)):
+        yield Fault("points", "contradiction", _WITHOUT_POINTS[body.method])
+    if body.steps is not None and body.method != "grid":
+        yield Fault("steps", "contradiction", f"{body.method} takes no `steps`, only grid does; leave it out")
+    for name in sorted({*body.minimise} & {*body.maximise}):
+        yield Fault("maximise", "contradiction", f"{name} is minimised as well")
+
+
+def _is_local(body: StudyIn) -> bool:
+    return body.method == "sensitivity" and body.kind == "local"
+
+
+_WITHOUT_POINTS = {
+    "grid": f"grid takes no `points`; give `steps`, at most {MOST_ROWS['grid']} rows in all",
+    "table": f"table takes no `points`; it has the rows that you give, at most {MOST_ROWS['table']}",
+    "sensitivity": "local slopes take no `points`; leave it out, or choose `kind` morris or sobol",
+}
+
+
+def _variables(body: StudyIn, varied: Sequence[str], net: Net) -> Iterator[Variable]:
+    """Yield the variables in the order of the columns; the keys of a stored body have another."""
+    faults: list[Fault] = []
+    for name in varied if body.vary else ():
+        vary = body.vary[name]
+        try:
+            yield _variable(name, vary, net.unit(Reference.parse(name)))
+        except InvalidInputs as error:
+            faults += [fault.within("vary") for fault in error.faults]
+    _refuse(faults)
+
+
+def _variable(name: str, vary: Vary, unit: str) -> Variable:
+    if vary.between is not None:
+        low, high = (single(raw, unit, name) for raw in vary.between)
+        if low == high:
+            raise InvalidInputs([Fault(name, "empty_interval", "both bounds are the same; give two")])
+        return Interval(name, low, high, vary.spacing)
+    return Values(name, tuple(single(raw, unit, name) for raw in vary.values or ()))
+
+
+def single(raw: Raw, unit: str, name: str) -> float:
+    """Return one value [SI] as typed."""
+    try:
+        value = read(raw, unit).si
+    except FaultyText as error:
+        raise InvalidInputs([error.fault(name)]) from None
+    if not isinstance(value, float):
+        raise InvalidInputs([Fault(name, "not_a_number", "give a single value here, not an array")])
+    return value
+
+
+def points_of(body: StudyIn, space: Space, net: Net) -> Points | None:
+    """Return the rows of a method by number; None if the method finds them by itself."""
+    match body.method:
+        case "grid":
+            return Grid(space, _steps(body, space))
+        case "sample" if body.sequence == "lhs":
+            return LatinHypercube(space, body.points or 0, body.seed)
+        case "sample":
+            return Sobol(space, body.points or 0, body.seed)
+        case "sensitivity" if body.kind == "morris":
+            return MorrisPoints(space, body.points or 20, body.seed)
+        case "sensitivity" if body.kind == "sobol":
+            return SobolPoints(space, body.points or 1024, body.seed)
+        case "sensitivity":
+            return _around(space, net)
+    return None
+
+
+def _steps(body: StudyIn, space: Space) -> dict[str, int]:
+    intervals = [variable.name for variable in space.variables if isinstance(variable, Interval)]
+    given = body.steps if isinstance(body.steps, Mapping) else dict.fromkeys(intervals, body.steps)
+    strange = (name for name in given if name not in intervals)
+    faults = [Fault("steps", "unknown_name", f"{name} has no bounds to vary between") for name in strange]
+    for name in intervals:
+        if (given.get(name) or 0) < 2:
+            faults.append(Fault("steps", "missing", f"give at least 2 steps for {name}"))
+    _refuse(faults)
+    return {name: int(given[name] or 0) for name in intervals}
+
+
+def _around(space: Space, net: Net) -> Local:
+    """Return the design's own values, or the middle of an interval that leaves them out."""
+    at, steps, faults = [], [], []
+    for variable in space.variables:
+        if not isinstance(variable, Interval):
+            detail = "a slope needs `between`, two bounds"
+            faults.append(Fault(f"vary.{variable.name}", "no_interval", detail))
+            continue
+        nominal = float(np.asarray(net.nominal(Reference.parse(variable.name))))
+        inside = variable.low <= nominal <= variable.high
+        at.append(nominal if inside else (variable.low + variable.high) / 2)
+        steps.append(_STEP * (variable.high - variable.low))
+    _refuse(faults)
+    return Local(np.array(at), np.array(steps))
+
+
+def _too_many(body: StudyIn, space: Space) -> list[Fault]:
+    """Return a fault if the method would make more rows than it takes, counted before any row is made."""
+    count = 0
+    match body.method:
+        case "grid":
+            steps = _steps(body, space)
+            count = prod(steps.get(v.name) or len(v.steps(0)) for v in space.variables)
+        case "sample":
+            count = body.points or 0
+        case "sensitivity" if body.kind == "morris":
+            count = (body.points or 20) * (len(space) + 1)
+        case "sensitivity" if body.kind == "sobol":
+            count = (body.points or 1024) * (len(space) + 2)
+        case "optimise":
+            count, least = body.points or 0, scanned(space)
+            if body.points is not None and body.points < least:
+                detail = f"optimise looks at {least} rows before it searches; give more, up to"
+                return [Fault("points", "out_of_range", f"{detail} {MOST_ROWS['optimise']}")]
+    return [too_long(body.method, count)] if count > MOST_ROWS[body.method] else []
+
+
+def too_long(method: str, count: int) -> Fault:
+    """Return the fault of a study with more rows than its method takes."""
+    place = {"grid": "steps", "table": "rows"}.get(method, "points")
+    given = str(count) if count < 10**15 else "as many as these"  # its digits may be thousands
+    return Fault(place, "too_many_rows", f"{method} takes at most {MOST_ROWS[method]} rows, not {given}")
+
+
+def _refuse(faults: Sequence[Fault]) -> None:
+    if faults:
+        raise InvalidInputs(faults)
+
+
+def directions(body: StudyIn) -> tuple[list[str], list[bool]]:
+    """Return the objectives of a study, and for each whether it is maximised."""
+    names = [*body.minimise, *body.maximise]
+    return names, [name in body.maximise for name in names]

@@ -1,0 +1,314 @@
+"""A slice of a search, in a calculation process: it repeats from the seed, taking stored answers.
+
+An optimiser asks for the same rows in the same order whenever it begins with the same seed. So a search that
+was interrupted begins again and receives the answers that are stored, by the bytes of the rows, until it asks
+for the first that is not. Generations of NSGA-II are stored as well: finished ones are not repeated.
+A slice ends by estimated seconds, not by a clock: equal studies, equal chunks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.plain import JsonObject
+from app.studies.archive import AnyArray, Archive, packed
+from app.studies.chunks import Chunk, Levels, called, columns_of, reasons_of, results_of
+from app.studies.criteria import JUDGED, SIDES, criterion_of, judged_of
+from app.studies.methods.answers import AllRefused, Answer, Columns, Held, Objective, Problem
+from app.studies.methods.confirmation import Round
+from app.studies.methods.front import Effort, pareto_front
+from app.studies.methods.optimise import optimise
+from app.studies.methods.stages import Stage
+from app.studies.row_columns import CONFIRM, EXPLORE, OUTPUT
+from app.studies.task import Prepared, Task, prepared
+from app.workers.pieces import Pieces
+from templates.core.arrays import Array
+from templates.core.errors import Fault, InvalidInputs
+
+SLICE_SECONDS = 0.5  # of new rows, estimated
+ALONE = Effort(generations=50, rounds=1)
+"""Of the front that a level finds by itself: no more rows than a comparison is worth."""
+CALL_SECONDS = 0.03  # that a call takes beside its rows
+
+
+@dataclass(frozen=True)
+class Search:
+    """A search to do: at which levels, holding which criteria, for how many rows at most.
+
+    `trade` are further levels, each of which is searched alone once.
+    """
+
+    levels: tuple[tuple[tuple[str, str | None], ...], ...]
+    criteria: tuple[str, ...]
+    required: tuple[str, ...]
+    most: int
+
+
+@dataclass(frozen=True)
+class Promised:
+    """The promise of a level at its best place, or along its front [SI], and the true values there."""
+
+    level: int
+    places: tuple[Round, ...]
+    rows: int
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The result of a search: places that were confirmed, best first or along a front."""
+
+    state: str
+    places: tuple[Array, ...]
+    trade: tuple[Promised, ...]
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Slice:
+    """New answers of a search, and its outcome once it has come to its end."""
+
+    chunk: Chunk | None
+    outcome: Outcome | None
+
+
+class Paused(Exception):
+    """A slice has calculated as much as it may."""
+
+
+class TooManyRows(InvalidInputs):
+    """A search needs more rows than it may calculate."""
+
+
+def searched(task: Task, search: Search, stored: tuple[Pieces, ...]) -> Slice:
+    """Repeat a search as far as its answers are stored, and go on for one slice.
+
+    Raises
+    ------
+    InvalidInputs
+        If no row has results, or the search needs more rows than it may calculate.
+    """
+    ready = prepared(task)
+    problem = _problem(ready, search)
+    book = _Book(ready, task, search, problem, stored)
+    try:
+        outcome = _outcome(ready, problem, search, book)
+    except Paused:
+        return Slice(book.chunk(), None)
+    return Slice(book.chunk(), outcome)
+
+
+def _problem(ready: Prepared, search: Search) -> Problem:
+    body = ready.asked.body
+    objectives = [Objective(name) for name in body.minimise]
+    objectives += [Objective(name, "maximise") for name in body.maximise]
+    held = tuple(Held(name, criterion_of(ready.net, name).sign) for name in search.required)
+    return Problem(ready.asked.space, tuple(objectives), held)
+
+
+def _outcome(ready: Prepared, problem: Problem, search: Search, book: _Book) -> Outcome:
+    seed, explore, confirm = ready.asked.body.seed, book.answer(EXPLORE), book.answer(CONFIRM)
+    if len(problem.objectives) > 1:
+        front = pareto_front(problem, explore, confirm, seed=seed, journal=book.journal(EXPLORE))
+        first = Promised(EXPLORE, front.rounds[0], front.explored, front.seconds)
+        places = tuple(place.at for place in front.places)
+        return Outcome(front.state, places, *_compared(problem, search, book, seed, first, ()))
+    optimum = optimise(problem, explore, confirm, seed=seed)
+    first = Promised(EXPLORE, optimum.rounds[:1], optimum.explored, optimum.seconds)
+    notes = tuple(f"{v.criterion} is not met by {v.relative:.2%} of its limit" for v in optimum.violations)
+    return Outcome(optimum.state, (optimum.best.at,), *_compared(problem, search, book, seed, first, notes))
+
+
+def _compared(
+    problem: Problem, search: Search, book: _Book, seed: int, first: Promised, notes: tuple[str, ...]
+) -> tuple[tuple[Promised, ...], tuple[str, ...]]:
+    """The promise of each level, and the notes with one more if there are not rows enough for all levels."""
+    others: list[Promised] = []
+    try:
+        for level in range(CONFIRM + 1, len(search.levels)):
+            others += _alone(problem, book, level, seed)
+    except TooManyRows:
+        detail = f"not every level is compared: a search takes at most {search.most} rows"
+        notes = (*notes, detail)
+    return (first, *others), notes
+
+
+def _alone(problem: Problem, book: _Book, level: int, seed: int) -> list[Promised]:
+    """Return the result of one level by itself, confirmed once; nothing of a level that lacks a result."""
+    answer, confirm = book.answer(level), book.answer(CONFIRM)
+    try:
+        if len(problem.objectives) > 1:
+            front = pareto_front(
+                problem, answer, confirm, seed=seed, effort=ALONE, journal=book.journal(level)
+            )
+            return [Promised(level, front.rounds[0], front.explored, front.seconds)]
+        optimum = optimise(problem, answer, confirm, seed=seed, rounds=1)
+    except AllRefused:
+        return []
+    return [Promised(level, optimum.rounds[:1], optimum.explored, optimum.seconds)]
+
+
+@dataclass(frozen=True)
+class _Call:
+    """One call of a search: its level, its rows, and its results, as a chunk keeps it."""
+
+    level: int
+    arrays: Mapping[str, AnyArray]
+    reasons: list[list[str]]
+    seconds: float
+
+    @property
+    def count(self) -> int:
+        return len(self.arrays["reason"])
+
+
+@dataclass(frozen=True)
+class _Journal:
+    """The stages of one level, among those of all."""
+
+    level: int
+    stages: dict[str, Stage]
+    changed: set[str]
+
+    def stored(self, name: str) -> Stage | None:
+        """Return the stage of a name, as it was kept last."""
+        return self.stages.get(f"{self.level}: {name}")
+
+    def keep(self, name: str, stage: Stage) -> None:
+        """Keep a stage as far as it has come; the next chunk has it."""
+        self.stages[f"{self.level}: {name}"] = stage
+        self.changed.add(f"{self.level}: {name}")
+
+
+class _Book:
+    """All answers of a search, by level and by the bytes of the rows; and its stages."""
+
+    def __init__(
+        self, ready: Prepared, task: Task, search: Search, problem: Problem, stored: Sequence[Pieces]
+    ) -> None:
+        self._ready, self._task, self._search, self._problem = ready, task, search, problem
+        self._levels: list[Levels] = [dict(pairs) for pairs in search.levels]
+        self._answers: dict[tuple[int, bytes], Columns] = {}
+        self._new: list[_Call] = []
+        self._rows, self._spent = 0, 0.0
+        self._stages, self._changed = dict[str, Stage](), set[str]()
+        for pieces in stored:
+            calls, stages = _read(pieces)
+            self._stages |= stages
+            for call in calls:
+                self._remember(call)
+
+    def journal(self, level: int) -> _Journal:
+        """Return the stages of the search at a level."""
+        return _Journal(level, self._stages, self._changed)
+
+    def answer(self, level: int) -> Answer:
+        """Return the results at a level, from what is stored or by calculating."""
+        same = next(n for n, levels in enumerate(self._levels) if levels == self._levels[level])
+
+        def answered(rows: Array) -> Columns:
+            rows = np.ascontiguousarray(rows)
+            key = same, rows.tobytes()
+            if key not in self._answers:
+                self._remember(self._calculated(same, rows))
+            return self._answers[key]
+
+        return answered
+
+    def chunk(self) -> Chunk | None:
+        """Return the new answers as a chunk; None if there are none."""
+        if not self._new:
+            return None
+        names = sorted({name for call in self._new for name in call.arrays})
+        arrays = {name: np.concatenate([_array(call, name) for call in self._new]) for name in names}
+        reasons, shift = list[list[str]](), list[AnyArray]()
+        for call in self._new:
+            which = call.arrays["reason"].astype(np.int32)
+            shift.append(np.where(which >= 0, which + len(reasons), which).astype(np.int32))
+            reasons += call.reasons
+        arrays["reason"] = np.concatenate(shift)
+        calls = [[call.level, call.count, call.seconds] for call in self._new]
+        about: JsonObject = {"reasons": reasons, "levels": self._levels, "calls": calls}
+        if self._changed:
+            about["stages"] = {name: _plain(self._stages[name]) for name in sorted(self._changed)}
+        refused: dict[str, int] = {}
+        for which in arrays["reason"][arrays["reason"] >= 0].tolist():
+            name = ": ".join(reasons[which][:2])
+            refused[name] = refused.get(name, 0) + 1
+        return Chunk(packed(arrays, about), len(arrays["reason"]), refused)
+
+    def _calculated(self, level: int, rows: Array) -> _Call:
+        """Return new rows at a level.
+
+        Raises
+        ------
+        Paused
+            The slice has calculated enough.
+        """
+        if self._spent >= SLICE_SECONDS:
+            raise Paused
+        if self._rows + len(rows) > self._search.most:
+            detail = (
+                f"the search needs more than {self._search.most} rows; narrow the bounds, or raise `points`"
+            )
+            raise TooManyRows([Fault("points", "too_many_rows", detail)])
+        net, asked = self._ready.net, self._ready.asked
+        levels = self._levels[level]
+        criteria = self._search.criteria  # by tables: what was measured would differ from run to run
+        seconds = net.seconds(len(rows), asked.wanted, levels, criteria=criteria, by_tables=True)
+        self._spent += seconds + CALL_SECONDS
+        table = called(self._ready, rows, levels, criteria, judge=True)
+        arrays = {**columns_of(self._task.varied, rows), **results_of(table, asked.wanted)}
+        for name in self._search.required:
+            arrays |= judged_of(net, name, table)
+        reasons, arrays["reason"] = reasons_of(table)
+        arrays["level"] = np.full(len(rows), level, dtype=np.int16)
+        call = _Call(level, arrays, reasons, seconds)
+        self._new.append(call)
+        return call
+
+    def _remember(self, call: _Call) -> None:
+        rows = np.stack([call.arrays[f"place/{name}"] for name in self._task.varied], axis=-1)
+        self._answers[call.level, np.ascontiguousarray(rows).tobytes()] = self._columns(call)
+        self._rows += call.count
+
+    def _columns(self, call: _Call) -> Columns:
+        def side(name: str) -> Array:
+            parts = [call.arrays[f"{JUDGED}{one.name}/{name}"] for one in self._problem.held]
+            return np.stack(parts, axis=-1) if parts else np.empty((call.count, 0))
+
+        objectives = [call.arrays[f"{OUTPUT}{one.name}"] for one in self._problem.objectives]
+        which = call.arrays["reason"].tolist()
+        reasons = {n: call.reasons[place][2] for n, place in enumerate(which) if place >= 0}
+        value, limit, low, high = (side(name) for name in SIDES)
+        return Columns(np.stack(objectives, axis=-1), value, limit, low, high, reasons, call.seconds)
+
+
+def _array(call: _Call, name: str) -> AnyArray:
+    """Return an array of a call; NaN where it has none, such as an error that its level does not state."""
+    return call.arrays[name] if name in call.arrays else np.full(call.count, np.nan)
+
+
+def _read(pieces: Pieces) -> tuple[list[_Call], dict[str, Stage]]:
+    """Return the calls whose answers a chunk holds, in their order, and the stages at its end."""
+    with Archive(pieces.joined()) as archive:
+        arrays, about = {name: archive[name] for name in archive.names}, archive.about()
+    calls, start = [], 0
+    for level, count, seconds in about["calls"]:
+        part = {name: array[start : start + count] for name, array in arrays.items()}
+        calls.append(_Call(level, part, about["reasons"], seconds))
+        start += count
+    return calls, {name: _stage(plain) for name, plain in about.get("stages", {}).items()}
+
+
+def _plain(stage: Stage) -> JsonObject:
+    """Return a stage as JSON, whose numbers keep all their digits."""
+    return {**vars(stage), "arrays": [array.tolist() for array in stage.arrays]}
+
+
+def _stage(plain: JsonObject) -> Stage:
+    arrays = tuple(np.array(array, dtype=np.float64) for array in plain["arrays"])
+    return Stage(plain["done"], arrays, plain["rows"], plain["seconds"])

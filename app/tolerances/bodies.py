@@ -1,0 +1,63 @@
+"""Body of the call of a tolerance analysis."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import BeforeValidator, ConfigDict, Field, StringConstraints
+
+from app.designs.document import CriterionName, Word
+from app.schemas.bounds import Bounded, at_most
+from app.tolerances.analysis import LEAST_POINTS, MOST_OUTPUTS, MOST_POINTS
+from app.tolerances.question import Question
+
+NAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63}){0,2}$"
+Named = Annotated[str, StringConstraints(pattern=NAME)]
+
+
+def _whole(raw: object) -> object:
+    """Return a number without a fraction as an integer, as JSON Schema takes it: 1024.0 is one."""
+    return int(raw) if isinstance(raw, float) and raw.is_integer() else raw
+
+
+Whole = BeforeValidator(_whole)
+
+
+class ToleranceIn(Bounded):
+    """The outputs and criteria to analyse, and how many products to sample."""
+
+    model_config = ConfigDict(
+        strict=True,
+        extra="forbid",
+        json_schema_extra={
+            "examples": [{"outputs": ["film.minimum_film_thickness"], "criteria": ["film.film"], "seed": 1}]
+        },
+    )
+
+    outputs: Annotated[list[Named], Field(min_length=1, max_length=MOST_OUTPUTS)] | None = Field(
+        None, description="outputs of steps, and parameters; those that criteria judge, if not given"
+    )
+    criteria: Annotated[list[CriterionName], Field(max_length=200)] | None = Field(
+        None, description="by name; all that are not waived, if not given"
+    )
+    points: Annotated[int, Field(ge=LEAST_POINTS, le=MOST_POINTS), Whole] | None = Field(
+        None,
+        description="products that are sampled, a power of two; if not given, 16384, and up to 131072 where "
+        "the standard error of a yield would be above 0.0005",
+    )
+    seed: Annotated[int, Field(ge=0, lt=2**31), Whole] = Field(
+        1, description="the same seed gives the same answer"
+    )
+    levels: Annotated[dict[Word, Word], Field(max_length=100), at_most(100)] = Field(
+        {}, description="levels of fidelity by step, instead of those of the design"
+    )
+
+    def question(self) -> Question:
+        """Return the same as a process takes it."""
+        return Question(
+            None if self.outputs is None else tuple(self.outputs),
+            None if self.criteria is None else tuple(self.criteria),
+            self.points,
+            self.seed,
+            tuple(sorted(self.levels.items())),
+        )

@@ -1,0 +1,144 @@
+"""Fork servers that the server forks from itself before it has threads: they need not import what it has.
+
+They share the pages of all that was imported. Each is taken by the first who asks for one with the same
+modules; whoever comes later gets a new process, which imports them. If one dies, such a process replaces it.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from typing import NoReturn
+
+from app.workers.processes import ForkServer
+from app.workers.threads import ONE_THREAD
+
+_GLANCE = 0.01  # between two looks whether a process has ended [s]
+_LONGEST_NAME = 15  # of a process, in Linux [characters]
+_started: dict[tuple[str, ...], ForkServer] = {}
+
+
+def fork(preload: Sequence[str], prepare: Callable[[], object] | None = None) -> None:
+    """Fork a fork server for these modules; it ends with this process, whether or not it is taken.
+
+    Where this process has threads already, and elsewhere than on Linux, nothing happens: who asks gets a new
+    process.
+
+    Parameters
+    ----------
+    preload
+        The modules, as `fork_server` is asked for them.
+    prepare
+        What the new process calls before it imports what is missing.
+    """
+    if not _may_fork():
+        return
+
+    def begin(modules: Sequence[str], channel: int, lifeline: int, environment: Mapping[str, str]) -> Forked:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        if pid := os.fork():
+            return Forked(pid)
+        _become_fork_server(modules, channel, lifeline, environment, prepare)
+
+    _started[tuple(preload)] = ForkServer(preload, ONE_THREAD, begin)
+
+
+def is_forked(preload: Sequence[str]) -> bool:
+    """Return whether a fork server was forked ahead for these modules, and waits for who takes it."""
+    return tuple(preload) in _started
+
+
+def fork_server(preload: Sequence[str], environment: Mapping[str, str]) -> ForkServer:
+    """Return the fork server that was started ahead for these modules, else a new one."""
+    return _started.pop(tuple(preload), None) or ForkServer(preload, environment)
+
+
+def close() -> None:
+    """End those that nobody has taken."""
+    while _started:
+        _started.popitem()[1].close()
+
+
+class Forked:
+    """A child of this process; behaves as a `subprocess.Popen`."""
+
+    def __init__(self, pid: int) -> None:
+        self.pid = pid
+        self._code: int | None = None
+
+    def poll(self) -> int | None:
+        """Return the exit code; None while the process lives."""
+        if self._code is None:
+            try:
+                ended, status = os.waitpid(self.pid, os.WNOHANG)
+            except ChildProcessError:  # somebody else has asked: its code is lost, as with `Popen`
+                self._code = 0
+            else:
+                self._code = os.waitstatus_to_exitcode(status) if ended else None
+        return self._code
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Return the exit code once the process has ended.
+
+        Raises
+        ------
+        subprocess.TimeoutExpired
+            If it lives longer [s].
+        """
+        end = time.monotonic() + (float("inf") if timeout is None else timeout)
+        while (code := self.poll()) is None:
+            if time.monotonic() >= end:
+                raise subprocess.TimeoutExpired("fork server", timeout or 0.0)
+            time.sleep(_GLANCE)
+        return code
+
+    def kill(self) -> None:
+        """Kill the process, unless it has ended."""
+        if self.poll() is None:
+            os.kill(self.pid, 9)
+
+
+def _may_fork() -> bool:
+    """Return whether this process has one thread: a fork lacks the others, and waits for what they hold."""
+    return sys.platform == "linux" and len(os.listdir("/proc/self/task")) == 1
+
+
+def _become_fork_server(
+    modules: Sequence[str],
+    channel: int,
+    lifeline: int,
+    environment: Mapping[str, str],
+    prepare: Callable[[], object] | None,
+) -> NoReturn:
+    """Turn a fork of the server into a fork server, with what a new process would have."""
+    try:
+        from app.workers.forkserver import main
+
+        os.setpgid(0, 0)
+        _keep_only(channel, lifeline)
+        with open("/proc/self/comm", "w", encoding="ascii") as comm:  # its command line is the server's
+            comm.write(modules[0][:_LONGEST_NAME])
+        for name, text in environment.items():
+            os.environ.setdefault(name, text)
+        main(channel, lifeline, modules, prepare)
+    finally:  # whatever happens, it does not go on as a second server
+        os._exit(1)
+
+
+def _keep_only(*descriptors: int) -> None:
+    """Close what the server has open, and read from nowhere.
+
+    A copy of the end of another fork server's lifeline would keep that one alive when the server has gone.
+    """
+    for descriptor in map(int, os.listdir("/proc/self/fd")):
+        if descriptor > 2 and descriptor not in descriptors:
+            with suppress(OSError):
+                os.close(descriptor)
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.close(nothing)

@@ -1,0 +1,259 @@
+"""The server's side of job processes: the forkserver, and one process for one job."""
+
+import json
+import os
+import select
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from functools import cached_property
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Protocol
+
+from app.workers.base import Limits
+from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed
+from app.workers.lifeline import Lifeline
+from app.workers.messages import Outcome, Progress, Raised, Request, Returned, pack, receive, send
+from templates.core.progress import Reporter
+
+_BOOT = (
+    "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "
+    "from app.workers.forkserver import main; main(int(sys.argv[2]), int(sys.argv[3]), sys.argv[4:])"
+)
+_GLANCE = 0.05  # how often a waiting thread looks whether its job was cancelled [s]
+_PATIENCE = 1.0  # how long the forkserver may take to end [s]
+
+
+class JobProcess:
+    """A process that waits for one job, runs it, and is gone, unless it is `reusable` after that."""
+
+    def __init__(self, connection: Connection, status: Connection) -> None:
+        self._connection = connection
+        self._status = status
+        self.reusable = False
+
+    def start(self, request: Request) -> None:
+        """Send the process its job.
+
+        Raises
+        ------
+        OSError
+            The process died while it was waiting.
+        """
+        self.reusable = False
+        send(self._connection, pack(request))
+
+    def finish(
+        self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event | None
+    ) -> Outcome:
+        """Wait for the end of the job; what it raises itself is an outcome.
+
+        Raises
+        ------
+        DeadlineExceeded, JobCancelled, JobCrashed
+            The process was ended, or ended by itself.
+        """
+        cancelled = cancelled or threading.Event()
+        try:
+            self._await_birth(cancelled)
+            return self._converse(limits, on_progress, cancelled)
+        finally:
+            if not self.reusable:
+                self.kill()
+
+    def kill(self) -> None:
+        """End the process, and those which it has started; one not born yet ends by itself when it is."""
+        if self._status.closed:
+            return
+        with suppress(ProcessLookupError, JobCrashed):
+            if self.is_born():
+                os.killpg(self._pid, signal.SIGKILL)
+        self._connection.close()
+        self._status.close()
+
+    def _await_birth(self, cancelled: threading.Event) -> None:
+        """Wait for the process: its clock starts then, not while the forkserver is importing, or hangs."""
+        while not ("_pid" in vars(self) or self._status.poll(_GLANCE)):
+            if cancelled.is_set():
+                raise JobCancelled
+        _ = self._pid
+
+    def is_born(self) -> bool:
+        """Return whether the forkserver has forked the process.
+
+        Reads nothing, so its owner may use it meanwhile.
+        """
+        try:
+            return "_pid" in self.__dict__ or self._status.poll()
+        except OSError:  # it has got a job and is gone
+            return False
+
+    @cached_property
+    def _pid(self) -> int:
+        try:
+            return int(self._status.recv())
+        except EOFError:
+            raise JobCrashed(None) from None
+
+    def _converse(self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event) -> Outcome:
+        end = time.monotonic() + limits.deadline
+        messages = select.poll()  # one for all: `Connection.poll` makes a selector each time
+        messages.register(self._connection.fileno(), select.POLLIN)
+        while True:
+            _await_message(messages, end, limits, cancelled)
+            match self._receive():
+                case Progress(fraction, text):
+                    if on_progress is not None:
+                        on_progress(fraction, text)
+                case Returned() | Raised() as outcome:
+                    self.reusable = outcome.reusable
+                    return outcome
+
+    def _receive(self) -> object:
+        try:
+            return receive(self._connection).unpacked()
+        except (EOFError, ConnectionResetError):
+            raise JobCrashed(self._exit_code()) from None
+
+    def _exit_code(self) -> int | None:
+        try:
+            return int(self._status.recv())
+        except EOFError:
+            return None
+
+
+def _await_message(messages: select.poll, end: float, limits: Limits, cancelled: threading.Event) -> None:
+    """Wait for a message or the end of the process."""
+    while True:
+        if cancelled.is_set():
+            raise JobCancelled
+        left = end - time.monotonic()
+        if left <= 0:
+            raise DeadlineExceeded(limits.deadline)
+        if messages.poll(1e3 * min(left, _GLANCE)):
+            return
+
+
+class Process(Protocol):
+    """A child of the server, as `subprocess.Popen` has it."""
+
+    @property
+    def pid(self) -> int:
+        """Return its process id."""
+
+    def poll(self) -> int | None:
+        """Return the exit code; None while it lives."""
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Return the exit code, or raise `subprocess.TimeoutExpired`."""
+
+    def kill(self) -> None:
+        """Kill it."""
+
+
+Launch = Callable[[Sequence[str], int, int, Mapping[str, str]], Process]
+"""Starts the process of a fork server: modules, channel, lifeline, environment."""
+
+
+def launch(preload: Sequence[str], channel: int, lifeline: int, environment: Mapping[str, str]) -> Process:
+    """Start the process of a fork server, which takes what it is asked from the channel.
+
+    What the operator has set in the server's own environment prevails over `environment`.
+    """
+    return subprocess.Popen(
+        [sys.executable, "-c", _BOOT, json.dumps(sys.path), str(channel), str(lifeline), *preload],
+        pass_fds=[channel, lifeline],
+        stdin=subprocess.DEVNULL,
+        env={**environment, **os.environ},
+        # Ctrl-C in a terminal is for the server, which ends its jobs itself. In a session of its own,
+        # the niceness of the processes would count for nothing: see app/workers/priority.py.
+        process_group=0,
+    )
+
+
+class ForkServer:
+    """Starts the forkserver, starts it again if it has died, and asks it for processes.
+
+    Its `environment` holds defaults: what the operator has set in the server's own environment prevails.
+    The first process begins as `begin` says, every other one by `launch`.
+    """
+
+    def __init__(
+        self,
+        preload: Sequence[str],
+        environment: Mapping[str, str] | None = None,
+        begin: Launch | None = None,
+    ) -> None:
+        self._preload = preload
+        self._environment = environment or {}
+        self._lock = threading.Lock()
+        self._closed = False
+        self._start(begin or launch)
+
+    def fork(self) -> JobProcess:
+        """Ask for a process; it may come to life later, and takes its job even before.
+
+        Raises
+        ------
+        JobCancelled
+            The forkserver has been closed.
+        """
+        connection, theirs = Pipe()
+        status, exits = Pipe(duplex=False)
+        with theirs, exits:
+            self._send([theirs.fileno(), exits.fileno()])
+        return JobProcess(connection, status)
+
+    def is_alive(self) -> bool:
+        """Return whether the forkserver runs; neither ended nor stopped by a signal."""
+        return self._process.poll() is None and not self.is_stopped()
+
+    def is_stopped(self) -> bool:
+        """Return whether a signal has stopped the forkserver: it lives and answers nobody. Linux only."""
+        try:
+            state = Path(f"/proc/{self._process.pid}/stat").read_text().rpartition(")")[2].split()[0]
+        except OSError:
+            return False
+        return state in "Tt"
+
+    def close(self) -> None:
+        """End the forkserver and all its processes, whatever they are doing."""
+        self._closed = True
+        self._lifeline.cut()  # before the lock, which who waits for a stopped forkserver may hold
+        with self._lock:
+            self._end()
+
+    def _send(self, descriptors: list[int]) -> None:
+        with self._lock:
+            try:
+                socket.send_fds(self._channel, [b"."], descriptors)
+            except OSError:  # it has died, or has been closed
+                if self._closed:
+                    raise JobCancelled from None
+                self._end()
+                self._start(launch)
+                socket.send_fds(self._channel, [b"."], descriptors)
+
+    def _start(self, begin: Launch) -> None:
+        self._lifeline = Lifeline()
+        self._channel, theirs = socket.socketpair()
+        with theirs:
+            self._process = begin(self._preload, theirs.fileno(), self._lifeline.reader, self._environment)
+        self._lifeline.close_reader()
+
+    def _end(self) -> None:
+        self._lifeline.cut()
+        self._channel.close()
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(_PATIENCE)
+            return
+        self._process.kill()  # where a lifeline kills nobody, it may still be importing
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(_PATIENCE)

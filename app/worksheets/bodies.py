@@ -1,0 +1,121 @@
+"""Bodies of the calls of worksheets."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator, ConfigDict, Field
+from pydantic.config import JsonValue
+
+from app.schemas.bounds import Bounded
+
+LONGEST_TEXT = 65_536  # bytes in UTF-8 of a worksheet
+MOST_CHECKED = 2**20  # characters that `check` takes: it says of a text that is too long how long it may be
+ID = r"^[a-z][a-z0-9_]*$"
+NAME = r"^[^\x00-\x1f\x7f]*[^\x00-\x20\x7f][^\x00-\x1f\x7f]*$"
+
+
+def storable(text: str) -> str:
+    """Return a text that the database can keep.
+
+    Raises
+    ------
+    ValueError
+        If it is too long, or has a character that is not text.
+    """
+    if (size := len(text.encode("utf-8"))) > LONGEST_TEXT:
+        raise ValueError(f"a worksheet has at most {LONGEST_TEXT} bytes in UTF-8, not {size}")
+    if (place := text.find("\0")) >= 0:
+        line = text.count("\n", 0, place) + 1
+        raise ValueError(f"a worksheet must not contain the character NUL; remove it from line {line}")
+    return text
+
+
+def legible(name: str) -> str:
+    """Return a name of a person that can be read.
+
+    Raises
+    ------
+    ValueError
+        If it has no letter and no digit, as a name of blanks that nobody sees.
+    """
+    if not any(map(str.isalnum, name)):
+        raise ValueError("a name needs a letter or a digit, like A. Weber")
+    return name
+
+
+Text = Annotated[str, AfterValidator(storable), Field(max_length=LONGEST_TEXT, description="the worksheet")]
+Person = Annotated[
+    str, AfterValidator(legible), Field(min_length=1, max_length=100, pattern=NAME, examples=["A. Weber"])
+]
+
+
+EXAMPLE = """# Bush duty
+given F [kN] "radial load" (>= 0; example 25 kN)
+given D [mm] "bearing diameter" (> 0; example 48 mm)
+p [MPa] = F / D**2 "projected pressure"
+test "by hand" with F = 25 kN gives p = 10.85 MPa within 0.1 %
+"""
+EDITED = EXAMPLE.replace("> 0;", "> 0; <= 2 m;")
+
+
+def _examples(**example: JsonValue) -> ConfigDict:
+    """Return the configuration of a body with an example that can be sent as it is."""
+    return ConfigDict(extra="forbid", strict=True, json_schema_extra={"examples": [{**example}]})
+
+
+class Asked(Bounded):
+    """The body of a request about worksheets."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+
+class SheetCheckIn(Asked):
+    """A text that is to be checked."""
+
+    model_config = _examples(text=EXAMPLE)
+
+    text: str = Field(max_length=MOST_CHECKED, description="the worksheet; at most 64 KiB make one")
+    id: str | None = Field(None, max_length=64, pattern=ID, description="under which it would be described")
+
+
+class SheetIn(Asked):
+    """A new worksheet."""
+
+    model_config = _examples(id="bush_duty", text=EXAMPLE, author="A. Weber")
+
+    id: str = Field(
+        max_length=64,
+        pattern=ID,
+        description="small letters, digits and _; no template, model or other worksheet may have it",
+        examples=["bush_duty"],
+    )
+    text: Text
+    author: Person | None = Field(None, description="who wrote it; nobody proves the name yet")
+
+
+class SheetPatch(Asked):
+    """A change of a worksheet: what is not named stays."""
+
+    model_config = _examples(text=EDITED)
+
+    text: Text | None = None
+    author: Person | None = None
+
+
+class ReviewIn(Asked):
+    """A review of one text."""
+
+    model_config = _examples(reviewer="B. Klein", digest="0" * 64)
+
+    reviewer: Person = Field(description="another name than the author's; nobody proves it yet")
+    digest: str = Field(max_length=64, pattern=r"^[0-9a-f]{64}$", description="of the text that was reviewed")
+
+
+class WithdrawIn(Asked):
+    """Why a released version shall not be used any longer."""
+
+    model_config = _examples(reason="the clearance is too small")
+
+    reason: str = Field(min_length=1, max_length=1000, pattern=NAME)
+    version: int | None = Field(None, ge=1, le=10**6, description="the newest released one, if none is named")

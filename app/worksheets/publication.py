@@ -1,0 +1,140 @@
+"""Worksheets among the templates: read again from the database, compared with their releases."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Sequence
+from typing import Literal
+
+from app.calculations.sources import SheetSource, class_of
+from app.catalogue.catalogues import Catalogues
+from app.catalogue.sheets import Key, ReleasedSheet, Sheets
+from app.storage.database import Database
+from app.storage.errors import NotFound
+from app.storage.tables import WorksheetVersionRow as Row
+from app.worksheets import repository
+from app.worksheets.examination import as_released
+from app.worksheets.repository import RELEASED
+from templates.core.errors import TemplateError, UnreleasedTemplate
+from templates.core.language.template import Template
+
+logger = logging.getLogger(__name__)
+
+EVERY = 1.0  # how often a server looks what another one on its database has released [s]
+AT_ONCE = 15.0  # how long a look reads releases; those that are left are read beside the service [s]
+WAITING = "its release is being read again, as at every start of the service; ask again in some seconds"
+
+
+class Published:
+    """Keeps the worksheets among the templates as the database has them.
+
+    A released version is read from its text once in every server. If its digest or its golden results are not
+    those of the release, it is broken: nothing is calculated by it, nor by one that waits to be read.
+    """
+
+    def __init__(
+        self, database: Database, catalogues: Catalogues, *, is_shared: bool, at_once: float = AT_ONCE
+    ) -> None:
+        self.database, self.catalogues, self._at_once = database, catalogues, at_once
+        self._looking = threading.Lock()
+        self._states: tuple[repository.State, ...] = ()
+        self._read: dict[Key, tuple[str, ReleasedSheet | str]] = {}  # by edit
+        self._waiting: set[Key] = set()
+        self._is_shared, self._ending = is_shared, threading.Event()
+        self._thread = threading.Thread(target=self._watch, name="worksheets", daemon=True)
+        self.look()
+
+    @property
+    def broken(self) -> dict[Key, str]:
+        """Return why released versions are broken."""
+        return {key: read for key, (_, read) in self._read.items() if isinstance(read, str)}
+
+    def start(self) -> None:
+        """Read what is left, and look what other servers release, if there may be others on this database."""
+        if self._is_shared or self._waiting:
+            self._thread.start()
+
+    def stop(self) -> None:
+        """Look no more."""
+        self._ending.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def look(self) -> None:
+        """Take notice of what has changed in the database, for as long as a look may take."""
+        with self._looking:
+            with self.database.read() as session:
+                states = repository.states(session)
+                if states == self._states and not self._waiting:
+                    return
+                released = {(state.id, state.number): state for state in states if state.state in RELEASED}
+                new = [key for key, state in released.items() if self._edit(key) != state.edit]
+                rows = [repository.version(session, *key) for key in new]
+            unchanged = {key: read for key, read in self._read.items() if key in released.keys() - new}
+            self._read = {**unchanged, **_read_again(rows, self._at_once)}
+            self._states, self._waiting = states, released.keys() - self._read.keys()
+            self.catalogues.publish(self._sheets(), self.draft)
+
+    def draft(self, id: str, version: int) -> type[Template]:
+        """Return the draft of a worksheet as it is now.
+
+        Raises
+        ------
+        UnreleasedTemplate
+            If it has faults, or has been deleted.
+        """
+        try:
+            with self.database.read() as session:
+                row = repository.version(session, id, version)
+            return class_of(SheetSource(id, version, row.text, None))  # `loaded` keeps a thousand texts
+        except NotFound as error:
+            raise UnreleasedTemplate(id, str(error)) from None
+        except TemplateError as error:
+            raise UnreleasedTemplate(id, f"the draft of {id} version {version} has faults: {error}") from None
+
+    def _edit(self, key: Key) -> str | None:
+        return self._read[key][0] if key in self._read else None
+
+    def _sheets(self) -> Sheets:
+        sound = {key: read for key, (_, read) in self._read.items() if isinstance(read, ReleasedSheet)}
+        broken = {key: f"its worksheet is broken: {reason}" for key, reason in self.broken.items()}
+        broken |= dict.fromkeys(self._waiting, WAITING)
+        drafts = (state for state in self._states if state.state not in RELEASED)
+        return Sheets(sound, broken, {(one.id, one.number): _remedy(one) for one in drafts})
+
+    def _watch(self) -> None:
+        while not self._ending.wait(EVERY):
+            if not (self._is_shared or self._waiting):
+                return
+            try:
+                self.look()
+            except Exception:
+                logger.exception("The worksheets could not be looked at")
+
+
+def _remedy(state: repository.State) -> str:
+    place = f"POST /api/v1/worksheets/{state.id}"
+    return f"it is a {state.state} worksheet; release it first, by {place}/test, …/review and …/release"
+
+
+def _read_again(rows: Sequence[Row], seconds: float) -> dict[Key, tuple[str, ReleasedSheet | str]]:
+    """Return releases with the edit that was read, as many as the time [s] allows, one at least."""
+    read: dict[Key, tuple[str, ReleasedSheet | str]] = {}
+    begun = time.monotonic()
+    for row in rows:
+        read[row.id, row.number] = row.edit, _verified(row)
+        if time.monotonic() > begun + seconds:
+            break
+    return read
+
+
+def _verified(row: Row) -> ReleasedSheet | str:
+    """Return a released version, or why it is broken."""
+    source = SheetSource(row.id, row.number, row.text, row.withdrawn)
+    if isinstance(released := as_released(source, row.digest, row.record), str):
+        logger.error("Worksheet %s version %d is broken: %s", row.id, row.number, released)
+        return released
+    state: Literal["released", "withdrawn"] = "withdrawn" if row.withdrawn else "released"
+    return ReleasedSheet(released, state, row.author, row.reviewer, row.reviewer_principal is not None)

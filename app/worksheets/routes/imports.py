@@ -1,0 +1,67 @@
+"""`/worksheets/import`: sheets of Mathcad as drafts, and what became of their regions."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Query, Request, Response
+
+from app.api.dependencies import TheImports, TheOnce, TheStore, TheThreads, TheWorksheets
+from app.api.stored import UNCHANGED, StoredFile
+from app.api.waiting import LATER, accepted
+from app.http.strict_requests import SHEET_TYPES, StrictRoute, require_sheet
+from app.schemas.problems import refusals
+from app.storage.errors import NotFound
+from app.worksheets.bodies import ID, NAME
+from app.worksheets.importing.views import imported
+from app.worksheets.routes.worksheets import Id
+from app.worksheets.schemas.imports import SheetImport
+
+router = APIRouter(prefix="/api/v1/worksheets", tags=["worksheets"], route_class=StrictRoute)
+
+BINARY = {"schema": {"type": "string", "format": "binary"}}
+BODY = {"requestBody": {"required": True, "content": dict.fromkeys(sorted(SHEET_TYPES), BINARY)}}
+NewId = Annotated[
+    str, Query(max_length=64, pattern=ID, description="of the worksheet", examples=["bush_duty"])
+]
+FileName = Annotated[str, Query(max_length=200, pattern=NAME, description="how the file is called")]
+
+
+@router.post(
+    "/import",
+    status_code=202,
+    responses={**LATER, **refusals(409, 429)},
+    openapi_extra=BODY,
+    dependencies=[Depends(require_sheet)],
+)
+async def import_worksheet(
+    request: Request,
+    imports: TheImports,
+    threads: TheThreads,
+    once: TheOnce,
+    id: NewId,
+    file: FileName = "sheet.mcdx",
+) -> Response:
+    """A sheet of Mathcad Prime (.mcdx) or Mathcad 11 to 15 (.xmcd) as a draft; the body is the file itself.
+
+    The job answers with the worksheet once it has ended. Every region of the sheet is accounted for: see
+    `GET /worksheets/{id}/import`.
+    """
+    body = await request.body()
+    return accepted(await threads.run(imports.begin, body, id, file, once))
+
+
+@router.get("/{id}/import", responses=refusals(404))
+def read_import(id: Id, worksheets: TheWorksheets) -> SheetImport:
+    """The result of the import for every region of the original sheet."""
+    return imported(worksheets.newest(id))
+
+
+@router.get("/{id}/import/original", response_class=Response, responses={**UNCHANGED, **refusals(404, 503)})
+def read_original(id: Id, worksheets: TheWorksheets, store: TheStore) -> Response:
+    """The file that a worksheet was imported from, as it was sent."""
+    row = worksheets.newest(id)
+    if row.import_sha256 is None or row.imported is None:
+        raise NotFound(f"worksheet {id} was typed, not imported")
+    headers = {"ETag": f'"{row.import_sha256}"'}
+    return StoredFile(store, row.import_sha256, "application/octet-stream", headers, row.imported["file"])

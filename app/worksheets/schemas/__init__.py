@@ -1,0 +1,1 @@
+"""Answers of the interface about worksheets and imports."""
