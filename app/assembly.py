@@ -193,7 +193,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
 def data_checks(
     database: Database, store: Artifacts, folder: DataFolder, settings: Settings
 ) -> dict[str, readiness.Check]:
-    """The conditions on the data under which the service is ready."""
+    """Return the conditions on the data under which the service is ready."""
     checks: dict[str, readiness.Check] = {
         "database": readiness.Writing(database),
         "space": readiness.Space(folder.path, settings.minimum_free_mb),
@@ -202,7 +202,7 @@ def data_checks(
 
 
 def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:
-    """The catalogues. A process of the worker checks every file of a team before the server loads it.
+    """Return the catalogues. A process of the worker checks every file of a team before the server loads it.
 
     At the start a light process checks those that do not name the kernel, so that nobody waits for it.
     """
@@ -217,7 +217,10 @@ def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:
 
 
 def published_worksheets(database: Database, catalogues: Catalogues, stack: ExitStack) -> Published:
-    """The released worksheets among the templates; a SQLite file has one server, which releases them all."""
+    """Return the released worksheets among the templates.
+
+    A SQLite file has one server, which releases them all.
+    """
     published = Published(database, catalogues, is_shared=database.is_shared)
     published.start()
     stack.callback(published.stop)

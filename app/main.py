@@ -126,7 +126,7 @@ Reports come before variants: `…/variants/report.pdf` is not a variant. Import
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
-    """The service, ready to be served; it opens its data folder when it starts."""
+    """Yield the service, ready to be served; it opens its data folder when it starts."""
     chosen = settings or Settings()
     traces = opened_traces(chosen)
 
@@ -177,7 +177,10 @@ def create_app(settings: Settings | None = None) -> FastAPI:
 
 
 def opened_traces(settings: Settings) -> Traces | None:
-    """The sender of traces, if the settings name a collector; its packages belong to the extra `traces`."""
+    """Return the sender of traces, if the settings name a collector.
+
+    Its packages belong to the extra `traces`.
+    """
     if settings.traces_url is None:
         return None
     from app.observation.traces import Traces

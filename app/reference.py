@@ -17,7 +17,10 @@ class Reference(NamedTuple):  # millions are hashed
 
     @classmethod
     def parse(cls, name: str) -> Reference:
-        """The reference that a name in a relation means; whether it exists is for the network to say."""
+        """Return the reference that a name in a relation means.
+
+        Whether it exists is for the network to say.
+        """
         block, *inside = name.split(".", 2)
         if not inside:
             return cls(block)
@@ -28,10 +31,13 @@ class Reference(NamedTuple):  # millions are hashed
 
     @property
     def member(self) -> str:
-        """The name within the block: `radial_load`, `torsion.stiffness`; empty for a parameter."""
+        """Return the name within the block: `radial_load`, `torsion.stiffness`; empty for a parameter."""
         return f"{self.analysis}.{self.output}" if self.analysis else self.output or ""
 
     @property
     def own_name(self) -> str:
-        """The name alone, without the block and the analysis that it belongs to: `stiffness`, `scale`."""
+        """Return the name alone, without the block and the analysis that it belongs to.
+
+        `stiffness`, `scale`.
+        """
         return self.block if self.output is None else self.output

@@ -29,9 +29,9 @@ from app.studies.methods.optimise import Optimum, optimise
 from app.studies.methods.points import Sobol
 from app.studies.methods.search import SCANNED
 from app.studies.methods.space import Interval, Space
-from app.studies.methods.trade import trade
 from cad.catalogue import models
 from templates.core.arrays import Array
+from tests.references.trade import trade
 
 RESULTS = Path("benchmarks/results/sizing.json")
 CATALOGUES = Catalogues(find_templates(()), models())

@@ -24,7 +24,7 @@ from templates.core.nearest import nearest
 
 if TYPE_CHECKING:
     from cad.fillets import Crank
-    from cad.placing import Place
+    from cad.placement import Place
     from cad.shaft import Shaft
 
 MOST_COMPONENTS = 30
@@ -44,7 +44,7 @@ class Component:
     name: str
     file: str  # SHA-256 of its STEP file
     origin: str  # in words: "model m8_bolt version 1"
-    datum: str = "origin"  # as `cad.placing` reads it
+    datum: str = "origin"  # as `cad.placement` reads it
     may_overlap: tuple[str, ...] = ()  # names of parts and components
     density: float = STEEL_DENSITY  # [kg/m³]
     material: str = ""
@@ -189,7 +189,7 @@ class AssemblyModel(ImportedModel):
         raise GeometryError("may_overlap", f"{wrong}. {meant}There are {there}")
 
     def _built(self) -> Iterator[Part]:
-        from cad.placing import frame_of
+        from cad.placement import frame_of
 
         drawn = vars(self).get(_DRAWN)
         if drawn is None:
@@ -219,7 +219,7 @@ class AssemblyModel(ImportedModel):
 
     def place(self, component: str) -> Place:
         """Where a fixed part stands on its datum."""
-        from cad.placing import Place
+        from cad.placement import Place
 
         numbers = dict[str, float]()
         for key in (*SHIFTS, *TURNS):

@@ -15,7 +15,7 @@ from cadquery import Shape, Vector
 
 from cad.errors import GeometryError
 from cad.surfaces import AXES, FaceSeen, faces_of
-from cad.toleranced import REPEATED, Carried
+from cad.tolerances import REPEATED, Carried
 
 _CLOSE = 1e-6  # [mm]: a face of this size is the parameter's
 ROUND = ("cylinders", "beside", "along", "askew", "spheres")

@@ -20,7 +20,7 @@ import numpy as np
 from cadquery import Edge, Face, Shape, Solid, Vector
 from cadquery.func import face, segment, wire
 
-from cad.turned import drilled_volume, outline, turned
+from cad.revolution import drilled_volume, outline, turned
 from templates.core.language.template import Array, units
 
 _MODELS = Path(__file__).with_name("models")

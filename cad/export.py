@@ -15,7 +15,7 @@ from cad.mesh import Mesh, closed_mesh, mesh
 from cad.picture import write_png
 from cad.step import Body, read_step
 from cad.stl import write_stl
-from cad.validated import with_validation
+from cad.validation import with_validation
 
 VALIDATED = "validated.step"
 """The kind of a STEP file that states volume, area and centroid of each part."""

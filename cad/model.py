@@ -2,7 +2,7 @@
 
 A model is one file, `<id>_v<version>.py`, with one class. Its parameters are declared as in any template.
 Beyond them it says four things, and only the first of them draws; a fifth, `toleranced`, says which faces
-carry which dimension, so that tolerances arrive in the STEP file (`cad.toleranced`):
+carry which dimension, so that tolerances arrive in the STEP file (`cad.tolerances`):
 
 - `build()`: its parts, each one solid with the volume that it must have, from a closed form that knows
   nothing of the kernel. OpenCASCADE may return a wrong solid that calls itself valid (a drilling 10 nm wider
@@ -32,7 +32,7 @@ from cad.errors import GeometryError
 from cad.fillets import Crank
 from cad.lists import LONGEST_TEXT, listed
 from cad.shaft import STEEL_DENSITY, Shaft
-from cad.toleranced import TolerancedTemplate
+from cad.tolerances import TolerancedTemplate
 from templates.core.errors import Fault, InvalidInputs, excerpt
 from templates.core.language.spec import Curve
 from templates.core.language.template import Array
@@ -129,7 +129,7 @@ class CadModel(TolerancedTemplate):
     """The parameter, by API name, that is the bore in which an oil film carries; of plain bearings."""
 
     sections: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
-    """Removed sections of its drawing, in the words of `cad.drafting.removed`."""
+    """Removed sections of its drawing, in the words of `cad.drafting.removed_section`."""
 
     rounds_noise: ClassVar[bool] = False
     """Whether coordinates nearer to zero than 1e-12 mm are written as zero: the kernel leaves such noise on

@@ -24,7 +24,7 @@ from OCP.XCAFDimTolObjects import XCAFDimTolObjects_GeomToleranceType as Toleran
 from OCP.XCAFDoc import XCAFDoc_Datum, XCAFDoc_Dimension, XCAFDoc_DocumentTool, XCAFDoc_GeomTolerance
 
 from cad.carriers import Carriers, Place
-from cad.toleranced import Carried, Faces, Form, Limits
+from cad.tolerances import Carried, Faces, Form, Limits
 
 _DIAMETER = "XCAFDimTolObjects_DimensionType_Size_Diameter"
 _DISTANCE = "XCAFDimTolObjects_DimensionType_Location_LinearDistance"

@@ -36,12 +36,12 @@ from cad.lists import rounded, written
 from cad.model import CadModel, Dimension, Part, arrays_of_points, mm
 from cad.overlaps import Clearance, Report, require_few_meeting
 from cad.pmi import Annotations
-from cad.stated import check_statements
+from cad.statement_check import check_statements
 from cad.statements import read_statements
 from cad.step import Body, read_step, write_step
 from cad.step_text import KERNEL
-from cad.toleranced import REPEATED, Limits, carried, in_unit, limits, limits_of
-from cad.toleranced import written as with_limits
+from cad.tolerances import REPEATED, Limits, carried, in_unit, limits, limits_of
+from cad.tolerances import written as with_limits
 from templates.core.catalogue.digests import digest
 from templates.core.catalogue.loading import is_outside
 from templates.core.errors import InvalidInputs

@@ -13,9 +13,9 @@ from dataclasses import dataclass, field
 from functools import partial
 from html import escape
 
-from cad.drafting.lettering import clipped, width_of
+from cad.drafting.letter_width import clipped, width_of
 from cad.drafting.title import STAMPED as STAMPED_FIELDS
-from cad.naming import name, stem, wide_stem
+from cad.file_names import name, stem, wide_stem
 from cad.part21 import end_of_string, plain, quoted
 
 _STRING = r"'(?:[^']|'')*'"

@@ -48,7 +48,7 @@ def connected(url: str | None, data: Path | None) -> Iterator[Client]:
 
 
 def key_of_user() -> str | None:
-    """The key in CRANKWRIGHT_KEY, for a service that asks for one.
+    """Return the key in CRANKWRIGHT_KEY, for a service that asks for one.
 
     Raises
     ------
@@ -64,5 +64,5 @@ def key_of_user() -> str | None:
 
 
 def reasons(problem: Problem) -> str:
-    """A problem, and each of its faults on a line of its own."""
+    """Return a problem, and each of its faults on a line of its own."""
     return "\n".join([str(problem), *(f"  {fault.name}: {fault.detail}" for fault in problem.errors)])

@@ -128,7 +128,7 @@ def _end_of(log: Path) -> str:
 
 
 def created(client: Client) -> Design:
-    """The design before the relation is tied: 50 mm."""
+    """Return the design before the relation is tied: 50 mm."""
     document: JsonObject = json.loads(json.dumps(PAPER))
     document["model"]["parameters"] = {"inner_diameter": "50 mm"}
     click.echo("creating the design: ball bearing of 50 mm, SCALE = 1, D = SCALE * 48 mm")
@@ -136,7 +136,7 @@ def created(client: Client) -> Design:
 
 
 def changed(client: Client, design: Design, what: str, patch: JsonObject) -> Design:
-    """The design after a change, which is announced, and its regeneration."""
+    """Return the design after a change, which is announced, and its regeneration."""
     click.echo(f"changing: {what}")
     return _checked(client.change(design, patch, on_progress=_progress))
 
@@ -175,7 +175,7 @@ def _facts(client: Client, design: Design) -> dict[str, tuple[float, str]]:
 
 
 def build_of(client: Client, design: Design) -> str:
-    """The key of the design's build."""
+    """Return the key of the design's build."""
     build = client.revision(design.id, design.revision).models["model"].build
     if build is None:
         raise click.ClickException(f"revision {design.revision} has no solid")
@@ -183,14 +183,14 @@ def build_of(client: Client, design: Design) -> str:
 
 
 def dimensions_of(client: Client, build: str) -> dict[str, Quantity]:
-    """The dimensions of a single number that the service measured on a build."""
+    """Return the dimensions of a single number that the service measured on a build."""
     measurements = client.build(build).measurements
     dimensions = measurements.dimensions if measurements else {}
     return {name: size for name, size in dimensions.items() if isinstance(size, Quantity)}
 
 
 def saved(client: Client, design: Design, data: Path) -> Path:
-    """The STEP file of a revision, in a folder."""
+    """Return the STEP file of a revision, in a folder."""
     return client.download(design.id, "step", revision=design.revision).save(data)
 
 

@@ -66,14 +66,14 @@ def _print(impact: Impact) -> None:
 
 
 def _moved(verdict: VerdictMoved) -> str:
-    """A criterion that is judged otherwise: `film.film of main_1 met → not met`."""
+    """Return a criterion that is judged otherwise: `film.film of main_1 met → not met`."""
     variant = f" of {verdict.variant}" if verdict.variant else ""
     words = f"{verdict.old or 'none'} → {verdict.new or 'none'}".replace("_", " ")
     return f"{verdict.name}{variant} {words}"
 
 
 def _line(one: DesignImpact) -> str:
-    """The effect on a design, in short."""
+    """Return the effect on a design, in short."""
     if one.effect == "refused":
         return f"refused: {'; '.join(f'{fault.name}: {fault.detail}' for fault in one.refusals[:3])}"
     parts = [_moved(verdict) for verdict in one.verdicts[:3]]

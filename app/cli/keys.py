@@ -156,7 +156,7 @@ def _state(key: ApiKeyRow) -> str:
 
 
 def _moment(span: str | None) -> datetime | None:
-    """The moment when a span such as `90d` from now has passed."""
+    """Return the moment when a span such as `90d` from now has passed."""
     if span is None:
         return None
     if (match := _SPAN.fullmatch(span)) is None:
@@ -182,7 +182,7 @@ def opened(data: Path | None) -> Iterator[Identity]:
 
 
 def _prepared(settings: Settings) -> str:
-    """The URL of the database, migrated; a server that holds the data folder has migrated its own.
+    """Return the URL of the database, migrated; a server that holds the data folder has migrated its own.
 
     A database that servers share needs no folder: this may run where nothing can be written.
     """

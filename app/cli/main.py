@@ -30,7 +30,7 @@ class SettableCommands(click.Group):
 
 
 def _wrong_settings(error: ValueError) -> str:
-    """A sentence on wrong settings; empty for another error."""
+    """Return a sentence on wrong settings; empty for another error."""
     # Pydantic is imported here: a command without settings, such as `--version`, does without it.
     from pydantic import ValidationError
     from pydantic_settings import SettingsError

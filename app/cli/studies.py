@@ -97,7 +97,7 @@ def sweep_command(
 
 
 def _varied(text: str) -> tuple[str, tuple[JsonObject, int]]:
-    """A place, what it takes, and the steps of an interval (0 for a list)."""
+    """Return a place, what it takes, and the steps of an interval (0 for a list)."""
     name, sign, what = text.partition("=")
     if match := _INTERVAL.fullmatch(what.strip()):
         low, low_unit, high, unit, steps = match.groups()
@@ -113,7 +113,7 @@ def _varied(text: str) -> tuple[str, tuple[JsonObject, int]]:
 
 
 def _single_outputs(client: Client, design: str) -> list[str]:
-    """The outputs of the newest revision that are single values."""
+    """Return the outputs of the newest revision that are single values."""
     newest = client.revision(design, client.design(design).revision)
     names = [
         f"{step}.{name}"
@@ -129,7 +129,7 @@ def _single_outputs(client: Client, design: str) -> list[str]:
 
 
 def _followed(study: ClientStudy) -> Study:
-    """The study at its end; its progress is a bar on a terminal."""
+    """Return the study at its end; its progress is a bar on a terminal."""
     shown = study.study
     click.echo(f"study {study.id}: {shown.rows} rows, about {shown.estimate.seconds:.2g} s", err=True)
     with click.progressbar(length=1000, label="rows", file=sys.stderr) as bar:

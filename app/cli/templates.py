@@ -78,7 +78,7 @@ def evaluate_command(
 
 
 def _result(answer: Answer) -> str:
-    """An answer on a line; of an array its length and its range."""
+    """Return an answer on a line; of an array its length and its range."""
     printed = unit_symbol(answer.unit or "1")
     if answer.value is None:
         return f"{'none':>14} ({answer.reason})"
@@ -154,7 +154,7 @@ def freeze_command(id: str, version: int, folder: Path) -> None:
 
 
 def _find(id: str, version: int | None) -> type[Template]:
-    """One version, or the latest one that is not withdrawn."""
+    """Return one version, or the latest one that is not withdrawn."""
     catalogue = _catalogue(id, version)
     if not catalogue.versions:
         catalogue = _catalogue()  # its message names those that there are
@@ -162,13 +162,16 @@ def _find(id: str, version: int | None) -> type[Template]:
 
 
 def _catalogue(id: str | None = None, version: int | None = None) -> Catalogue[Template]:
-    """All templates; where there are no files of a team to report, only those of the id and the version."""
+    """Return all templates.
+
+    Where there are no files of a team to report, only those of the id and the version.
+    """
     has_team = FOLDERS in map(str.upper, os.environ)
     return _snapshot().templates if has_team else find_templates((), id, version)
 
 
 def _snapshot() -> Snapshot:
-    """All templates and models; a file that cannot be used is reported, and the others are there."""
+    """Return all templates and models; a file that cannot be used is reported, and the others are there."""
     from app.catalogue.catalogues import loaded
     from app.settings import Settings
 

@@ -105,12 +105,12 @@ def import_sheet_command(
 
 
 def _values(region: ImportedRegion) -> str:
-    """Both values of a region that differs."""
+    """Return both values of a region that differs."""
     return f"Mathcad {region.mathcad[:5]}, worksheet {region.worksheet[:5]} {region.unit or ''}"
 
 
 def _id_of(file: Path) -> str:
-    """An id from the name of a file."""
+    """Return an id from the name of a file."""
     words = re.sub(r"[^a-z0-9]+", "_", file.stem.lower()).strip("_") or "sheet"
     return (words if words[0].isalpha() else f"sheet_{words}")[:64]
 
@@ -217,7 +217,7 @@ def _say(sheet: Sheet) -> None:
 
 
 def _doubt(sheet: Sheet | SheetSummary, sign: str) -> str:
-    """A remark that nobody proved the name of the reviewer, where that is so."""
+    """Return a remark that nobody proved the name of the reviewer, where that is so."""
     return "" if sheet.review_verified else f"{sign}review not verified"
 
 
@@ -236,7 +236,7 @@ def _print(file: Path, check: SheetCheck) -> None:
 
 
 def _named(file: Path) -> tuple[str, int]:
-    """The id and the version that a file's name says; 0 where it says none."""
+    """Return the id and the version that a file's name says; 0 where it says none."""
     if (match := FILE.fullmatch(file.name)) is None:
         raise click.ClickException(
             f"{file.name} is no <id>.sheet or <id>_v<n>.sheet, such as bush_duty.sheet"
@@ -245,7 +245,7 @@ def _named(file: Path) -> tuple[str, int]:
 
 
 def _text(file: Path) -> str:
-    """The text of a file, whose line ends stay as they are."""
+    """Return the text of a file, whose line ends stay as they are."""
     try:
         return file.read_bytes().decode("utf-8")
     except UnicodeDecodeError:

@@ -14,8 +14,8 @@ from app.designs.engine.decision import Climb, ClimbResult, Trial
 from app.designs.engine.verdicts import Verdicts
 from app.designs.graph import build_graph, raise_if
 from app.designs.questions import Reply
+from app.designs.reading import settled, starts
 from app.designs.schemas.decision import Decision, Tried
-from app.designs.starting import settled, starts
 from app.designs.stored_solids import analysed, built
 from app.plain import JsonObject, Raw
 from app.presentation.units import System

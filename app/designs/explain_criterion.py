@@ -9,7 +9,7 @@ from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import Verdicts
 from app.designs.explain import Explainer, explain, full_name, model_parameters, shown
-from app.designs.subjects import Subject
+from app.designs.network import Subject
 from app.plain import JsonObject
 from app.reference import Reference
 from app.storage.errors import NotFound

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import replace
-from itertools import filterfalse
+from graphlib import CycleError, TopologicalSorter
+from itertools import chain, filterfalse, pairwise
 from typing import TypeVar
 
 from app.catalogue.catalogues import Catalogues
@@ -17,8 +18,6 @@ from app.designs.demands import checked_demands, read_demands, unknown_names_in
 from app.designs.document import Document, Model, Step, Version
 from app.designs.kinds import checked_kinds
 from app.designs.network import LIMITS, Block, Cell, Graph, Network, Node, limits_of
-from app.designs.ordering import ordered
-from app.designs.size import has_relation, too_many_relations
 from app.plain import Raw
 from app.reference import Reference
 from templates.core.catalogue.finding import Catalogue
@@ -30,6 +29,9 @@ from templates.core.language.template import Template
 from templates.core.units.relation import Kind, Relation, is_relation, parse
 
 T = TypeVar("T", bound=Template)
+
+MOST_RELATION_TEXT = 50_000
+"""Characters of all relations of a design; reading them takes a quarter of a second."""
 
 __all__ = ["Block", "Catalogues", "Cell", "Graph", "build_graph", "raise_if"]
 
@@ -257,3 +259,54 @@ def raise_if(faults: list[Fault]) -> None:
     """
     if faults:
         raise InvalidInputs(faults)
+
+
+def too_many_relations(document: Document) -> Iterator[Fault]:
+    """A fault if the relations of a design are longer together than is read."""
+    texts = [item for item in _items(document) if isinstance(item, str)]
+    required = sum(len(criterion.require or "") for criterion in document.criteria.values())
+    if required + sum(map(len, texts)) <= MOST_RELATION_TEXT:
+        return
+    length = required + sum(len(text) for text in texts if is_relation(text))
+    if length > MOST_RELATION_TEXT:
+        most = f"at most {MOST_RELATION_TEXT} characters together, not {length}"
+        message = f"the relations and criteria of a design have {most}"
+        yield Fault("design", "too_long", message)
+
+
+def _items(document: Document) -> Iterator[Raw]:
+    """Every value of a document, and every item of those that are lists."""
+    groups = [document.parameters]
+    groups += [group for step in document.steps.values() for group in (step.inputs, step.limits)]
+    groups += [model.parameters for model in document.models.values()]
+    groups += document.variants.values()
+    values = chain.from_iterable(group.values() for group in groups)
+    return chain.from_iterable(value if isinstance(value, list) else (value,) for value in values)
+
+
+def has_relation(raw: Raw) -> bool:
+    """Return whether a value is a relation, or a list that holds one."""
+    return any(map(is_relation, raw)) if isinstance(raw, list) else is_relation(raw)
+
+
+def ordered(
+    network: Network, sources: Mapping[Node, tuple[Node, ...]]
+) -> tuple[tuple[Node, ...], list[Fault]]:
+    """All nodes, each after those from which it follows; or none, and a fault that names the loop."""
+    try:
+        return tuple(TopologicalSorter(sources).static_order()), []
+    except CycleError as error:
+        path = list(_named(network, error.args[1]))
+    shown = " → ".join([*path, path[0]])
+    detail = f"each follows from the one before it: {shown}; break the loop or declare an iteration"
+    cells = {cell.name for cell in network.cells()}
+    return (), [Fault(next(name for name in path if name in cells), "loop", detail)]
+
+
+def _named(network: Network, cycle: Sequence[Node]) -> Iterator[str]:
+    """A cycle of nodes (its last is its first) in the names that its relations use."""
+    for node, following in pairwise(cycle):
+        if isinstance(node, Cell):
+            yield node.name
+        elif isinstance(following, Cell):
+            yield next(name for name, used in following.uses.items() if network.node(used) is node)

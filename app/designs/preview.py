@@ -17,9 +17,8 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph, raise_if
 from app.designs.questions import Reply
-from app.designs.reading import read_document, resolved
+from app.designs.reading import read_document, resolved, starts
 from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, Status
-from app.designs.starting import starts
 from app.designs.stored_solids import analysed, built
 from app.designs.variants.calculating import checked
 from app.designs.variants.judging import merged

@@ -18,8 +18,8 @@ from app.designs.engine.calculation import Calculation
 from app.designs.errors import NotConverged
 from app.designs.graph import Graph, build_graph, raise_if
 from app.designs.naming import named
+from app.designs.reading import starts
 from app.designs.service import REGENERATE
-from app.designs.starting import starts
 from app.designs.stored_solids import analysed, built
 from app.designs.variants import stored as variants
 from app.designs.variants.calculating import row_faults

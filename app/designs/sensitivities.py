@@ -19,12 +19,12 @@ from app.designs.analyses import is_table
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.net import Net, Table
+from app.designs.engine.relations import MOST_OPERATIONS
 from app.designs.engine.row_design import MOST_VALUES, Wanted
+from app.designs.network import Subject
 from app.designs.origins import literals_behind, measures_behind, through_solids
 from app.designs.schemas.designs import Sensitivity
-from app.designs.size import MOST_OPERATIONS
 from app.designs.slopes import Local, Slopes, slope_in, slopes_at
-from app.designs.subjects import Subject
 from app.presentation.units import System, shown_unit
 from app.reference import Reference
 from templates.core.arrays import Array

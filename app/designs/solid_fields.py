@@ -25,9 +25,9 @@ from cad.analysis.kinds import CHAIN, UNIT_LOADS
 from cad.cranks.chain_throw import shaft_of_throws, sizes_of_throw
 from cad.cranks.shaft_fields import along_shaft, at_fillets, places_of
 from cad.cranks.whole import WholeShaft
+from cad.field_mesh import Field, Glb
 from cad.fillets import Crank
 from cad.model import CadModel
-from cad.painting import Field, Glb
 from templates.core.arrays import Array
 from templates.core.catalogue.finding import Catalogue
 

@@ -15,9 +15,9 @@ from app.designs.engine.net import Net
 from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph
 from app.designs.overriding import changed
+from app.designs.reading import starts
 from app.designs.schemas.solution import DesignRoot, DesignSolution, Target
 from app.designs.solving import DesignRoots, Wanted, roots_of_design
-from app.designs.starting import starts
 from app.designs.tasks import DesignTask
 from app.designs.variants.table import applied
 from app.reference import Reference

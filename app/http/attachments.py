@@ -14,8 +14,8 @@ from fastapi import Response
 from fastapi.responses import FileResponse
 from starlette.types import Receive, Scope, Send
 
-from cad.naming import name as wide_name
-from cad.naming import plain_name
+from cad.file_names import name as wide_name
+from cad.file_names import plain_name
 
 
 def disposition(plain: str, wide: str, how: str = "attachment") -> str:

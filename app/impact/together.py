@@ -20,8 +20,7 @@ from app.designs.engine.net import Net
 from app.designs.engine.row_design import RowDesign, Rows, Wanted
 from app.designs.engine.steps import LevelMoved, StepRows
 from app.designs.engine.verdicts import Verdicts
-from app.designs.network import Block, Graph
-from app.designs.subjects import Subject
+from app.designs.network import Block, Graph, Subject
 from app.impact.outcome import Judged, Outcome
 from app.reference import Reference
 from templates.core.arrays import Array

@@ -12,8 +12,8 @@ from app.designs.schemas.designs import PreviewedStep
 from app.presentation import numbers
 from app.reports.charts import Chart, Series, svg
 from app.reports.content import Plot
+from app.reports.crank_star import crank_star
 from app.reports.pictures import Declaring, Picture, pictures
-from app.reports.throw_star import throw_star
 from templates.core.language.levels import accuracy
 from templates.core.language.template import Template
 from templates.core.paper.schema import inputs_schema, outputs_schema
@@ -43,7 +43,7 @@ def drawn(declared: Declaring, step: PreviewedStep) -> list[Plot]:
 
 def _plot(picture: Picture, values: Values) -> Plot:
     if picture.kind == STAR:
-        return Plot(picture.title, throw_star(_numbers(values[_name(picture, "angles")])))
+        return Plot(picture.title, crank_star(_numbers(values[_name(picture, "angles")])))
     return Plot(picture.title, svg(KINDS[picture.kind](picture, values)))
 
 

@@ -36,7 +36,7 @@ from app.solids.models import Models
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import NotFound
-from cad.painting import Glb
+from cad.field_mesh import Glb
 from cad.stamp import stamped
 
 PENDING = "its picture and drawing were still being made when this report was written"

@@ -163,5 +163,5 @@ class Settings(BaseSettings):
 
     @property
     def stop_seconds(self) -> float:
-        """The part of the drain time that is kept for jobs and database, after the last request [s]."""
+        """Return the share of the drain time kept for jobs and database after the last request [s]."""
         return min(4.0, 0.4 * self.drain_seconds)

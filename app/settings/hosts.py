@@ -32,12 +32,14 @@ class Authority:
     port: int | None
 
     def port_of(self, scheme: str) -> int:
-        """The port, or the default one of the scheme."""
+        """Return the port, or the default one of the scheme."""
         return self.port or DEFAULT_PORTS.get(scheme, 80)
 
 
 def parse(text: str) -> Authority | None:
-    """The authority in a text such as `localhost:8000` or `[::1]:8000`; None if it is not an authority.
+    """Return the authority in a text such as `localhost:8000` or `[::1]:8000`.
+
+    None if it is not an authority.
 
     A name may end with the dot of the root, as in `localhost.`: it is the same name.
     """
@@ -55,7 +57,7 @@ def _parsed(text: str) -> Authority | None:
 
 
 def _compressed(address: str) -> str | None:
-    """An IPv6 address in its one canonical form."""
+    """Return an IPv6 address in its one canonical form."""
     try:
         return str(IPv6Address(address))
     except ValueError:
@@ -75,7 +77,7 @@ def is_loopback(name: str) -> bool:
 
 
 def check_entry(entry: str) -> str:
-    """An entry of the allow-list as it is.
+    """Return an entry of the allow-list as it is.
 
     Raises
     ------
@@ -120,7 +122,10 @@ class Hosts:
         self._bound = _bound_name(bound)
 
     def allows(self, asked: Authority, scheme: str, server: tuple[str, int | None] | None) -> bool:
-        """True if the service answers to a host; `server` is the address that the connection arrived at."""
+        """Return whether the service answers to a host.
+
+        `server` is the address that the connection arrived at.
+        """
         return is_loopback(asked.name) or self._is_bound(asked, scheme, server) or self.lists(asked)
 
     def lists(self, asked: Authority) -> bool:
@@ -149,7 +154,7 @@ def _fits(entry: Authority, asked: Authority) -> bool:
 
 
 def _bound_name(host: str) -> str | None:
-    """A bound host as browsers name it; none for all addresses at once."""
+    """Return a bound host as browsers name it; none for all addresses at once."""
     try:
         address = ip_address(host)
     except ValueError:

@@ -27,7 +27,7 @@ TEAM = "the extra `team` is not installed: pip install 'crankwright[team]'"
 
 
 def check_engine(engine: str) -> str:
-    """The setting, if it is `local` or the address of a scheduler that may be used.
+    """Return the setting, if it is `local` or the address of a scheduler that may be used.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def is_installed() -> bool:
 
 
 def check_collector(url: str | None) -> str | None:
-    """The address that traces are sent to, if it is one and there is what sends them.
+    """Return the address that traces are sent to, if it is one and there is what sends them.
 
     Raises
     ------
@@ -94,7 +94,7 @@ def _scheme_and_host(engine: str) -> tuple[str, str]:
 
 
 def check_lanes(lanes: dict[Lane, int]) -> dict[Lane, int]:
-    """The places of a worker, if there is any.
+    """Return the places of a worker, if there is any.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def check_lanes(lanes: dict[Lane, int]) -> dict[Lane, int]:
 
 
 def check_certificate(file: Path | None, info: ValidationInfo) -> Path | None:
-    """A file of TLS, which an engine `tls://…` needs and which must be there.
+    """Return a file of TLS, which an engine `tls://…` needs and which must be there.
 
     Raises
     ------

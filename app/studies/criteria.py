@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.designs.engine.net import Net, Table
-from app.designs.subjects import subjects
+from app.designs.network import subjects
 from app.studies.archive import AnyArray
 from templates.core.arrays import Array
 from templates.core.judging.comparison import MET

@@ -18,8 +18,7 @@ from app.designs.engine.needs import needs, varying
 from app.designs.engine.net import Net, Refusal
 from app.designs.engine.refusals import refusal_of
 from app.designs.engine.row_design import Levels, Rows, Wanted
-from app.designs.network import Block
-from app.designs.subjects import subjects
+from app.designs.network import Block, subjects
 from app.reference import Reference
 from app.studies.bodies import StudyIn
 from cad.model import CadModel

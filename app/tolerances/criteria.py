@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from app.designs.network import Graph
-from app.designs.subjects import Subject, subjects
+from app.designs.network import Graph, Subject, subjects
 from app.reference import Reference
 from templates.core.judging.criterion import Criterion
 

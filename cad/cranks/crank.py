@@ -6,9 +6,18 @@ from collections.abc import Mapping
 from math import sin
 
 from cad.cranks.outline import Outline
-from cad.cranks.reading import Webs, counterweight, drilling, fillet, inclination, journal_bore, pin, stubs
 from cad.cranks.rules import CrankRules
 from cad.cranks.throw import End, Throw
+from cad.cranks.throw_readback import (
+    Webs,
+    counterweight,
+    drilling,
+    fillet,
+    inclination,
+    journal_bore,
+    pin,
+    stubs,
+)
 from cad.cranks.volume import volume
 from cad.fillets import Crank
 from cad.model import Box, Part, mm

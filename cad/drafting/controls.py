@@ -10,12 +10,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import cos, pi, radians, sin
 
 from cad.drafting.curves import Point
-from cad.drafting.declared import Control, Declared
+from cad.drafting.declaration import Control, Declared
+from cad.drafting.dimension_layout import TEXT, NoRoom, Placed
 from cad.drafting.formats import FORMATS
 from cad.drafting.frames import Frame
-from cad.drafting.lettering import width_of
+from cad.drafting.letter_width import width_of
 from cad.drafting.page import Page
-from cad.drafting.placing import TEXT, NoRoom, Placed
 from cad.drafting.room import Rectangle, Room, around
 from cad.drafting.symbols import Symbol, arrow, datum, texture
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from cad.drafting.lettering import width_of
+from cad.drafting.letter_width import width_of
 from cad.drafting.page import Page
 from cad.drafting.symbols import Symbol, geometric
 

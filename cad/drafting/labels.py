@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from cad.drafting.lettering import width_of
-from cad.drafting.matching import Dimension
+from cad.drafting.letter_width import width_of
+from cad.drafting.parameter_match import Dimension
 
 SMALL = 0.7  # deviations are of so many times the height of the number
 _LED = ("circle", "arc", "aligned")

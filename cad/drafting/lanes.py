@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from cad.drafting.curves import Point
-from cad.drafting.matching import Dimension
+from cad.drafting.parameter_match import Dimension
 from cad.drafting.views import View
 
 _CLEAR = 1e-4  # [mm]

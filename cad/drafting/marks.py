@@ -10,9 +10,9 @@ from math import hypot
 from cadquery import Vector
 
 from cad.drafting.curves import Point
-from cad.drafting.lettering import width_of
+from cad.drafting.dimension_layout import Placed
+from cad.drafting.letter_width import width_of
 from cad.drafting.page import Page
-from cad.drafting.placing import Placed
 from cad.drafting.plan import Plan
 from cad.drafting.room import Room
 from cad.drafting.symbols import arrow

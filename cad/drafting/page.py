@@ -13,7 +13,7 @@ from ezdxf.filemanagement import new
 
 from cad.drafting.breaks import zigzag
 from cad.drafting.curves import Curve, Point
-from cad.drafting.placing import EXTENSION, GAP, TEXT, Placed
+from cad.drafting.dimension_layout import EXTENSION, GAP, TEXT, Placed
 from cad.drafting.plan import Plan
 from cad.drafting.symbols import Symbol
 from cad.drafting.views import View

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from cad.drafting.curves import Point
 from cad.drafting.formats import FORMATS, Format
 from cad.drafting.lanes import Lanes
-from cad.drafting.matching import Dimension
+from cad.drafting.parameter_match import Dimension
 from cad.drafting.views import View
 
 LANE = 9.0  # from one dimension line to the next

@@ -16,19 +16,19 @@ from ezdxf._options import options
 from ezdxf.document import Drawing
 
 from cad.drafting.controls import Controls
-from cad.drafting.declared import Declared
+from cad.drafting.declaration import Declared
+from cad.drafting.dimension_layout import NoRoom, Placed, Placing
 from cad.drafting.formats import Format
 from cad.drafting.marks import Centres, centre_lines, cutting_line, pitch_circles, section_label
-from cad.drafting.matching import Dimension, matched, references
 from cad.drafting.measures import length_between, measures
 from cad.drafting.page import Page, document_of
-from cad.drafting.placing import NoRoom, Placed, Placing
+from cad.drafting.parameter_match import Dimension, matched, references
 from cad.drafting.plan import Plan, plans
-from cad.drafting.removed import Removed, mark, place, removed_sections
+from cad.drafting.protrusions import standing
+from cad.drafting.removed_section import Removed, mark, place, removed_sections
 from cad.drafting.room import Rectangle, Room
-from cad.drafting.standing import standing
+from cad.drafting.sheet_border import General, frame, notes, table, title_block
 from cad.drafting.title import general_profile
-from cad.drafting.titling import General, frame, notes, table, title_block
 from cad.drafting.views import View, is_assembly, views
 from cad.header import Header
 from cad.inspect import bounding_box

@@ -13,9 +13,9 @@ from typing import Any
 from ezdxf import path as paths
 
 from cad.drafting.formats import Format
-from cad.drafting.hatching import hatch
+from cad.drafting.hatch import hatch
 from cad.drafting.labels import SMALL, read_stack
-from cad.drafting.lettering import SIZE, width_of
+from cad.drafting.letter_width import SIZE, width_of
 from cad.drafting.page import APP
 from cad.drafting.sheet import draw
 from cad.header import Header

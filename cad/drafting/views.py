@@ -18,7 +18,7 @@ from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape
 
 from cad.drafting.breaks import breaks, opened
 from cad.drafting.curves import Curve, Point, Round, curves_of, joined
-from cad.drafting.cutting import CLEAR, Arc, Cut, Frame, arc_of, cut_of, faces_across, half_behind, reach_of
+from cad.drafting.section import CLEAR, Arc, Cut, Frame, arc_of, cut_of, faces_across, half_behind, reach_of
 from cad.step import Body
 from cad.surfaces import Surface, X, Y, Z, faces_of, look
 

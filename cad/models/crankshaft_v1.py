@@ -7,8 +7,8 @@ said in the class below, which users read.
 from collections.abc import Mapping
 
 from cad.cranks.crank import CrankModel
-from cad.cranks.reading import Webs, stubs
 from cad.cranks.throw import End
+from cad.cranks.throw_readback import Webs, stubs
 from cad.model import mm
 from cad.surfaces import Seen
 from templates.core.language.template import Array, Truth, derived, formula, require

@@ -7,11 +7,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from cad.cranks.crankshaft_readback import ShaftSeen
 from cad.cranks.outline import Outline
 from cad.cranks.rules import CrankRules, clear_of_corners, corner
 from cad.cranks.throw import End, Throw
 from cad.cranks.whole import Bolts, Throws, WholeShaft
-from cad.cranks.whole_reading import ShaftSeen
 from cad.model import Box, Dimension, Part, mm
 from cad.shaft import Shaft
 from cad.surfaces import Seen

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from cad.cranks.counterweights import count, sectors, stand_out, there_is_none, webs_of
+from cad.cranks.crankshaft_readback import ShaftSeen
 from cad.cranks.end_parameters import EndParameters
 from cad.cranks.outline import Outline
 from cad.cranks.rules import clear_of_corners, corner
@@ -15,7 +16,6 @@ from cad.cranks.split_parameters import SplitParameters, are_split, shortest, wh
 from cad.cranks.split_pins import SplitPins
 from cad.cranks.throw import Throw
 from cad.cranks.whole import Throws, WholeShaft
-from cad.cranks.whole_reading import ShaftSeen
 from cad.model import Box, Dimension, Part, mm
 from cad.shaft import Shaft
 from cad.surfaces import Seen

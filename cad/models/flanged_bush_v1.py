@@ -13,8 +13,8 @@ from cadquery import Shape
 from cadquery.func import cut
 
 from cad.model import BRONZE, Box, CadModel, Part, mm
+from cad.revolution import Point, drill, drilled_volume, outline, turned, turned_volume
 from cad.surfaces import Seen, Y, Z
-from cad.turned import Point, drill, drilled_volume, outline, turned, turned_volume
 from templates.core.language.template import Array, Truth, derived, formula, given, require, units
 
 

@@ -13,8 +13,8 @@ from cadquery import Location, Vector
 
 from cad.model import BRIGHT_STEEL, STEEL, Box, CadModel, Part, mm
 from cad.shells.half_shell import Flange, Groove, HalfShell, Tang
-from cad.shells.reading import ShellSeen
 from cad.shells.relief import Relief
+from cad.shells.shell_readback import ShellSeen
 from cad.surfaces import Seen
 from templates.core.language.template import (
     Array,

@@ -13,9 +13,9 @@ from cadquery import Location, Vector
 from cad.model import BRIGHT_STEEL, STEEL, Box, Part, mm
 from cad.shells.half_shell import Flange, FullBush, Groove, HalfShell, Tang
 from cad.shells.parameters import joints
-from cad.shells.reading import ShellSeen
 from cad.shells.relief import Relief
 from cad.shells.rules import ShellRules
+from cad.shells.shell_readback import ShellSeen
 from cad.shells.spread import FreeShellSeen, half_angle, reach_of
 from cad.surfaces import Seen
 from templates.core.language.template import (

@@ -15,8 +15,8 @@ from cadquery import Edge, Shape, Solid, Vector
 from cadquery.func import cut, extrude, face, segment, wire
 
 from cad.model import BRONZE, Box, CadModel, Part, mm
+from cad.revolution import nearest, sheet_under_arc
 from cad.surfaces import Seen, X, Y, Z
-from cad.turned import nearest, sheet_under_arc
 from templates.core.language.template import (
     Array,
     Truth,

@@ -9,8 +9,8 @@ from cadquery import Edge, Location, Shape, Solid, Vector
 from cadquery.func import cut, extrude, face, fuse, polyline, segment, wire
 from scipy.integrate import quad
 
+from cad.revolution import Point, area, drill, drilled_volume, outline, sheet_under_arc, turned, turned_volume
 from cad.shells.relief import Relief
-from cad.turned import Point, area, drill, drilled_volume, outline, sheet_under_arc, turned, turned_volume
 
 _BEYOND = 10.0  # [deg] by which what cuts a groove from joint to joint passes the joints
 

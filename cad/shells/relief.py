@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import acos, asin, atan2, cos, sin, sqrt
 
-from cad.turned import sheet_under_arc
+from cad.revolution import sheet_under_arc
 
 
 @dataclass(frozen=True)

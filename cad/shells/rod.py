@@ -8,8 +8,8 @@ from math import pi
 from cadquery import Shape, Solid, Vector
 from cadquery.func import cut, fuse
 
+from cad.revolution import sheet_under_arc
 from cad.shells.housing import Housing
-from cad.turned import sheet_under_arc
 
 
 @dataclass(frozen=True)

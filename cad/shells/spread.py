@@ -12,10 +12,10 @@ from math import atan2, cos, degrees, pi, sin
 
 import numpy as np
 
+from cad.revolution import nearest
 from cad.shells.half_shell import HalfShell
-from cad.shells.reading import ShellSeen
+from cad.shells.shell_readback import ShellSeen
 from cad.surfaces import Surface, X, Y, Z
-from cad.turned import nearest
 from templates.core.language.declare import on_paper
 from templates.core.language.template import Array, units
 

@@ -9,8 +9,8 @@ from app.calculations import rendering
 from app.calculations.cache import Cache
 from app.calculations.sizes import size_of
 from app.catalogue.discovery import find_templates
-from app.designs.engine import memory as designs
-from app.designs.engine.memory import Memory
+from app.designs.engine import steps as designs
+from app.designs.engine.steps import Memory
 from app.designs.graph import Block
 from app.designs.schemas.designs import RevisionStep
 from app.designs.worksheet import _evaluated

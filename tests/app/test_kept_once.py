@@ -7,7 +7,7 @@ import pytest
 from app.calculations.cache import Cache
 from app.catalogue.discovery import find_templates
 from app.designs.calculation_cache import CalculationCache, Prepared
-from app.designs.engine.memory import Memory
+from app.designs.engine.steps import Memory
 from app.designs.graph import Block
 from app.designs.regeneration import Regeneration
 from app.designs.service import Designs

@@ -11,9 +11,8 @@ from app.calculations.bodies import OIL_FILM, EvaluateIn
 from app.calculations.curves import _NUMBER, LONGEST_LINE, read_curves
 from app.calculations.size import points
 from app.designs.document import Document, merge
-from app.designs.graph import Catalogues, Graph, build_graph
+from app.designs.graph import MOST_RELATION_TEXT, Catalogues, Graph, build_graph
 from app.designs.routes.files import _accepted
-from app.designs.size import MOST_RELATION_TEXT
 from app.http import problems
 from app.http.heads import _plain_cookies
 from app.http.pages import page_of

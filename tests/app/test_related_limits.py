@@ -9,7 +9,7 @@ from test_design_criteria import CATALOGUES, calculated, document, faults_of, fi
 from app.designs.document import Document, merge
 from app.designs.drives import network_of
 from app.designs.engine.calculate import calculate
-from app.designs.engine.estimates import RowEstimate
+from app.designs.engine.columns import RowEstimate
 from app.designs.engine.net import Net
 from app.designs.engine.shifts import Upstream
 from app.designs.engine.verdicts import _operations

@@ -8,7 +8,7 @@ from row_designs import BEARING, CURVES, FILM, LOSS
 from test_net_judging import assert_judged_as_designs, chained
 
 from app.designs.engine import shifts
-from app.designs.engine.estimates import RowEstimate
+from app.designs.engine.columns import RowEstimate
 from app.designs.engine.shifts import Origins, Shifts
 from templates.core.judging.bands import Estimate
 

@@ -20,7 +20,7 @@ from app.designs.solid_fields import ends_of
 from app.solids import analysis_rows as repository
 from app.solids.questions import Options, question
 from cad.analysis.kinds import KINDS, TABLES
-from cad.painting import Glb
+from cad.field_mesh import Glb
 
 DESIGNS = f"{API}/designs"
 SIZES = {

@@ -11,10 +11,10 @@ from row_designs import BEARING, CATALOGUES, CURVES, net_of, ref
 from app.calculations.criteria import rendered
 from app.designs.document import Document, merge
 from app.designs.engine.calculate import calculate
-from app.designs.engine.memory import memory
+from app.designs.engine.steps import memory
 from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph
-from app.designs.starting import starts
+from app.designs.reading import starts
 from app.designs.variants.calculating import checked
 from app.designs.variants.judging import merged
 from app.designs.variants.names import natural

@@ -167,7 +167,7 @@ def test_what_the_kernel_does_not_intersect_is_not_taken_for_free_space(monkeypa
 
 def test_a_drawing_of_an_assembly_cuts_its_parts():
     """Shafts are drawn whole; an assembly that answers no finite elements is none."""
-    from cad.drafting.declared import _is_shaft
+    from cad.drafting.declaration import _is_shaft
 
     cls, _ = assembly()
     assert not _is_shaft(cls)

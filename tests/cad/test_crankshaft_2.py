@@ -13,7 +13,6 @@ import pytest
 import templates
 from cad.cranks.outline import Outline
 from cad.cranks.support import reach
-from cad.cranks.whole_measures import rotating_couple, throws_measured
 from cad.lists import LONGEST_TEXT, listed, written
 from cad.models.crankshaft_v1 import Crankshaft as OneThrow
 from cad.models.crankshaft_v2 import Crankshaft
@@ -23,6 +22,7 @@ from templates.core.catalogue.finding import find
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.core.language.template import Template
+from tests.references.throw_measures import rotating_couple, throws_measured
 
 PLAIN: dict[str, Any] = {
     "journal_diameter": "55 mm", "journal_length": "26 mm", "pin_diameter": "48 mm", "pin_length": "32 mm",

@@ -12,7 +12,6 @@ from app.solids.analysis_process import throw_of
 from app.solids.questions import Question
 from cad.cranks.chain_throw import shaft_of_throws, sizes_of_throw, throws_apart
 from cad.cranks.split_parameters import least_gap
-from cad.cranks.whole_measures import rotating_couple, throws_measured
 from cad.errors import AnalysisError
 from cad.models.crankshaft_v2 import Crankshaft as Undivided
 from cad.models.crankshaft_v3 import Crankshaft
@@ -21,6 +20,7 @@ from cad.shaft import STEEL_DENSITY
 from templates.bearing_load.engine_v2 import Engine
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
+from tests.references.throw_measures import rotating_couple, throws_measured
 
 PLAIN: dict[str, Any] = {
     "journal_diameter": "55 mm", "journal_length": "26 mm", "pin_diameter": "48 mm", "pin_length": "24 mm",

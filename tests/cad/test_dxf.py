@@ -12,9 +12,9 @@ from ezdxf.document import Drawing
 from ezdxf.entitydb import EntityDB
 from slow_models import DRAWN
 
-from cad.drafting.hatching import hatch
-from cad.drafting.matching import matched
+from cad.drafting.hatch import hatch
 from cad.drafting.measures import measures
+from cad.drafting.parameter_match import matched
 from cad.drafting.views import views
 from cad.export import derive
 from cad.header import read_header

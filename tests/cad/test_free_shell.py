@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from cad.catalogue import models
-from cad.drafting.matching import matched
 from cad.drafting.measures import Measure
+from cad.drafting.parameter_match import matched
 from cad.regenerate import Build, as_text, regenerate, regenerate_class
 from cad.shells.spread import half_angle
 from cad.step import read_step

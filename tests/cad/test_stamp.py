@@ -11,11 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from seeds import examples
 
-from cad.drafting.lettering import clipped, width_of
+from cad.drafting.letter_width import clipped, width_of
 from cad.export import derive
+from cad.file_names import plain_name, stem, wide_stem
 from cad.header import Header
 from cad.model import Part
-from cad.naming import plain_name, stem, wide_stem
 from cad.part21 import end_of_string, plain, quoted
 from cad.regenerate import regenerate
 from cad.stamp import Stamp, is_copy, stamped, takes_stamp

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from app.studies.methods.optimise import optimise
-from app.studies.methods.trade import trade
 from benchmarks.sizing import Sizing, level, net, problem
+from tests.references.trade import trade
 
 FINE, LIMIT = "map", 2.6e-6
 

@@ -9,8 +9,8 @@ from closed_forms import CASES
 from app.studies.methods.answers import Columns, Held, Objective, Problem, exact
 from app.studies.methods.optimise import optimise
 from app.studies.methods.space import Interval, Space, Values
-from app.studies.methods.trade import trade
 from templates.core.errors import InvalidInputs
+from tests.references.trade import trade
 
 BEARING = Problem(
     Space((Interval("width", 14e-3, 24e-3), Interval("clearance", 20e-6, 90e-6, "log"))),

@@ -15,13 +15,10 @@ from app.calculations.errors import StepDeferred
 from app.calculations.size import points, spanned
 from app.designs.engine.calculation import DEFERRED, Analysed, Calculation, Measured
 from app.designs.engine.columns import Column, stacked
-from app.designs.engine.memory import memory
-from app.designs.engine.prescribed import tolerance_of
 from app.designs.engine.refusals import Refusal, refusal_of_text
-from app.designs.engine.relations import related, wrong_index
-from app.designs.engine.steps import step_rows
+from app.designs.engine.relations import limit_operations, limit_values, related, tolerance_of, wrong_index
+from app.designs.engine.steps import memory, step_rows
 from app.designs.network import Block, Cell, Graph, Node, Solid, SolidAnalysis
-from app.designs.size import limit_operations, limit_values
 from app.plain import Raw
 from app.reference import Reference
 from cad.model import CadModel

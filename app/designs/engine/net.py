@@ -23,8 +23,7 @@ from app.designs.engine.row_design import MOST_ROWS, Levels, RowDesign, Rows, Wa
 from app.designs.engine.table import Table
 from app.designs.engine.verdicts import JudgedColumn
 from app.designs.graph import build_graph, raise_if
-from app.designs.network import Graph
-from app.designs.subjects import Subject, subjects
+from app.designs.network import Graph, Subject, subjects
 from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import unknown_names

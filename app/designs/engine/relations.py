@@ -1,21 +1,34 @@
 """Relations for many rows at once, each row by itself: `loads.main_load_x[bearing]`, `sum(film.pressure)`.
 
-Where no value differs from row to row, a relation is calculated as its text says.
+Where no value differs from row to row, a relation is calculated as its text says. A relation hands on the
+tolerance of a value, or of that plus a constant. Whatever else follows from toleranced values lies in an
+interval too, but no part is made to that interval: an analysis of tolerances reports it, and drawing and STEP
+file do not prescribe it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from app.designs.engine.columns import Column, aligned, stacked
+from app.designs.network import Cell, Graph
 from templates.core.errors import FaultyText
 from templates.core.units.items import item_of
 from templates.core.units.lists import ITEM, LIST
-from templates.core.units.nodes import Constant, Item, Name, Node, Operation, Word
+from templates.core.units.nodes import Apply, Constant, Item, Name, Node, Operation, Word
+from templates.core.units.operations import OPERATORS
+from templates.core.units.quantity import Typed
 from templates.core.units.relation import Relation
+from templates.core.units.tolerance import Tolerance
 from templates.core.units.walking import LISTWISE, check_ranks, listwise
+
+MOST_VALUES = 100_000  # of a relation, or of all outputs of a step
+MOST_OPERATIONS = 20_000_000  # on single values, of all relations of a design
+
+_ADD, _SUBTRACT = OPERATORS["add"], OPERATORS["subtract"]
 
 
 def related(relation: Relation, uses: Mapping[str, Column]) -> Column:
@@ -118,3 +131,70 @@ def rank_of(node: Node, ranks: Mapping[str, int]) -> int:
     if node.operation in LISTWISE:
         return 0 if node.operation is ITEM else max(0, inside[0] - 1)
     return max(inside, default=0)
+
+
+def tolerance_of(graph: Graph, cell: Cell, typed: Mapping[str, Typed]) -> Tolerance | None:
+    """The tolerance that a cell has by its relation; None if it has none.
+
+    `typed` are the values of cells as they were read. A zone of ISO 286 is that of its own nominal size:
+    where a constant is added, the limits stay and the zone goes.
+    """
+    is_moved = False
+    while cell.relations:
+        if isinstance(cell.raw, list) or (term := _term(cell.relations[0].tree)) is None:
+            return None
+        name, offset = term
+        source = graph.node(cell.uses[name])
+        if not isinstance(source, Cell):
+            return None
+        cell, is_moved = source, is_moved or offset
+    read = typed.get(cell.name)
+    tolerance = read.tolerance if read is not None and isinstance(read.si, float) else None
+    return replace(tolerance, zone=None) if tolerance is not None and is_moved else tolerance
+
+
+def _term(tree: Node) -> tuple[str, bool] | None:
+    """The only name of a relation, and whether a constant is added to it; None of any other relation."""
+    match tree:
+        case Name(name=name):
+            return name, False
+        case Apply(operation=operation, arguments=(Name(name=name), other)) if operation in (_ADD, _SUBTRACT):
+            return (name, True) if _is_constant(other) else None
+        case Apply(operation=operation, arguments=(other, Name(name=name))) if operation is _ADD:
+            return (name, True) if _is_constant(other) else None
+    return None
+
+
+def _is_constant(tree: Node) -> bool:
+    """Return whether a part of a relation is a number with its unit, as in `= bore - 50 um`."""
+    return isinstance(tree, Constant) or (
+        isinstance(tree, Apply) and bool(tree.arguments) and all(map(_is_constant, tree.arguments))
+    )
+
+
+def limit_values(values: int) -> None:
+    """Refuse more values in one place than a design takes.
+
+    Raises
+    ------
+    FaultyText
+        With code `too_many_values`.
+    """
+    if values > MOST_VALUES:
+        message = f"this makes {values} values, more than the {MOST_VALUES} that a design takes in one place"
+        raise FaultyText("too_many_values", message)
+
+
+def limit_operations(operations: int) -> None:
+    """Refuse relations that calculate more, all together, than a design does.
+
+    Raises
+    ------
+    FaultyText
+        With code `too_many_values`.
+    """
+    if operations > MOST_OPERATIONS:
+        message = f"the relations up to here make {operations} operations on single values"
+        raise FaultyText(
+            "too_many_values", f"{message}; use shorter arrays, at most {MOST_OPERATIONS} are made"
+        )

@@ -14,8 +14,7 @@ from app.designs.engine.calculate import constants, rows
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.needs import Needs, Varying, needs, varying
 from app.designs.engine.steps import LevelMoved
-from app.designs.network import LIMITS, Block, Graph
-from app.designs.subjects import Subject
+from app.designs.network import LIMITS, Block, Graph, Subject
 from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import Fault, unknown_name, unknown_names

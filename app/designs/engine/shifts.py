@@ -18,8 +18,7 @@ import numpy as np
 from app.calculations.cost import EXPENSIVE, estimated_seconds
 from app.designs.engine.calculate import following, recalculated
 from app.designs.engine.calculation import Calculation
-from app.designs.engine.columns import Column
-from app.designs.engine.estimates import RowEstimate
+from app.designs.engine.columns import Column, RowEstimate
 from app.designs.engine.needs import is_member
 from app.designs.network import Block, Cell
 from app.plain import Raw

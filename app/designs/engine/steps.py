@@ -3,24 +3,34 @@
 In arrays a template masks the points that it would refuse alone; such rows are refused here with the words
 of the mask. Where it refuses a whole array, the rows are halved until those are found that it refuses. A row
 that is refused has no value in any output of the step, as in a design of its own.
+
+A step of which nothing differs from row to row is evaluated once, and its latest evaluations are kept: a
+change of a design recomputes only what depends on it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
+from app.calculations.begun import fingerprint
+from app.calculations.cache import Cache, results
 from app.calculations.size import shape
-from app.designs.engine.columns import Column, Indices, scattered
+from app.calculations.steps import evaluated_step
+from app.designs.engine.columns import Column, Indices, RowEstimate, scattered
 from app.designs.engine.refusals import Refusal, is_of_all_rows, masked, refusal_of
 from app.designs.network import Block
 from app.plain import Raw
 from templates.core.arrays import Mask
 from templates.core.errors import InvalidInputs
+from templates.core.judging.bands import Estimate
+from templates.core.judging.judging import Absent
 from templates.core.language.answer import Answer
+from templates.core.language.criteria import Evaluated, estimate_of
 from templates.core.language.evaluate import Evaluation, answers_at_level
 from templates.core.language.intake import is_single
 from templates.core.language.levels import at_level
@@ -272,3 +282,82 @@ class _Evaluator:
                 places = value.places if isinstance(value, Column) else shape(value)
                 lengths += places[-1:]
         return max(lengths)
+
+
+Evaluations = Sequence[tuple[Part, Evaluated]]
+"""The parts of a step as the criteria of its template see them."""
+
+
+def estimate_rows(step: StepRows, evaluations: Evaluations, member: str) -> RowEstimate | Absent:
+    """The value of an input or output of a step with its error; why there is none, if no row has one."""
+    found = [(part, estimate_of(evaluated, member)) for part, evaluated in evaluations]
+    present = [(part, one) for part, one in found if isinstance(one, Estimate)]
+    if not present:
+        return next((one for _, one in found if isinstance(one, Absent)), Absent())
+    if not step.has_rows:
+        return RowEstimate(present[0][1])
+    axes = max(one.axes for _, one in present)
+    value = _column(step, present, lambda one: one.value, axes)
+    error = _column(step, present, lambda one: one.error, 0)
+    is_stated = all(one.is_stated or bool(np.isnan(one.error).any()) for _, one in present)
+    if all(one.scale is None for _, one in present):
+        return RowEstimate(Estimate(value.value, error.value, is_stated, axes), value.is_row, error.is_row)
+    scale = _column(step, present, lambda one: np.nan if one.scale is None else one.scale, 0)
+    whole = Estimate(value.value, error.value, is_stated, axes, scale.value)
+    return RowEstimate(whole, value.is_row, error.is_row, scale.is_row)
+
+
+def _column(
+    step: StepRows, parts: Sequence[tuple[Part, Estimate]], of: Callable[[Estimate], Value], axes: int
+) -> Column:
+    """One column of all parts; NaN in rows that are refused."""
+    columns: list[tuple[Indices, Column]] = []
+    for part, estimate in parts:
+        value = of(estimate)
+        columns.append((part.rows, Column(value, is_row=step.has_row_axis(part) and np.ndim(value) > axes)))
+    if len(columns) == 1 and columns[0][0].size == step.count:
+        whole = columns[0][1]
+    else:
+        whole = scattered(step.count, columns)
+    return whole.without(step.refused()) if step.refusals else whole
+
+
+class _Kept(NamedTuple):
+    evaluation: Evaluation
+    values: int  # that its template had computed: it computes further ones when asked, and grows
+
+
+class Memory:
+    """The latest evaluations of steps, so that a change recomputes only what depends on it."""
+
+    def __init__(self, cache: Cache = results) -> None:
+        self._cache = cache
+
+    def evaluation(self, block: Block, raw: Mapping[str, Raw], wanted: tuple[str, ...] | None) -> Evaluation:
+        """The evaluation of a step, kept or computed.
+
+        Raises
+        ------
+        InvalidInputs
+            Where the template refuses.
+        StepDeferred
+            The caller does not wait for an expensive step.
+        """
+        key = (block.cls, block.level, block.tolerance, wanted, fingerprint(raw))
+        kept: _Kept | None = self._cache.get(key)
+        if kept is None:
+            return self._keep(key, evaluated_step(block.cls, raw, wanted, block.level, block.tolerance))
+        if kept.values != _count(kept.evaluation):
+            self._keep(key, kept.evaluation)
+        return kept.evaluation
+
+    def _keep(self, key: Hashable, evaluation: Evaluation) -> Evaluation:
+        self._cache.keep(key, _Kept(evaluation, _count(evaluation)))
+        return evaluation
+
+
+def _count(evaluation: Evaluation) -> int:
+    return len(vars(evaluation.template))
+
+
+memory = Memory()

@@ -11,7 +11,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.columns import Column
 from app.designs.engine.refusals import Refusal
 from app.designs.engine.verdicts import JudgedColumn, RowCodes, Verdicts
-from app.designs.subjects import Subject
+from app.designs.network import Subject
 from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs

@@ -12,12 +12,11 @@ from numpy.typing import NDArray
 
 from app.calculations.size import spanned
 from app.designs.engine.calculation import Calculation
-from app.designs.engine.columns import Column
-from app.designs.engine.estimates import Evaluations, RowEstimate, estimate_rows
+from app.designs.engine.columns import Column, RowEstimate
+from app.designs.engine.relations import limit_operations, limit_values
 from app.designs.engine.shifts import Shifts, Upstream
-from app.designs.network import LIMITS, Block, Demand
-from app.designs.size import limit_operations, limit_values
-from app.designs.subjects import Subject, subjects
+from app.designs.engine.steps import Evaluations, estimate_rows
+from app.designs.network import LIMITS, Block, Demand, Subject, subjects
 from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import FaultyText, listed

@@ -22,9 +22,9 @@ from app.schemas.problems import RouteOptions, refusals
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from cad.export import MEDIA_TYPES
-from cad.naming import name as wide_name
-from cad.naming import plain_name
-from cad.painting import Glb
+from cad.field_mesh import Glb
+from cad.file_names import name as wide_name
+from cad.file_names import plain_name
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
 

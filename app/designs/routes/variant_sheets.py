@@ -19,8 +19,8 @@ from app.designs.variants.views import variants
 from app.http.attachments import disposition
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import Responses, refusals
-from cad.naming import name as wide_name
-from cad.naming import plain_name
+from cad.file_names import name as wide_name
+from cad.file_names import plain_name
 
 by_type = APIRouter(
     prefix="/api/v1/designs", route_class=SheetRoute, dependencies=[ExpensiveSteps], include_in_schema=False

@@ -10,7 +10,7 @@ import numpy as np
 
 from app.calculations.errors import StepDeferred
 from app.designs.engine.calculation import DEFERRED, Prepared
-from app.designs.engine.memory import memory
+from app.designs.engine.steps import memory
 from app.designs.network import Block, Graph
 from app.plain import Raw
 from templates.core.arrays import Array

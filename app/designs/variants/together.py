@@ -15,10 +15,10 @@ from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document
 from app.designs.engine.calculate import calculate_nodes
 from app.designs.engine.calculation import Analysed, Calculation, Measured
+from app.designs.engine.relations import MOST_OPERATIONS
 from app.designs.graph import build_graph
 from app.designs.network import Block, Node
-from app.designs.size import MOST_OPERATIONS
-from app.designs.starting import starts
+from app.designs.reading import starts
 from app.designs.variants.outcome import Outcome, outcome_of, refused, units_of
 from app.designs.variants.sharing import Asking, evaluations
 from app.designs.variants.table import applied

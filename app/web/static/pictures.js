@@ -3,7 +3,7 @@ import { showClearance } from "./clearance.js";
 import { unit } from "./numbers.js";
 import { draw } from "./plots.js";
 import { drawPressure } from "./pressure.js";
-import { showThrowStar } from "./throw_star.js";
+import { showCrankStar } from "./crank_star.js";
 
 const words = (name) => name.replaceAll("_", " ");
 const named = (name, quantity) => (unit(quantity.unit) ? `${words(name)} [${unit(quantity.unit)}]` : words(name));
@@ -11,7 +11,7 @@ const named = (name, quantity) => (unit(quantity.unit) ? `${words(name)} [${unit
 const KINDS = {
   clearance: showClearance,
   pressure: drawPressure,
-  star: showThrowStar,
+  star: showCrankStar,
 
   curves(place, picture, values) {
     const x = values[picture.x], lines = picture.y.map((name) => ({ x: x.value, y: values[name].value, name: words(name), mode: "lines" }));

@@ -208,8 +208,11 @@ class FinitePad(PadFilm):
     """(..., n + 1) pressure p h_o²/(6 eta U l) at the nodes, equally spaced in t."""
 
     def pressure(self, x: Array) -> Array:
-        """Return the pressure p h_o²/(6 eta U l) at mid-width and x/l, (..., places), by cubics."""
-        return np.maximum(interpolated(self.P, self.mesh.coordinate(x))[0], 0)
+        """Return the pressure p h_o²/(6 eta U l) at mid-width and x/l, (..., places), by cubics.
+
+        At the ends of the pad it is that of the surroundings, without what rounding leaves of it.
+        """
+        return np.maximum(interpolated(self.P, self.mesh.coordinate(x))[0], 0) * ((x > 0) & (x < 1))
 
     def gradient(self, x: Array) -> Array:
         """Return pressure gradient h_o²/(eta U) dp/dx at mid-width and x/l, one a pad, by the same cubics."""

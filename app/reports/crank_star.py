@@ -1,6 +1,6 @@
 """The throw star: the crankpins of an engine seen from its flywheel, each with the cylinders on it.
 
-`static/throw_star.js` draws the same in the page. x is up and y left, as `engine` 2 counts its angles, so the
+`static/crank_star.js` draws the same in the page. x is up and y left, as `engine` 2 counts its angles, so the
 shaft turns against the hands of a clock. Pins at one angle are one ray, whichever throws they are on.
 """
 
@@ -27,7 +27,7 @@ def rays(angles: Sequence[float]) -> list[tuple[float, list[int]]]:
     return star
 
 
-def throw_star(angles: Sequence[float]) -> str:
+def crank_star(angles: Sequence[float]) -> str:
     """Return the star as SVG; empty without pins. `angles` are those of the cylinders' pins [deg]."""
     if not angles:
         return ""

@@ -6,9 +6,9 @@ from xml.etree import ElementTree
 import pytest
 
 from app.calculations.schemas.evaluations import Output
+from app.reports.crank_star import RAY, crank_star, rays
 from app.reports.pictures import MOST_PINS, pictures
 from app.reports.plots import drawn
-from app.reports.throw_star import RAY, rays, throw_star
 
 V8 = [45.0, 45.0, 135.0, 135.0, 315.0, 315.0, -135.0, 225.0]
 DECLARED = SimpleNamespace(
@@ -23,7 +23,7 @@ def step(angles):
 
 
 def found(angles, tag):
-    root = ElementTree.fromstring(throw_star(angles))
+    root = ElementTree.fromstring(crank_star(angles))
     return [one for one in root.iter() if one.tag.endswith(f"}}{tag}")]
 
 
@@ -41,14 +41,14 @@ def test_x_is_up_and_y_left_as_the_engine_counts():
 
 def test_every_cylinder_is_named_once():
     assert [one.text for one in found(V8, "text")] == ["1, 2", "3, 4", "5, 6", "7, 8"]
-    assert "-0.0" not in throw_star([0, 90, 180, 270])
+    assert "-0.0" not in crank_star([0, 90, 180, 270])
 
 
 def test_an_engine_shows_its_star_on_the_page_and_in_the_report():
     (picture,) = pictures(DECLARED, step(V8))
     assert picture.for_script("engine") == {"kind": "star", "scope": "engine", "angles": "crankpin_angles"}
     (plot,) = drawn(DECLARED, step(V8))
-    assert plot.svg == throw_star(V8)
+    assert plot.svg == crank_star(V8)
     assert [one.kind for one in pictures(DECLARED, step([0.0]))] == ["star"]
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from cad.drafting.formats import COLUMN, EDGE, LEFT
 from cad.drafting.frames import Frame
-from cad.drafting.lettering import clipped, width_of
+from cad.drafting.letter_width import clipped, width_of
 from cad.drafting.page import APP, Page
 from cad.drafting.symbols import basic_texture, first_angle, texture
 from cad.drafting.title import (

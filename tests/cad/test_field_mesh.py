@@ -10,10 +10,10 @@ from PIL import Image
 
 from cad.cranks.chain_throw import shaft_of_throws, sizes_of_throw
 from cad.cranks.shaft_fields import along_shaft, at_fillets, in_throw, places_of
+from cad.field_mesh import Field, Glb
 from cad.gltf import write_glb
 from cad.mesh import closed_mesh
 from cad.models.crankshaft_v2 import Crankshaft
-from cad.painting import Field, Glb
 from cad.step import Body
 
 SIZES = {

@@ -13,7 +13,7 @@ from math import atan2, degrees, hypot, pi, radians, remainder
 
 from cadquery import Vector
 
-from cad.cranks.reading import Webs, stubs
+from cad.cranks.throw_readback import Webs, stubs
 from cad.surfaces import Seen, Surface, Z
 
 _CLEAR = 1e-6  # [mm], and as the sine of an angle

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import asin, degrees, hypot, pi
 
+from cad.revolution import nearest
 from cad.shells.half_shell import HalfShell
 from cad.shells.relief import read_relief
 from cad.surfaces import Seen, Surface, Y, Z
-from cad.turned import nearest
 
 _SAME = 1e-6  # [mm]
 

@@ -6,7 +6,7 @@ from cad.catalogue import models
 from cad.header import Header
 from cad.model import Box, CadModel
 from cad.regenerate import as_quantities, as_text, build_key
-from cad.toleranced import Limits, carried, limits, limits_in
+from cad.tolerances import Limits, carried, limits, limits_in
 from templates.core.catalogue.digests import MARKS
 from templates.core.language.template import Array, given
 

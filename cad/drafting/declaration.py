@@ -10,12 +10,12 @@ from cad.assemblies import AssemblyModel
 from cad.carriers import Carriers
 from cad.catalogue import models
 from cad.drafting.curves import Point
-from cad.drafting.matching import length_of
+from cad.drafting.parameter_match import length_of
 from cad.drafting.title import TEXTURE, roughness
 from cad.header import Header
 from cad.model import CadModel
 from cad.step import Body
-from cad.toleranced import REPEATED, Carried, Limits, carried, limits_in
+from cad.tolerances import REPEATED, Carried, Limits, carried, limits_in
 
 _FACES = ("cylinders", "beside", "spheres", "planes")  # that a tool machines, so they have a texture
 
@@ -47,7 +47,7 @@ class Declared:
     carriers
         The faces that carry dimensions, by parameter.
     sections
-        Removed sections by letter, in the words of `cad.drafting.removed`.
+        Removed sections by letter, in the words of `cad.drafting.removed_section`.
     """
 
     is_shaft: bool = False

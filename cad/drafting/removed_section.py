@@ -17,21 +17,21 @@ from itertools import combinations
 from cadquery import Location, Vector
 
 from cad.drafting.curves import Point
-from cad.drafting.cutting import CLEAR, Cut, Frame, curve_of, cut_of, faces_across
+from cad.drafting.dimension_layout import TEXT, NoRoom, Placed, Placing
 from cad.drafting.labels import label_of
 from cad.drafting.lanes import Lane
-from cad.drafting.lettering import width_of
-from cad.drafting.matching import Dimension, length_of, matched
+from cad.drafting.letter_width import width_of
 from cad.drafting.measures import Form, Measure
 from cad.drafting.page import Page
-from cad.drafting.placing import TEXT, NoRoom, Placed, Placing
+from cad.drafting.parameter_match import Dimension, length_of, matched
 from cad.drafting.plan import LANE, Plan
 from cad.drafting.room import Rectangle, Room
+from cad.drafting.section import CLEAR, Cut, Frame, curve_of, cut_of, faces_across
 from cad.drafting.symbols import arrow
 from cad.drafting.views import View
 from cad.step import Body
 from cad.surfaces import Y, Z
-from cad.toleranced import Limits
+from cad.tolerances import Limits
 
 LETTERS = 5.0  # height of the letters that name a section [mm on paper]
 _MARGIN = 12.0  # about a section, beside its lanes [mm on paper]

@@ -10,7 +10,7 @@ from math import dist, isclose
 
 from cad.drafting.curves import Point
 from cad.drafting.measures import Measure, Sort
-from cad.toleranced import Limits
+from cad.tolerances import Limits
 from templates.core.units.units import unit
 
 _WORDS: dict[str, tuple[Sort, ...]] = {

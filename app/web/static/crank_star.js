@@ -1,7 +1,7 @@
-// The crankpins of an engine seen from its flywheel; app/reports/throw_star.py draws the same in a report.
+// The crankpins of an engine seen from its flywheel; app/reports/crank_star.py draws the same in a report.
 const SPACE = "http://www.w3.org/2000/svg", SIZE = 120, RAY = 74, WORDS = 98, SAME = 0.05;
 
-export function showThrowStar(place, picture, values) {
+export function showCrankStar(place, picture, values) {
   const star = make("svg", { viewBox: `${-SIZE} ${-SIZE} ${2 * SIZE} ${2 * SIZE}`, role: "img", "font-size": 12, "text-anchor": "middle" });
   const merged = rays(values[picture.angles].value);
   const words = merged.map(([angle, names]) => `${names.join(" and ")} at ${Math.round(10 * angle) / 10}°`);

@@ -15,7 +15,7 @@ from cad.drafting.curves import Point
 from cad.drafting.formats import FORMATS
 from cad.drafting.labels import Label, label_of
 from cad.drafting.lanes import Lane
-from cad.drafting.matching import Dimension
+from cad.drafting.parameter_match import Dimension
 from cad.drafting.plan import LANE, Plan
 from cad.drafting.room import Rectangle, Room, around
 
