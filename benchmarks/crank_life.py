@@ -2,7 +2,7 @@
 
     python -m benchmarks.crank_life    # docs/fatigue.md
 
-Finite elements once, then any cycle. The example of `engine` 2 (a four-cylinder engine of 86 mm stroke); the
+Finite elements once, then any cycle. An in-line four of 86 mm stroke (`benchmarks/in_line_four.py`); the
 load of pin 1 on its throw, with the torque of its own cylinder.
 """
 
@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.in_line_four import IN_LINE_FOUR
 from cad.analysis.unit_loads import Crank, LoadedThrow, UnitStresses, fillet_stresses
 from cad.models.crank_throw_v1 import CrankThrow
 from cad.regenerate import regenerate
@@ -52,9 +53,9 @@ def as_inputs(found: UnitStresses) -> dict[str, Any]:
 
 def pin_forces() -> np.ndarray:
     """Return the load of pin 1 over the cycle, along the throw and (imaginary) across it [N]."""
-    engine = built_in().get("engine", 2)
+    engine = built_in().get("engine", 1)
     names = ["crankpin_load_x", "crankpin_load_y", "crank_angle", "crankpin_angles"]
-    raw = {**engine.example, "crank_angle_step": "5 deg"}
+    raw = {**IN_LINE_FOUR, "crank_angle_step": "5 deg"}
     x, y, angle, pins = (evaluate(engine, raw, outputs=names).outputs[name].value for name in names)
     return (x[0] + 1j * y[0]) * np.exp(-1j * pi / 180 * (np.asarray(angle) + pins[0]))
 

@@ -11,7 +11,6 @@ own, as are clearance, viscosity and speed.
 
 import json
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -20,11 +19,10 @@ import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
 
-from benchmarks.film_cycle_accuracy import ROD_RATIO, firing
 from templates.core.arrays import Array
 from templates.core.language.evaluate import evaluate
 from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
-from templates.physics.orbits.cyclic_film import cycle_orbit
+from templates.physics.supplied.fed_cycle import fed_orbit
 
 RESULTS = Path("benchmarks/results/film_cycle.json")
 PICTURE = Path("docs/pictures/oil_film_cycle.png")
@@ -36,6 +34,15 @@ CURVES = ("eccentricity_x", "eccentricity_y", "film_thickness")
 BORE, STROKE, SPEED = 0.318, 0.368, 600 * np.pi / 30
 RECIPROCATING, TURNING, PEAK = 120.0, 60.0, 7.5e6
 CASES = 1000
+ROD_RATIO = 4.0
+LEVELS = ("mobility_short", "mobility", "flooded")
+"""Those of a bearing without a stated supply."""
+
+
+def firing(angle: Array, at: float, width: float, period: float) -> Array:
+    """Return a pressure that rises fast and falls slowly, 1 at its top, over a cycle."""
+    late = (angle - at + period / 2) % period - period / 2
+    return np.asarray(np.exp(-((late / np.where(late < 0, width / 3, width)) ** 2)))
 
 
 def quantity(value: Any, unit: str) -> dict[str, Any]:
@@ -83,13 +90,13 @@ def least(function: Callable[[], object], repeats: int) -> float:
 def orbit_seconds(level: str) -> float:
     """Return the wall time of the big end's orbit [s]."""
     duty = OilFilmCycle.from_quantities(big_end()).at(level).duty
-    return least(lambda: cycle_orbit(level, duty), 1 if level == "transient" else 20)
+    return least(lambda: fed_orbit(level, duty), 1 if level == "flooded" else 20)
 
 
 def levels() -> dict[str, Any]:
     """Return every level on the big end at 1°, with its cost."""
     by_level: dict[str, Any] = {}
-    for level in OilFilmCycle.levels:
+    for level in LEVELS:
         answers = evaluate(OilFilmCycle, big_end(), level=level).outputs
         by_level[level] = {name: answers[name].value for name in SHOWN} | {
             "orbit_seconds": orbit_seconds(level)
@@ -102,11 +109,10 @@ def costs() -> dict[str, float]:
     """One cycle of 720 points to periodicity, and each of a thousand at once, by finite-length mobility."""
     one = OilFilmCycle.from_quantities(big_end()).at("mobility").duty
     sizes = np.linspace(0.5, 1.5, CASES)
-    size = sizes[:, None]
-    many = replace(one, F_x=size * one.F_x, F_y=size * one.F_y)
+    many = OilFilmCycle.from_quantities(big_end(sizes=sizes)).at("mobility").duty
     single, whole = (
-        least(lambda: cycle_orbit("mobility", one), 20),
-        least(lambda: cycle_orbit("mobility", many), 1),
+        least(lambda: fed_orbit("mobility", one), 20),
+        least(lambda: fed_orbit("mobility", many), 1),
     )
     asked = big_end()
     through = least(lambda: evaluate(OilFilmCycle, asked, outputs=["minimum_film_thickness"]), 10)
@@ -126,7 +132,7 @@ def draw(by_level: dict[str, Any]) -> None:
     )
     turn = np.linspace(0, 2 * np.pi, 200)
     left.plot(np.cos(turn), np.sin(turn), color="0.6", lw=1)
-    styles = {"mobility_short": ":", "mobility": "-", "transient": "--"}
+    styles = {"mobility_short": ":", "mobility": "-", "flooded": "--"}
     for level, answers in by_level.items():
         curves = answers["curves"]
         x, y = (np.append(curves[name], curves[name][0]) for name in CURVES[:2])

@@ -3,7 +3,7 @@
     python -m benchmarks.step_bound [duties]      two minutes for 400, and as many for grooved ones
 
 Prints the shares and keeps them in benchmarks/results/step_bound.json. Grooved duties are those of level
-`mobility_grooved` of `oil_film_cycle` 2, with a groove of any place, extent and width up to half the bearing.
+`mobility_grooved` of `oil_film_cycle` 1, with a groove of any place, extent and width up to half the bearing.
 
 The truth is the orbit with steps sixteen times as fine. `step_error` is what `oil_film_cycle` 1 answers, the
 change at shared nodes; `step_bound` is that of `templates/physics/orbits/step_bound.py`.

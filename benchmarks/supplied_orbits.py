@@ -9,7 +9,7 @@
 `finer` takes two of ten, engines and Fourier loads of every kind of supply alike. `why` marches each duty
 whose least gap changes by more than 2 % three times more, from its result: further cycles of the same march,
 twice the cells with the same step, half the step with the same cells. `near` marches those whose holes stay
-under the load on the meshes that `oil_film_cycle` 3 adds, and on a finest one: three times the cells around,
+under the load on the meshes that `oil_film_cycle` 1 adds, and on a finest one: three times the cells around,
 10 rows and half the step; some 40 s a duty, those that miss first.
 
 Every duty is written to benchmarks/results/supplied_orbits.json as soon as it is marched, and is not marched

@@ -68,16 +68,16 @@ class AssemblyDescription(Description):
     components: tuple[Component, ...] = ()
 
     def bases(self) -> tuple[type[CadModel], ...]:
-        """The assembly, and the class of its model."""
+        """Return the assembly, and the class of its model."""
         return (AssemblyModel, *([base_of(self.base)] if self.base else []))
 
     def example(self) -> Mapping[str, Any]:
-        """The example of its model; places are as in the description."""
+        """Return the example of its model; places are as in the description."""
         return base_of(self.base).example if self.base else super().example()
 
     @property
     def trust(self) -> str:
-        """The limits of the checks on its solids, in plain words."""
+        """Return the limits of the checks on its solids, in plain words."""
         names = ", ".join(one.name for one in self.components)
         own = f"{self.base[0]} is checked as ever. " if self.base else ""
         return (
@@ -92,7 +92,7 @@ class AssemblyModel(ImportedModel):
     imported: ClassVar[AssemblyDescription]
 
     def build(self) -> tuple[Part, ...]:
-        """The parts of its model, and its fixed parts where they stand."""
+        """Return the parts of its model, and its fixed parts where they stand."""
         if _PARTS not in vars(self):
             built = tuple(self._built())
             self._require_known(built)
@@ -101,7 +101,7 @@ class AssemblyModel(ImportedModel):
         return parts
 
     def bounding_box(self) -> Box:
-        """The box of its model, and those of its fixed parts."""
+        """Return the box of its model, and those of its fixed parts."""
         from cad.inspect import bounding_box
         from cad.step import Body
 
@@ -116,20 +116,20 @@ class AssemblyModel(ImportedModel):
         )
 
     def dimensions(self, seen: Mapping[str, Any]) -> dict[str, Dimension]:
-        """The parameters of its model, as its own parts show them."""
+        """Return the parameters of its model, as its own parts show them."""
         if not self.imported.base:
             return {}
         own = {name: part for name, part in seen.items() if not self.component_of(name)}
         return dict(super(ImportedModel, self).dimensions(own))
 
     def component_of(self, part: str) -> str | None:
-        """The fixed part to which a solid of this name belongs; None of a solid of its model."""
+        """Return the fixed part to which a solid of this name belongs; None of a solid of its model."""
         name = part.partition(_WITHIN)[0]
         return name if any(name == one.name for one in self.imported.components) else None
 
     @classmethod
     def further_measures(cls) -> Mapping[str, str]:
-        """Clearance and overlap of each fixed part, unless a parameter has that name."""
+        """Return the clearance and overlap of each fixed part, unless a parameter has that name."""
         measures = {
             f"{one.name}_{end}": unit for one in cls.imported.components for end, unit in BETWEEN.items()
         }
@@ -218,7 +218,7 @@ class AssemblyModel(ImportedModel):
                 yield placed
 
     def place(self, component: str) -> Place:
-        """Where a fixed part stands on its datum."""
+        """Return where a fixed part stands on its datum."""
         from cad.placement import Place
 
         numbers = dict[str, float]()
@@ -233,7 +233,7 @@ class AssemblyModel(ImportedModel):
 
 
 def _solids_of(component: Component, step: bytes) -> list[Part]:
-    """The solids of a fixed part: under its name if there is one, else each with a name of its own."""
+    """Return the solids of a fixed part: under its name if there is one, else each with a name of its own."""
     try:
         parts = list(parts_of_step(step))
     except UnreadableStep as error:
@@ -246,12 +246,12 @@ def _solids_of(component: Component, step: bytes) -> list[Part]:
 
 
 def base_of(base: tuple[str, int]) -> type[CadModel]:
-    """The class of a model of this program, by id and version."""
+    """Return the class of a model of this program, by id and version."""
     return models().get(*base)
 
 
 def assembly_of(read: Mapping[str, Any]) -> AssemblyDescription:
-    """The description from its JSON, of which the parameters are read already."""
+    """Return the description from its JSON, of which the parameters are read already."""
     components = tuple(_component(one) for one in read["components"])
     base = read["base"]
     return AssemblyDescription(
@@ -271,7 +271,7 @@ def described(
     base: tuple[str, int] | None,
     components: Mapping[Component, Mapping[str, float]],
 ) -> AssemblyDescription:
-    """The description of an assembly; `components` with the numbers of their places, in mm and deg."""
+    """Return the description of an assembly; `components` with the numbers of their places, in mm and deg."""
     return AssemblyDescription(
         program="assembly",
         file=file,

@@ -65,7 +65,7 @@ class Carriers:
         self._seen: dict[str, list[FaceSeen]] = {}
 
     def places(self, name: str) -> list[Place]:
-        """Where a dimension stands, once for each pair of levels.
+        """Return where a dimension stands, once for each pair of levels.
 
         Raises
         ------
@@ -90,7 +90,7 @@ class Carriers:
         return [Place(faces or self._missing(one, size))]
 
     def counted(self, name: str) -> Carried:
-        """A dimension that repeats along an axis, as pairs of planes across that.
+        """Return a dimension that repeats along an axis, as pairs of planes across that.
 
         Raises
         ------
@@ -119,7 +119,7 @@ class Carriers:
         return next((each for each in standing if self._sides(each, size)), one)
 
     def spans(self, name: str) -> list[tuple[float, float]]:
-        """Where a dimension that repeats along an axis begins and ends, each time [mm]."""
+        """Return where a dimension that repeats along an axis begins and ends, each time [mm]."""
         one, size = self._declared[name], self._sizes[name]
         of = [self._declared[other] for other in one.others_named]
         axis = AXES[of[0].where]
@@ -133,12 +133,12 @@ class Carriers:
         ]
 
     def _levels_along(self, one: Carried, axis: Vector) -> list[float]:
-        """Where planes across an axis lie, from low to high."""
+        """Return where planes across an axis lie, from low to high."""
         planes = (f for f in self._faces(one) if f.kind == "plane" and f.surface.along(axis))
         return sorted({round(f.surface.point.dot(axis), 6) for f in planes})
 
     def _round(self, one: Carried) -> tuple[int, ...]:
-        """The faces of a diameter; without those that belong to the dimension of an end."""
+        """Return the faces of a diameter; without those that belong to the dimension of an end."""
         faces = self._of_size(one)
         if one.end:
             return tuple(face.number for face in _at_end(faces, one))

@@ -13,5 +13,5 @@ BUILT_IN = Path(__file__).parent / "models"
 
 @cache
 def models(*folders: Path) -> Catalogue[CadModel]:
-    """The built-in models and those in further folders."""
+    """Return the built-in models and those in further folders."""
     return find((BUILT_IN, *folders), CadModel, "model")

@@ -75,7 +75,7 @@ def check_overlaps(model: CadModel, bodies: Sequence[Body]) -> None:
 
 
 def compared(model: CadModel, bodies: Sequence[Body], report: Report) -> tuple[Clearance, ...]:
-    """What lies between the fixed parts of an assembly and all other parts.
+    """Return what lies between the fixed parts of an assembly and all other parts.
 
     Where more than `MOST_NAMED` pairs interfere, the rest is not compared: `check_clearances` refuses them.
     """
@@ -146,7 +146,7 @@ def check_places(model: CadModel, parts: Sequence[Part], bodies: Sequence[Body])
 
 
 def check_dimensions(model: CadModel, seen: Mapping[str, Seen]) -> dict[str, Dimension]:
-    """Every parameter that the solid shows is the one requested; returns them as read back, by API name.
+    """Compare every parameter that the solid shows with the one requested; return them by API name.
 
     Of a list each item is; where one number stands for all items, each of them is that number.
 
@@ -199,7 +199,10 @@ def _check_body(model: CadModel, part: Part, one: Measured) -> None:
 
 
 def _are_alike(measured: Dimension, wanted: Dimension) -> bool:
-    """True if a list is the one requested; one number may request all its items, one item shows no list."""
+    """Return whether a list is the one requested.
+
+    One number may request all its items, one item shows no list.
+    """
     if not isinstance(measured, list):
         return False
     each = wanted if isinstance(wanted, list) else [wanted] * len(measured)

@@ -60,19 +60,19 @@ LARGE_BALL = 25.4  # [mm] from which capacity grows with the power 1.4 instead o
 
 @units(None, returns="m")
 def bore_by_designation(designation: str) -> Array:
-    """Bore [m], ISO 15."""
+    """Return the bore [m], ISO 15."""
     return np.asarray(SIZES[designation][0] / 1e3)
 
 
 @units(None, returns="m")
 def outside_by_designation(designation: str) -> Array:
-    """Outer diameter [m], ISO 15."""
+    """Return the outer diameter [m], ISO 15."""
     return np.asarray(SIZES[designation][1] / 1e3)
 
 
 @units(None, returns="m")
 def width_by_designation(designation: str) -> Array:
-    """Width [m], ISO 15."""
+    """Return the width [m], ISO 15."""
     return np.asarray(SIZES[designation][2] / 1e3)
 
 
@@ -119,12 +119,12 @@ class Ring:
         return self.groove_radius**2 * (half - sin(half) * cos(half))
 
     def solid(self, pitch_radius: float, side: int) -> Shape:
-        """The section turned about z; side 1 is the outer ring, -1 the inner one."""
+        """Return the section turned about z; side 1 is the outer ring, -1 the inner one."""
         section = self._outline(lambda s, z: Vector(pitch_radius + side * s, 0, z))
         return Solid.revolve(section, 360, Vector(0, 0, 0), Vector(0, 0, 1))
 
     def volume(self, pitch_radius: float, side: int) -> float:
-        """The area times the path of its centroid [mm³] (Pappus)."""
+        """Return the area times the path of its centroid [mm³] (Pappus)."""
         area = (self.back - self.shoulder) * self.width - self.chamfer**2 - self._segment
         rectangle = (self.back**2 - self.shoulder**2) / 2 * self.width
         chamfers = self.chamfer**2 * (self.back - self.chamfer / 3)
@@ -161,16 +161,16 @@ class Cage:
 
     @property
     def inside(self) -> float:
-        """Radius of its bore."""
+        """Return the radius of its bore."""
         return self.pitch_radius - self.thickness / 2
 
     @property
     def outside(self) -> float:
-        """Radius of its outside."""
+        """Return the radius of its outside."""
         return self.pitch_radius + self.thickness / 2
 
     def solid(self) -> Shape:
-        """The ring, its seam between two pockets, less the pockets."""
+        """Return the ring, its seam between two pockets, less the pockets."""
         b, half_pitch = self.width / 2, degrees(pi / self.balls)
         section = outline((self.inside, -b), (self.outside, -b), (self.outside, b), (self.inside, b))
         ring = turned(section, half_pitch)
@@ -183,6 +183,6 @@ class Cage:
         return Solid.makeCylinder(self.pocket, 1.1 * self.outside - start, along * start, along)
 
     def volume(self) -> float:
-        """The ring less what the pockets take [mm³]."""
+        """Return the ring less what the pockets take [mm³]."""
         ring = pi * (self.outside**2 - self.inside**2) * self.width
         return ring - self.balls * drilled_volume(self.pocket, self.outside, self.inside)

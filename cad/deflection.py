@@ -31,7 +31,7 @@ _SAME = 1e-9  # relative; 0.1 mm and 100 um are one step
 
 
 def with_deflection(kind: str, raw: str) -> str:
-    """The kind of file with a deflection as a user typed it, such as `0.05 mm`.
+    """Return the kind of file with a deflection as a user typed it, such as `0.05 mm`.
 
     Raises
     ------
@@ -56,28 +56,30 @@ def with_deflection(kind: str, raw: str) -> str:
 
 
 def _steps(around: float) -> list[float]:
-    """The steps from a decade below a length to a decade above it, ascending."""
+    """Return the steps from a decade below a length to a decade above it, ascending."""
     decade = floor(log10(around))
     return [float(f"{step:g}e{decade + more}") for more in (-1, 0, 1) for step in STEPS]
 
 
 def _step_not_above(length: float) -> float:
-    """The greatest step that is not coarser than a length."""
+    """Return the greatest step that is not coarser than a length."""
     return max(step for step in _steps(length) if step <= length * (1 + _SAME))
 
 
 def _step_not_below(length: float) -> float:
-    """The least step that is not finer than a length."""
+    """Return the least step that is not finer than a length."""
     return min(step for step in _steps(length) if step >= length * (1 - _SAME))
 
 
 def plain_kind(kind: str) -> str:
-    """The kind without its deflection."""
+    """Return the kind without its deflection."""
     return kind.partition(_AT)[0]
 
 
 def deflection_of(kind: str, bodies: Sequence[Body]) -> float | None:
-    """The deflection [mm] of a kind of file; None where it has the usual one, a part of each body's size.
+    """Return the deflection [mm] of a kind of file.
+
+    None where it has the usual one, a part of each body's size.
 
     Raises
     ------

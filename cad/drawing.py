@@ -29,7 +29,7 @@ Line = list[tuple[float, float]]
 
 
 def write_svg(bodies: Sequence[Body]) -> bytes:
-    """A parallel projection of the bodies, with hidden lines."""
+    """Return a parallel projection of the bodies, with hidden lines."""
     shapes = [body.shape.moved(place) for body in bodies for place in body.places]
     hidden_line = _projected(Compound.makeCompound(shapes))
     visible = (hidden_line.VCompound(), hidden_line.OutLineVCompound())
@@ -49,7 +49,7 @@ def _projected(shape: Shape) -> HLRBRep_HLRToShape:
 
 
 def lines_of(compounds: Sequence[Any]) -> Iterator[Line]:
-    """The edges of projections as lines of points; y points downwards, as in SVG."""
+    """Yield the edges of projections as lines of points; y points downwards, as in SVG."""
     for compound in compounds:
         if compound is None or compound.IsNull():
             continue

@@ -38,7 +38,7 @@ DRAWINGS = ("drawing.svg", "dxf", "drawing.pdf")
 
 
 def derive(step: bytes, kind: str) -> bytes:
-    """The file of that kind for a STEP file; equal STEP bytes give equal bytes.
+    """Return the file of that kind for a STEP file; equal STEP bytes give equal bytes.
 
     Raises
     ------

@@ -43,7 +43,7 @@ class Field:
     high: float
 
     def colours(self) -> Array:
-        """Of every corner, as on a screen (sRGB), 0 to 1."""
+        """Return the colour of every corner, as on a screen (sRGB), 0 to 1."""
         span = self.high - self.low
         share = (self.values - self.low) / span if span > 0 else np.zeros_like(self.values)
         there = np.isfinite(share)
@@ -67,26 +67,26 @@ class Glb:
 
     @cached_property
     def points(self) -> Array:
-        """The corners (n, 3) [mm] in the axes of the model."""
+        """Return the corners (n, 3) [mm] in the axes of the model."""
         matrix = np.array(self.about["nodes"][1]["matrix"]).reshape(4, 4).T
         own = self._read(self.drawn["attributes"]["POSITION"], np.float32, 3)
         return np.asarray(own @ matrix[:3, :3].T + matrix[:3, 3])
 
     @cached_property
     def normals(self) -> Array:
-        """Of the corners, outwards (n, 3)."""
+        """Return the normals of the corners, outwards (n, 3)."""
         matrix = np.array(self.about["nodes"][1]["matrix"]).reshape(4, 4).T
         own = self._read(self.drawn["attributes"]["NORMAL"], np.float32, 3)
         return np.asarray(own @ matrix[:3, :3].T)
 
     @cached_property
     def triangles(self) -> Integers:
-        """Numbers of corners (m, 3)."""
+        """Return the numbers of corners (m, 3)."""
         return self._read(self.drawn["indices"], np.uint32, 3).astype(np.intp)
 
     @cached_property
     def faces(self) -> Integers:
-        """The face of every corner (n,): faces of the solid share no corners."""
+        """Return the face of every corner (n,): faces of the solid share no corners."""
         a, b, c = self.triangles.T
         one, other = np.concatenate([a, b]), np.concatenate([b, c])
         joined = coo_array((np.ones(len(one), dtype=np.int8), (one, other)), shape=(len(self.points),) * 2)
@@ -99,7 +99,7 @@ class Glb:
         return np.asarray(values.reshape(-1, columns))
 
     def painted(self, field: Field) -> bytes:
-        """The same file with the colours of a field; its root node says what they mean."""
+        """Return the same file with the colours of a field; its root node says what they mean."""
         linear = (field.colours() ** 2.2).astype(np.float32)  # glTF wants linear light
         about = json.loads(json.dumps(self.about))
         data = linear.tobytes()
@@ -122,7 +122,7 @@ class Glb:
         return framed(text, self.binary + data)
 
     def picture(self, field: Field) -> bytes:
-        """A shaded PNG picture with the colours of a field."""
+        """Return a shaded PNG picture with the colours of a field."""
         corners = self.triangles
         faces = self.faces[corners[:, 0]]
         return shaded(Scene(self.points[corners], self.normals[corners], field.colours()[corners], faces))

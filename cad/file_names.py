@@ -11,7 +11,7 @@ _OTHER = re.compile(r"[^A-Za-z0-9.-]+")
 
 
 def plain_name(text: str) -> str:
-    """A text as part of a file's name in ASCII: accents are left out, other signs become `_`."""
+    """Return a text as part of a file's name in ASCII: accents are left out, other signs become `_`."""
     letters = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
     return _ends(_OTHER.sub("_", letters))
 
@@ -31,10 +31,10 @@ def _ends(text: str) -> str:
 
 
 def stem(design: str, model: str, revision: int) -> str:
-    """The name of a model's file without its ending, in ASCII."""
+    """Return the name of a model's file without its ending, in ASCII."""
     return f"{plain_name(design)}_{model}_r{revision}"
 
 
 def wide_stem(design: str, model: str, revision: int) -> str:
-    """The name of a model's file without its ending, in the letters of its user."""
+    """Return the name of a model's file without its ending, in the letters of its user."""
     return f"{name(design)}_{model}_r{revision}"

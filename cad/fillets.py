@@ -51,11 +51,11 @@ class Crank:
 
     @property
     def plain(self) -> float:
-        """The length of the pin between its fillets."""
+        """Return the length of the pin between its fillets."""
         return self.pin_length - 2 * self.fillet
 
     def rings(self) -> tuple[Ring, ...]:
-        """The four fillets: of the pin and of the journals, at the lower and the upper web."""
+        """Return the four fillets: of the pin and of the journals, at the lower and the upper web."""
         margin = _MARGIN * self.fillet
         half, outer = self.pin_length / 2, self.pin_length / 2 + self.web_thickness
         spans = ((self.throw, self.pin_radius, half - self.fillet), (0.0, self.journal_radius, outer))

@@ -21,7 +21,7 @@ _Z_UP_MM = [1e-3, 0, 0, 0, 0, 0, -1e-3, 0, 0, 1e-3, 0, 0, 0, 0, 0, 1]  # column 
 
 
 def write_glb(meshes: Sequence[Mesh], title: str = "model") -> bytes:
-    """The meshes as one GLB file; its root node has the title, every other the name of its body there."""
+    """Return meshes as one GLB file; its root node has the title, every other the name of its body there."""
     buffers = _Buffers()
     nodes = [
         _node(i, place, name)
@@ -64,7 +64,7 @@ class _Buffers:
         return len(self.accessors) - 1
 
     def described(self) -> dict[str, Any]:
-        """Buffers, views and accessors as glTF names them."""
+        """Return the buffers, views and accessors as glTF names them."""
         length = sum(map(len, self.chunks))
         return {
             "buffers": [{"byteLength": length}],
@@ -100,7 +100,7 @@ def _material(one: Mesh) -> dict[str, Any]:
 
 
 def framed(text: bytes, binary: bytes) -> bytes:
-    """The 12-byte header and both chunks, padded to four bytes."""
+    """Return the 12-byte header and both chunks, padded to four bytes."""
     text += b" " * (-len(text) % 4)
     binary += b"\0" * (-len(binary) % 4)
     chunks = [(text, b"JSON"), (binary, b"BIN\0")]

@@ -32,12 +32,12 @@ class Header:
 
     @property
     def title(self) -> str:
-        """One line for people."""
+        """Return one line for people."""
         return f"Crankwright {self.model} version {self.version}"
 
 
 def write_header(header: Header, schema: str, kernel: str) -> str:
-    """The HEADER section, from `HEADER;` to `ENDSEC;`."""
+    """Return the HEADER section, from `HEADER;` to `ENDSEC;`."""
     described = [header.title, f"build: {header.build}"]
     for name, value in header.parameters.items():
         described.append(f"{name}: {value[:_LONGEST_PART]}")
@@ -64,13 +64,13 @@ def read_header(step: bytes) -> Header | None:
 
 
 def _continued(name: str, value: str) -> list[str]:
-    """The further strings of a long value: each repeats the parameter's name with a plus."""
+    """Return the further strings of a long value: each repeats the parameter's name with a plus."""
     places = range(_LONGEST_PART, len(value), _LONGEST_PART)
     return [f"{name}+: {value[at : at + _LONGEST_PART]}" for at in places]
 
 
 def _joined(strings: list[str]) -> dict[str, str]:
-    """Parameters from their strings."""
+    """Return the parameters from their strings."""
     parts: dict[str, list[str]] = {}
     for string in strings:
         name, _, value = string.partition(": ")

@@ -73,24 +73,24 @@ class Description:
 
     @property
     def text(self) -> str:
-        """The description as canonical JSON."""
+        """Return the description as canonical JSON."""
         return json.dumps(asdict(self), sort_keys=True, ensure_ascii=False)
 
     def digest(self) -> str:
-        """SHA-256 of the description, which names the file by its own hash."""
+        """Return SHA-256 of the description, which names the file by its own hash."""
         return hashlib.sha256(self.text.encode()).hexdigest()
 
     def bases(self) -> tuple[type[CadModel], ...]:
-        """The classes of which its own is made."""
+        """Return the classes of which its own is made."""
         return (ImportedModel,)
 
     def example(self) -> Mapping[str, Any]:
-        """A valid set of parameters: as in the file."""
+        """Return a valid set of parameters: as in the file."""
         return {one.name: {"value": _plain(one.value), "unit": one.unit} for one in self.parameters[:1]}
 
     @property
     def trust(self) -> str:
-        """The limits of the checks on its solids, in plain words."""
+        """Return the limits of the checks on its solids, in plain words."""
         if self.program == "step":
             return (
                 "lower: the shape is that of the STEP file as it was sent. It is checked to be valid solids, "
@@ -136,7 +136,7 @@ class ImportedModel(CadModel):
         vars(self)[_DRAWN] = drawn
 
     def build(self) -> tuple[Part, ...]:
-        """The solids that the program drew."""
+        """Return the solids that the program drew."""
         if _PARTS not in vars(self):
             drawn: Drawn | None = vars(self).get(_DRAWN)
             if drawn is None:
@@ -150,14 +150,14 @@ class ImportedModel(CadModel):
         return parts_as_drawn
 
     def bounding_box(self) -> Box:
-        """The box of the solids as drawn."""
+        """Return the box of the solids as drawn."""
         from cad.inspect import bounding_box
         from cad.step import Body
 
         return bounding_box(Body(one.name, one.solid, one.colour, one.places) for one in self.build())
 
     def dimensions(self, seen: Mapping[str, Any]) -> dict[str, Dimension]:
-        """The parameters that show, each as the measure of its kind that comes closest to it."""
+        """Return the parameters that show, each as the measure of its kind that comes closest to it."""
         sizes = sizes_of(seen.values())
         read: dict[str, Dimension] = {}
         for one in self.imported.parameters:
@@ -178,7 +178,7 @@ def imported_description(cls: type[CadModel]) -> Description | None:
 
 
 def sizes_of(seen: Iterable[Any]) -> dict[str, list[float]]:
-    """Diameters of cylinders, and distances of parallel planes [mm], of some parts."""
+    """Return the diameters of cylinders, and distances of parallel planes [mm], of some parts."""
     diameters, distances = set[float](), set[float]()
     for part in seen:
         diameters.update(round(cylinder.diameter, 9) for cylinder in part.cylinders)
@@ -198,7 +198,7 @@ def _distances(planes: Any) -> Iterator[float]:
 
 
 def _factor(one: Parameter) -> float:
-    """By how much a size on the solid [mm] is greater than the parameter's number."""
+    """Return how many times a size on the solid [mm] is greater than the parameter's number."""
     return (2 if one.role == "radius" else 1) * (25.4 if one.unit == "inch" else 1)
 
 
@@ -232,14 +232,14 @@ def _has(sizes: Iterable[float], wanted: float) -> bool:
 
 
 def trial_sizes(drawn: Drawn) -> dict[str, list[float]]:
-    """The sizes of what a program drew; runs in a process with the kernel."""
+    """Return the sizes of what a program drew; runs in a process with the kernel."""
     from cad.surfaces import look
 
     return sizes_of(look(part.solid) for part in parts_of(drawn))
 
 
 def parts_of(drawn: Drawn) -> Iterator[Part]:
-    """What a program drew, as parts with names of their own; raises as `parts_of_step` does."""
+    """Yield what a program drew, as parts with names of their own; raises as `parts_of_step` does."""
     if drawn.step:
         yield from parts_of_step(drawn.step)
         return
@@ -249,7 +249,7 @@ def parts_of(drawn: Drawn) -> Iterator[Part]:
 
 
 def parts_of_step(step: bytes) -> Iterator[Part]:
-    """The solids of a STEP file as parts: those of equal names get numbers.
+    """Yield the solids of a STEP file as parts: those of equal names get numbers.
 
     Raises
     ------
@@ -281,7 +281,7 @@ def _part(name: str, drawn: DrawnPart) -> Part:
 
 
 def _measured(name: str, solid: Any, colour: Colour, **more: Any) -> Part:
-    """A part whose volume is measured, because no formula states it."""
+    """Return a part whose volume is measured, because no formula states it."""
     from cad.inspect import measure
     from cad.step import Body
 
@@ -306,10 +306,10 @@ def _require_stated_volume(model: CadModel, parts: Iterable[Part], stated: float
 
 
 def _plain(value: float) -> float:
-    """A whole number as one, so that a form shows `50 mm`, not `50.0 mm`."""
+    """Return a whole number as one, so that a form shows `50 mm`, not `50.0 mm`."""
     return int(value) if float(value).is_integer() else value
 
 
 def attribute_of(name: str) -> str:
-    """The attribute of a parameter: the language reserves many a plain word, such as `build`."""
+    """Return the attribute of a parameter: the language reserves many a plain word, such as `build`."""
     return f"of_{name}"

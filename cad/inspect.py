@@ -68,14 +68,14 @@ def measure(body: Body) -> Measured:
 
 
 def look_at(bodies: Iterable[Body]) -> dict[str, Seen]:
-    """The surfaces of every body, by its name."""
+    """Return the surfaces of every body, by its name."""
     return {body.name: look(body.shape, len(body.places)) for body in bodies}
 
 
 def summarise(
     bodies: Sequence[Body], measured: Sequence[Measured], densities: Mapping[str, float], box: Box
 ) -> dict[str, float]:
-    """The measures of the whole, in the units of `MEASURES`; densities [kg/m³] by the name of the body."""
+    """Return measures of the whole, in the units of `MEASURES`; densities [kg/m³] by the name of the body."""
     standing = [
         _stand(one, place, densities[body.name] * 1e-9)
         for body, one in zip(bodies, measured, strict=True)
@@ -96,7 +96,7 @@ def summarise(
 
 
 def bounding_box(bodies: Iterable[Body]) -> Box:
-    """The box of all bodies where they stand [mm], as close as the kernel finds it."""
+    """Return the box of all bodies where they stand [mm], as close as the kernel finds it."""
     faces = [
         face.wrapped.Moved(place.wrapped)  # the kernel's own, for CadQuery's asks the types of its arguments
         for body in bodies
@@ -119,24 +119,24 @@ def bounding_box(bodies: Iterable[Body]) -> Box:
 
 
 def _rounded(corner: tuple[float, float, float]) -> tuple[float, float, float]:
-    """Without the margin of 1e-7 that the kernel adds to the boxes of cut faces."""
+    """Return a point without the margin of 1e-7 that the kernel adds to the boxes of cut faces."""
     x, y, z = (round(value, 6) + 0.0 for value in corner)
     return x, y, z
 
 
 def _stand(one: Measured, place: Location, density: float) -> tuple[float, Array, Array]:
-    """Mass [kg], centre [mm] and inertia about it [kg·mm²] of a body at a place; density in kg/mm³."""
+    """Return mass [kg], centre [mm] and inertia about it [kg·mm²] of a body at a place; density in kg/mm³."""
     turn, shift = rigid(place)
     return density * one.volume, turn @ one.centre + shift, density * turn @ one.inertia @ turn.T
 
 
 def _steiner(mass: float, arm: Array) -> Array:
-    """The inertia that a mass at the end of an arm adds (parallel axes)."""
+    """Return the inertia that a mass at the end of an arm adds (parallel axes)."""
     return mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
 
 
 def _widened(box: Bnd_Box) -> Bnd_Box:
-    """A box larger by the kernel's precision, by which it widens loose boxes."""
+    """Return a box larger by the kernel's precision, by which it widens loose boxes."""
     room = Bnd_Box(box.CornerMin(), box.CornerMax())
     room.Enlarge(_PRECISION)
     return room

@@ -42,7 +42,7 @@ class Mesh:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The name of the body at each of its places, as those of `cad.model.Part`."""
+        """Return the name of the body at each of its places, as those of `cad.model.Part`."""
         return names_at(self.name, len(self.places))
 
 
@@ -75,7 +75,7 @@ def closed_mesh(body: Body, deflection: float | None = None) -> Mesh:
 
 
 def _triangulated(body: Body, linear: float, angular: float) -> Mesh:
-    """The kernel's triangles [mm, rad], without those that are none."""
+    """Return the kernel's triangles [mm, rad], without those that are none."""
     BRepMesh_IncrementalMesh(body.shape.wrapped, linear, False, angular, False)
     return _without_collapsed(_joined(body, list(_face_meshes(body.shape))))
 
@@ -90,14 +90,14 @@ def is_closed(one: Mesh) -> bool:
 
 
 def _welded(one: Mesh) -> Integers:
-    """The corners of the triangles (m, 3), where points that are equal in single precision are one."""
+    """Return the corners of the triangles (m, 3), where points that are equal in single precision are one."""
     single = np.ascontiguousarray(one.points.astype(np.float32) + np.float32(0.0))  # without negative zeros
     _, numbers = np.unique(single.view("V12").ravel(), return_inverse=True)
     return numbers[one.triangles].astype(np.int64)
 
 
 def _without_collapsed(one: Mesh) -> Mesh:
-    """A mesh without the triangles of which corners coincide, as at the poles of a sphere."""
+    """Return a mesh without the triangles of which corners coincide, as at the poles of a sphere."""
     a, b, c = _welded(one).T
     kept = (a != b) & (b != c) & (c != a)
     return one if kept.all() else replace(one, triangles=one.triangles[kept], faces=one.faces[kept])
@@ -117,7 +117,7 @@ def _joined(body: Body, pieces: Sequence[tuple[Array, Array, Integers]]) -> Mesh
 
 
 def placed(meshes: Iterable[Mesh]) -> Iterator[tuple[Mesh, Array, Array]]:
-    """Each mesh at each of its places: the mesh, its points and its normals there."""
+    """Yield each mesh at each of its places: the mesh, its points and its normals there."""
     for one in meshes:
         for place in one.places:
             turn, shift = rigid(place)

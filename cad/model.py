@@ -53,13 +53,16 @@ BRONZE: Colour = (0.80, 0.62, 0.36)
 
 
 def material_named(name: str, density: float) -> str:
-    """A material by its name and density [kg/m³]; one of no name that is as dense as steel is steel."""
+    """Return a material by its name and density [kg/m³].
+
+    One of no name that is as dense as steel is steel.
+    """
     name = name or ("steel" if isclose(density, STEEL_DENSITY, rel_tol=1e-6) else "")
     return f"{name} ({density:.6g} kg/m³)" if name else f"{density:.6g} kg/m³"
 
 
 def names_at(name: str, places: int) -> tuple[str, ...]:
-    """The name of a part at each of its places; the name alone if there is only one."""
+    """Return the name of a part at each of its places; the name alone if there is only one."""
     return (name,) if places == 1 else tuple(f"{name}_{i}" for i in range(1, places + 1))
 
 
@@ -86,7 +89,7 @@ class Part:
 
     @property
     def solid(self) -> Shape:
-        """The one solid of the shape, which some operations of the kernel wrap in a compound.
+        """Return the one solid of the shape, which some operations of the kernel wrap in a compound.
 
         Raises
         ------
@@ -101,12 +104,12 @@ class Part:
 
     @property
     def made_of(self) -> str:
-        """The material as drawings name it, with the density by which the mass is computed."""
+        """Return the material as drawings name it, with the density by which the mass is computed."""
         return material_named(self.material, self.density)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The name of the part at each of its places, as `ball_1` and `ball_2`."""
+        """Return the name of the part at each of its places, as `ball_1` and `ball_2`."""
         return names_at(self.name, len(self.places))
 
 
@@ -139,15 +142,18 @@ class CadModel(TolerancedTemplate):
     """Whether its parts are mated as in a machine, so that no two may overlap."""
 
     def build(self) -> tuple[Part, ...]:
-        """The parts, drawn from the parameters alone."""
+        """Return the parts, drawn from the parameters alone."""
         raise NotImplementedError
 
     def bounding_box(self) -> Box:
-        """The box [mm] that the parts together must fill."""
+        """Return the box [mm] that the parts together must fill."""
         raise NotImplementedError
 
     def component_of(self, part: str) -> str | None:
-        """The fixed part of an assembly to which a solid belongs; None of the solids of the model itself."""
+        """Return the fixed part of an assembly to which a solid belongs.
+
+        None of the solids of the model itself.
+        """
         return None
 
     @classmethod
@@ -160,7 +166,7 @@ class CadModel(TolerancedTemplate):
         return False
 
     def shaft(self) -> Shaft | None:
-        """The places at which an analysis holds and loads the solid; None if it is not a shaft."""
+        """Return the places at which an analysis holds and loads the solid; None if it is not a shaft."""
         return None
 
     @classmethod
@@ -169,7 +175,7 @@ class CadModel(TolerancedTemplate):
         return False
 
     def throw_sizes(self) -> Crank | None:
-        """Where pin and fillets of a throw are; None if it is not one throw."""
+        """Return where pin and fillets of a throw are; None if it is not one throw."""
         return None
 
     def dimensions(self, seen: Mapping[str, Seen]) -> Mapping[str, Dimension]:
@@ -178,7 +184,7 @@ class CadModel(TolerancedTemplate):
 
     @classmethod
     def from_quantities(cls, raw: Mapping[str, Any], pending: Collection[str] = ()) -> Self:
-        """A model from what a user typed; of a list also its text, `[0, 180] deg`.
+        """Return a model from what a user typed; of a list also its text, `[0, 180] deg`.
 
         Raises
         ------
@@ -199,7 +205,7 @@ class CadModel(TolerancedTemplate):
 
 
 def _no_list(name: str, text: str, unit: str) -> Fault:
-    """The fault of a text that begins as a list and is none, with what a list looks like."""
+    """Return the fault of a text that begins as a list and is none, with what a list looks like."""
     form = "[1.5, 2]" if unit == "1" else f"[1.5, 2] {unit}"
     if len(text) > LONGEST_TEXT:
         detail = (
@@ -210,7 +216,7 @@ def _no_list(name: str, text: str, unit: str) -> Fault:
 
 
 def arrays_of_points(model: CadModel) -> list[Fault]:
-    """The faults of a model as one solid: arrays of points, which only the language takes."""
+    """Return the faults of a model as one solid: arrays of points, which only the language takes."""
     values, faults = vars(model), []
     for name, declared in model.inputs.items():
         takes_list = isinstance(declared, Curve)
@@ -221,5 +227,5 @@ def arrays_of_points(model: CadModel) -> list[Fault]:
 
 
 def mm(length: Array | float) -> float:
-    """A length [m] as the millimetres in which CadQuery draws, free of the noise of the conversion."""
+    """Return a length [m] as the millimetres in which CadQuery draws, free of the noise of the conversion."""
     return round(float(length) * 1e3, 9)

@@ -48,7 +48,7 @@ def is_postponed() -> bool:
 
 
 def constant(make: Callable[[], T]) -> T:
-    """A value that the kernel makes: at once, or a stand-in for it where the kernel is postponed."""
+    """Return a value that the kernel makes: at once, or a stand-in for it where the kernel is postponed."""
     return cast(T, StandIn(make)) if is_postponed() else make()
 
 
@@ -123,7 +123,7 @@ class StandIn:
     _load: Callable[[], None] = staticmethod(load)
 
     def real(self) -> object:
-        """The thing itself."""
+        """Return the thing itself."""
         self._load()
         if "_real" not in self.__dict__:
             make: Callable[[], object] = self.__dict__["_make"]
@@ -131,7 +131,7 @@ class StandIn:
         return self.__dict__["_real"]
 
     def __getattr__(self, name: str) -> object:
-        """An attribute of the thing itself."""
+        """Return an attribute of the thing itself."""
         return getattr(self.real(), name)
 
     def __call__(self, *args: object, **options: object) -> object:
@@ -140,15 +140,15 @@ class StandIn:
         return cast(Callable[..., object], self.real())(*map(_real, args), **named)
 
     def __getitem__(self, key: object) -> object:
-        """An item of the thing itself, such as the value of a table."""
+        """Return an item of the thing itself, such as the value of a table."""
         return cast(Mapping[object, object], self.real())[key]
 
     def __iter__(self) -> Iterator[object]:
-        """The items of the thing itself."""
+        """Yield the items of the thing itself."""
         return iter(cast(Iterable[object], self.real()))
 
     def __neg__(self) -> object:
-        """The opposite of the thing itself, such as of a direction."""
+        """Return the opposite of the thing itself, such as of a direction."""
         return -cast(float, self.real())
 
     def __instancecheck__(self, instance: object) -> bool:
@@ -156,7 +156,7 @@ class StandIn:
         return not is_postponed() and isinstance(instance, cast(type, self.real()))
 
     def __mro_entries__(self, bases: tuple[object, ...]) -> tuple[object, ...]:
-        """The class itself, where one inherits from it."""
+        """Return the class itself, where one inherits from it."""
         return (self.real(),)
 
 
@@ -166,13 +166,13 @@ class _DisplayStandIn(StandIn):
     _load = staticmethod(_load_display)
 
     def __getattr__(self, name: str) -> object:
-        """An attribute of the thing itself; none by which `typing` tells annotations apart."""
+        """Return an attribute of the thing itself; none by which `typing` tells annotations apart."""
         if name.startswith("__"):
             raise AttributeError(name)
         return super().__getattr__(name)
 
     def __instancecheck__(self, instance: object) -> bool:
-        """True if something is an instance of the class; before VTK is loaded there is none."""
+        """Return whether something is an instance of the class; before VTK is loaded there is none."""
         return _display not in sys.meta_path and isinstance(instance, cast(type, self.real()))
 
 
@@ -202,7 +202,7 @@ class _DisplayModule(ModuleType):
 
 
 def _imported(place: str, name: str) -> object:
-    """What `from place import name` gives: an attribute, else a module."""
+    """Return what `from place import name` gives: an attribute, else a module."""
     module = import_module(place)
     return getattr(module, name) if hasattr(module, name) else import_module(f"{place}.{name}")
 
@@ -216,12 +216,12 @@ class _Finder(MetaPathFinder, Loader):
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """The stand-in, if the module is one of these packages."""
+        """Return the stand-in, if the module is one of these packages."""
         is_ours = not self._packages.isdisjoint((fullname, fullname.partition(".")[0]))
         return ModuleSpec(fullname, self, is_package=True) if is_ours else None
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
-        """An empty module."""
+        """Return an empty module."""
         return self._kind(spec.name)
 
     def exec_module(self, module: ModuleType) -> None:

@@ -49,7 +49,7 @@ class Overlap:
 
 
 def overlaps(bodies: Sequence[Body]) -> Iterator[Overlap]:
-    """Every two bodies that overlap where they stand; those that touch do not."""
+    """Yield every two bodies that overlap where they stand; those that touch do not."""
     standing = [(body.name, body.shape.moved(place)) for body in bodies for place in body.places]
     for (one, shape), (other, beside) in combinations(standing, 2):
         properties = GProp_GProps()
@@ -79,7 +79,7 @@ Group = Callable[[str], str | None]
 
 
 def clearances(bodies: Sequence[Body], group: Group, report: Report | None = None) -> Iterator[Clearance]:
-    """What lies between each fixed part and every other part; `group` says to which one a body belongs.
+    """Yield what lies between each fixed part and every other part; `group` says to which one a body belongs.
 
     Solids of one fixed part are not compared with each other, nor are those of none. All parts of which the
     boxes meet are compared; of the others those whose boxes are closest, and those that may be closer to a
@@ -152,7 +152,7 @@ def _standing(bodies: Sequence[Body], group: Group) -> list[_Standing]:
 
 
 def _pairs(standing: Sequence[_Standing]) -> list[_Pair]:
-    """All pairs that are to be compared, those with the closest boxes first."""
+    """Return all pairs that are to be compared, those with the closest boxes first."""
     boxes = [_box(one.shape) for one in standing]
     return sorted(
         _Pair(boxes[i].Distance(boxes[j]), i, j)
@@ -208,13 +208,13 @@ def _has_corner_inside(shape: Shape, other: Shape) -> bool:
 
 
 def _box(shape: Shape) -> Bnd_Box:
-    """A box that holds a shape, perhaps with some room."""
+    """Return a box that holds a shape, perhaps with some room."""
     around = Bnd_Box()
     BRepBndLib.Add_s(shape.wrapped, around, False)
     return around
 
 
 def gap(one: Body, other: Body) -> float:
-    """The smallest distance between two bodies where they stand [mm]."""
+    """Return the smallest distance between two bodies where they stand [mm]."""
     shapes = (body.shape.moved(body.places[0]).wrapped for body in (one, other))
     return float(BRepExtrema_DistShapeShape(*shapes).Value())

@@ -18,7 +18,7 @@ _NOT_PLAIN = re.compile(r"[^ -~\U00010000-\U0010ffff]+|[\U00010000-\U0010ffff]+"
 
 
 def quoted(text: str) -> str:
-    r"""A text as a string of Part 21: quotes and backslashes doubled, other than ASCII as `\X2\…\X0\`.
+    r"""Return a text as a string of Part 21: quotes and backslashes doubled, other than ASCII as `\X2\…\X0\`.
 
     What lies beyond the basic plane, such as a pictogram, is written as `\X4\…\X0\`. Open CASCADE takes
     a quote before a comma or bracket for the end of the string, even a doubled one: its number is written.
@@ -33,14 +33,14 @@ def _escaped(signs: re.Match[str]) -> str:
 
 
 def in_ascii(text: str) -> str:
-    r"""A text of Open CASCADE, whose letters are bytes of UTF-8: what is not ASCII as `\X2\…\X0\`."""
+    r"""Return a text of Open CASCADE, whose letters are bytes of UTF-8: what is not ASCII as `\X2\…\X0\`."""
     return _BEYOND_ASCII.sub(
         lambda run: _NOT_PLAIN.sub(_escaped, run[0].encode("latin-1").decode("utf-8", "replace")), text
     )
 
 
 def plain(string: str) -> str:
-    """The text of a string of Part 21, given with its quotes; line breaks within it are layout."""
+    """Return the text of a string of Part 21, given with its quotes; line breaks within it are layout."""
     return _ESCAPED.sub(_unescaped, string[1:-1].replace("\n", "").replace("\r", ""))
 
 
@@ -52,7 +52,7 @@ def _unescaped(escape: re.Match[str]) -> str:
 
 
 def description(text: str) -> list[str]:
-    """The strings of FILE_DESCRIPTION's first list, each with its quotes; none if there is no such list.
+    """Return strings of FILE_DESCRIPTION's first list, each with its quotes; none if there is no such list.
 
     The search ends with the header's section.
     """
@@ -66,7 +66,7 @@ def description(text: str) -> list[str]:
 
 
 def _strings(scan: Iterator[str]) -> list[str]:
-    """The strings up to the closing bracket; none if anything but strings and commas comes before it."""
+    """Return strings up to the closing bracket; none if anything but strings and commas comes before it."""
     strings: list[str] = []
     for token in scan:
         if token == ")":
@@ -79,7 +79,7 @@ def _strings(scan: Iterator[str]) -> list[str]:
 
 
 def tokens(text: str) -> Iterator[str]:
-    """Words, single signs, and strings with their quotes; blanks and comments are skipped.
+    """Yield the words, single signs, and strings with their quotes; blanks and comments are skipped.
 
     A string or comment that does not end takes the rest of the text with it.
     """
@@ -91,7 +91,7 @@ def tokens(text: str) -> Iterator[str]:
 
 
 def _end(text: str, start: int) -> int:
-    """Where the token, blank or comment that begins at `start` ends."""
+    """Return where the token, blank or comment that begins at `start` ends."""
     if text[start] == "'":
         return end_of_string(text, start)
     if text.startswith("/*", start):
@@ -101,7 +101,7 @@ def _end(text: str, start: int) -> int:
 
 
 def end_of_string(text: str, start: int) -> int:
-    """The place behind the quote that closes a string; two quotes are one of the text."""
+    """Return the place behind the quote that closes a string; two quotes are one of the text."""
     place = _behind(text, "'", start + 1)
     while text.startswith("'", place):
         place = _behind(text, "'", place + 1)

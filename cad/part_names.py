@@ -13,7 +13,7 @@ class PartNames:
         self._taken, self._numbers = set[str](), dict[str, int]()
 
     def unique(self, name: str) -> str:
-        """The name that is closest to this one, with a number behind it if another part has that."""
+        """Return the name that is closest to this one, with a number behind it if another part has that."""
         signs = (sign if sign.isprintable() and sign not in "'\"\\" else " " for sign in name[:LONGEST_NAME])
         plain = unique = " ".join("".join(signs).split()) or "part"
         number = self._numbers.get(plain, 1)

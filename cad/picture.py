@@ -42,7 +42,7 @@ class Scene:
 
 
 def write_png(meshes: Sequence[Mesh], size: tuple[int, int] = SIZE) -> bytes:
-    """A picture of the meshes on white."""
+    """Return a picture of the meshes on white."""
     bodies = list(placed(meshes))
     corners = np.concatenate([points[one.triangles] for one, points, _ in bodies])
     normals = np.concatenate([normals[one.triangles] for one, _, normals in bodies])
@@ -53,7 +53,7 @@ def write_png(meshes: Sequence[Mesh], size: tuple[int, int] = SIZE) -> bytes:
 
 
 def shaded(triangles: Scene, size: tuple[int, int] = SIZE) -> bytes:
-    """A picture of triangles [mm] in the axes of their model, on white."""
+    """Return a picture of triangles [mm] in the axes of their model, on white."""
     width, height = size[0] * _SAMPLES, size[1] * _SAMPLES
     scene = _scene(triangles, width, height)
     light, faces = _draw(scene, width, height)
@@ -65,7 +65,7 @@ def shaded(triangles: Scene, size: tuple[int, int] = SIZE) -> bytes:
 
 
 def _scene(triangles: Scene, width: int, height: int) -> Scene:
-    """The triangles that face the eye, in the frame of the picture."""
+    """Return the triangles that face the eye, in the frame of the picture."""
     frame = np.stack([RIGHT, UP, TOWARDS], axis=1)
     corners = _fitted(triangles.corners @ frame, width, height)
     # y points downwards in a picture: a triangle that faces the eye runs clockwise there.
@@ -76,7 +76,7 @@ def _scene(triangles: Scene, width: int, height: int) -> Scene:
 
 
 def _fitted(corners: Array, width: int, height: int) -> Array:
-    """Corners [mm; y upwards] as they fill the picture [samples; y downwards]."""
+    """Return the corners [mm; y upwards] as they fill the picture [samples; y downwards]."""
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     room = (1 - 2 * _MARGIN) * np.array([width, height])
     scale = (room / (high - low)[:2]).min()
@@ -86,7 +86,7 @@ def _fitted(corners: Array, width: int, height: int) -> Array:
 
 
 def _draw(scene: Scene, width: int, height: int) -> tuple[Array, Integers]:
-    """Light (height, width, 3) and the face seen (height, width; -1 for none) at every sample."""
+    """Return the light (height, width, 3) and the face seen (height, width; -1 for none) at every sample."""
     triangle, column, row = _fragments(scene.corners)
     weights = _barycentric(scene.corners[triangle], column + 0.5, row + 0.5)
     depth = np.einsum("fc,fc->f", weights, scene.corners[triangle][:, :, 2])
@@ -107,7 +107,7 @@ def _draw(scene: Scene, width: int, height: int) -> tuple[Array, Integers]:
 
 
 def _fragments(corners: Array) -> tuple[Integers, Integers, Integers]:
-    """The samples that triangles cover: which triangle, column and row; a sample counts by its middle."""
+    """Return samples that triangles cover: which triangle, column and row; a sample counts by its middle."""
     x, y = corners[:, :, 0], corners[:, :, 1]
     triangle, row = _expand(y.min(axis=1), y.max(axis=1))
     middle = (row + 0.5)[:, None]
@@ -134,7 +134,7 @@ def _expand(low: Array, high: Array) -> tuple[Integers, Integers]:
 
 
 def _barycentric(corners: Array, x: Any, y: Any) -> Array:
-    """Weights (n, 3) of the corners of each triangle at its point."""
+    """Return the weights (n, 3) of the corners of each triangle at its point."""
     a, b, c = (corners[:, i, :2] for i in range(3))
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
     px, py = x - a[:, 0], y - a[:, 1]
@@ -144,7 +144,7 @@ def _barycentric(corners: Array, x: Any, y: Any) -> Array:
 
 
 def _lit(normals: Array, colours: Array) -> Array:
-    """Colours under two lights, with a highlight of the first (Blinn–Phong)."""
+    """Return the colours under two lights, with a highlight of the first (Blinn–Phong)."""
     normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     key, fill = (light / np.linalg.norm(light) for light in (_KEY, _FILL))
     between = key + np.array([0.0, 0.0, 1.0])
@@ -157,7 +157,7 @@ def _lit(normals: Array, colours: Array) -> Array:
 
 
 def _borders(faces: Integers) -> Mask:
-    """Samples beside which another face begins."""
+    """Return the samples beside which another face begins."""
     differs = np.zeros(faces.shape, dtype=bool)
     differs[:, :-1] |= faces[:, :-1] != faces[:, 1:]
     differs[:-1, :] |= faces[:-1, :] != faces[1:, :]

@@ -44,7 +44,7 @@ class Place:
 
     @property
     def motion(self) -> Location:
-        """The place as a motion."""
+        """Return the place as a motion."""
         moved = Location(Vector(self.x, self.y, self.z))
         for axis, angle in ((Z, self.turn_z), (Y, self.turn_y), (X, self.turn_x)):
             if angle:
@@ -53,7 +53,7 @@ class Place:
 
 
 def frame_of(name: str, datum: str, parts: Mapping[str, Part]) -> Location:
-    """The frame of a datum, for a component of this name, among the parts that stand already.
+    """Return the frame of a datum, for a component of this name, among the parts that stand already.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def frame_of(name: str, datum: str, parts: Mapping[str, Part]) -> Location:
 
 
 def box_of(solids: Sequence[object]) -> Box:
-    """The box of solids where they stand [mm]."""
+    """Return the box of solids where they stand [mm]."""
     return bounding_box(Body("", solid, (0.0, 0.0, 0.0), (Location(),)) for solid in solids)  # type: ignore[arg-type]
 
 

@@ -70,17 +70,17 @@ class Annotations:
 
     @property
     def dimensions(self) -> list[str]:
-        """The parameter of every dimension that is written, in the order of the file."""
+        """Return the parameter of every dimension that is written, in the order of the file."""
         return [n for n in self.limits for _ in self.declared[n].levels]
 
     @property
     def forms(self) -> list[tuple[str, Form]]:
-        """The parameter and the form of every geometric tolerance, in the order of the file."""
+        """Return the parameter and the form of every geometric tolerance, in the order of the file."""
         return [(n, form) for n in self.limits for form in self.declared[n].forms]
 
     @property
     def names(self) -> list[str]:
-        """The parameters by which dimensions, and then geometric tolerances, are named."""
+        """Return the parameters by which dimensions, and then geometric tolerances, are named."""
         return [*self.dimensions, *(name for name, _ in self.forms)]
 
 
@@ -155,7 +155,7 @@ class _Writer:
             self._tool.SetDatumToGeomTol(self._datum(to), label)
 
     def _datum(self, letter: str) -> TDF_Label:
-        """The datum of a letter, which is written once."""
+        """Return the datum of a letter, which is written once."""
         if letter not in self._letters:
             one = next(one for one in self._declared.values() if one.datum == letter)
             datum = DatumObject()

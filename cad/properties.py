@@ -64,7 +64,7 @@ def properties_of(part: Part, solid: Shape) -> PartProperties:
 
 
 def measured(solid: Shape) -> Measures:
-    """Volume, area and centroid of a solid, to twelve digits."""
+    """Return the volume, area and centroid of a solid, to twelve digits."""
     volume, area = GProp_GProps(), GProp_GProps()
     BRepGProp.VolumeProperties_s(solid.wrapped, volume, _ACCURACY, False)
     BRepGProp.SurfaceProperties_s(solid.wrapped, area, _ACCURACY, False)
@@ -89,7 +89,7 @@ class _Product:
 def entities(
     data: str, first: int, title: str, attributes: Mapping[str, str], parts: Sequence[PartProperties]
 ) -> Iterator[str]:
-    """The entities, numbered from `first`, that state properties of the products in a data section.
+    """Yield the entities, numbered from `first`, that state properties of the products in a data section.
 
     The product called `title`, or the only one, has the attributes.
     """
@@ -107,7 +107,7 @@ def entities(
 
 
 def validations(data: str, first: int, measures: Mapping[str, Measures]) -> Iterator[str]:
-    """The entities, numbered from `first`, of the validation properties of products by name.
+    """Yield the entities, numbered from `first`, of the validation properties of products by name.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def validations(data: str, first: int, measures: Mapping[str, Measures]) -> Iter
 
 
 def _products(data: str) -> dict[str, _Product]:
-    """The products of a data section by name."""
+    """Return the products of a data section by name."""
     shown, shapes, definitions, formations, products, contexts = ({} for _ in range(6))
     for match in _SHAPE.finditer(data):
         g = match.groups()
@@ -162,7 +162,7 @@ class _Units:
     density: int
 
     def entities(self) -> Iterator[str]:
-        """The units and their elements."""
+        """Yield the units and their elements."""
         yield f"#{self.millimetre} = (LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));"
         yield f"#{self.metre} = (LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.));"
         yield f"#{self.kilogram} = (MASS_UNIT()NAMED_UNIT(*)SI_UNIT(.KILO.,.GRAM.));"
@@ -176,7 +176,7 @@ class _Units:
 
 
 def _attributes(numbers: Iterator[int], root: _Product, attributes: Mapping[str, str]) -> Iterator[str]:
-    """A set of attributes, each a name and a text."""
+    """Yield a set of attributes, each a name and a text."""
     if not attributes:
         return
     general, link, items = next(numbers), next(numbers), []
@@ -216,7 +216,7 @@ def _material(
 def _stated(
     numbers: Iterator[int], name: str, what: str, of: str, items: Sequence[str], context: str
 ) -> Generator[str, None, str]:
-    """A property of something, with its representation; returns the property."""
+    """Yield a property of something, with its representation; returns the property."""
     definition, representation, link = next(numbers), next(numbers), next(numbers)
     yield f"#{definition} = PROPERTY_DEFINITION({quoted(name)},{quoted(what)},{of});"
     yield f"#{representation} = REPRESENTATION({quoted(what or name)},({','.join(items)}),{context});"
@@ -225,7 +225,7 @@ def _stated(
 
 
 def _real(value: float) -> str:
-    """A number as Part 21 writes it, which always has a point: `1.5E-05`."""
+    """Return a number as Part 21 writes it, which always has a point: `1.5E-05`."""
     text = f"{value:.15g}".upper()
     mantissa, exponent, power = text.partition("E")
     return f"{mantissa}{'' if '.' in mantissa else '.'}{exponent}{power}"

@@ -95,7 +95,7 @@ def as_text(model: CadModel) -> dict[str, str]:
 
 
 def as_quantities(model: CadModel) -> dict[str, dict[str, Value]]:
-    """Every parameter in its declared unit, as in the STEP file: `{"value": 50.0, "unit": "mm"}`.
+    """Return every parameter in its declared unit, as in the STEP file: `{"value": 50.0, "unit": "mm"}`.
 
     Beside a toleranced one stand `upper` and `lower`, its limit deviations in that unit, and its `zone`.
     """
@@ -118,7 +118,7 @@ class _Canonical:
 
 
 def _canonical(model: CadModel) -> _Canonical:
-    """The canonical form of a model, made once and kept with the values that the model has computed.
+    """Return the canonical form of a model, made once and kept with the values that the model has computed.
 
     Raises
     ------
@@ -218,7 +218,7 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
 
 
 def _annotations(model: CadModel, parts: Sequence[Part]) -> Annotations | None:
-    """What the file says beside the shape; nothing where no dimension has a tolerance."""
+    """Return what the file says beside the shape; nothing where no dimension has a tolerance."""
     if not (within := limits(model)):
         return None
     solids = {part.name: part.solid for part in parts}
@@ -228,7 +228,7 @@ def _annotations(model: CadModel, parts: Sequence[Part]) -> Annotations | None:
 
 
 def _plain(model: CadModel) -> dict[str, Value]:
-    """Every parameter in SI, as plain numbers, words and lists."""
+    """Return every parameter in SI, as plain numbers, words and lists."""
     return {n: v if isinstance(v, str) else np.asarray(v).tolist() for n, v in model.inputs_si().items()}
 
 
@@ -246,7 +246,7 @@ def _written(model: CadModel, name: str, si: Any) -> tuple[str, dict[str, Value]
 
 
 def _within(within: Limits, text: str, unit: str) -> tuple[str, dict[str, Value]]:
-    """The text of a parameter with its limits, and what stands beside it as a quantity."""
+    """Return the text of a parameter with its limits, and what stands beside it as a quantity."""
     lower, upper = in_unit(within, unit)
     zone: dict[str, Value] = {} if within.zone is None else {"zone": within.zone}
     return with_limits(text, unit, within), {"upper": upper, "lower": lower, **zone}
@@ -263,7 +263,10 @@ def _key(cls: type[CadModel], texts: Mapping[str, str]) -> str:
 
 
 def _code(cls: type[CadModel]) -> tuple[str, ...]:
-    """The digest of a team's file, which may change while the service runs; nothing of a built-in model."""
+    """Return the digest of a team's file, which may change while the service runs.
+
+    Nothing of a built-in model.
+    """
     if cls not in _codes:
         _codes[cls] = (digest(cls),) if is_outside(cls) else ()
     return _codes[cls]

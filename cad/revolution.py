@@ -14,7 +14,7 @@ Point = tuple[float, float]
 
 
 def outline(*corners: Point) -> list[Point]:
-    """The closed line through corners (r, z) [mm]; corners that fall together count once."""
+    """Return the closed line through corners (r, z) [mm]; corners that fall together count once."""
     points: list[Point] = []
     for corner in corners:
         if not points or corner != points[-1]:
@@ -23,7 +23,7 @@ def outline(*corners: Point) -> list[Point]:
 
 
 def turned(points: Sequence[Point], start: float = 270.0, turn: float = 360.0) -> Shape:
-    """A closed line through (r, z) turned about z, from an angle [deg] against +x on by a turn [deg].
+    """Return a closed line through (r, z) turned about z, from an angle [deg] against +x on by a turn [deg].
 
     A full turn begins at -y, so that its seam is off a hole at the crown.
     """
@@ -41,7 +41,7 @@ def turned_volume(points: Sequence[Point], turn: float = 360.0) -> float:
 
 
 def area(points: Sequence[Point]) -> float:
-    """Area [mm²] within a closed line."""
+    """Return the area [mm²] within a closed line."""
     return abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise(points))) / 2
 
 
@@ -86,7 +86,7 @@ def sheet_under_arc(radius: float, half_width: float) -> float:
 
 
 def nearest(values: Iterable[float], wanted: float) -> float:
-    """Of some values that one which is nearest to the one wanted.
+    """Return the one of some values that is nearest to the one wanted.
 
     Raises
     ------

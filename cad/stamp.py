@@ -59,35 +59,35 @@ class Stamp:
 
     @property
     def called(self) -> str:
-        """The name of the model in names of files."""
+        """Return the name of the model in names of files."""
         if self.variant is None:
             return self.model
         return self.variant if self.is_only else f"{self.variant}_{self.model}"
 
     @property
     def stem(self) -> str:
-        """The file's name without its ending, in ASCII."""
+        """Return the file's name without its ending, in ASCII."""
         return stem(self.design, self.called, self.revision)
 
     @property
     def wide_stem(self) -> str:
-        """The file's name without its ending, in the letters of its user."""
+        """Return the file's name without its ending, in the letters of its user."""
         return wide_stem(self.design, self.called, self.revision)
 
     @property
     def named(self) -> str:
-        """The model, and the variant that it is of."""
+        """Return the model, and the variant that it is of."""
         return ", ".join(filter(None, (self.variant, self.model)))
 
     @property
     def block(self) -> dict[str, str]:
-        """The lines of an older drawing's title block."""
+        """Return the lines of an older drawing's title block."""
         part = f"{self.named}, revision {self.revision}, {self.date[:10]}"
         return {"design": self.design, "part": part, "material": self.material}
 
     @property
     def fields(self) -> dict[str, str]:
-        """The texts of a drawing's title block (ISO 7200), by field."""
+        """Return the texts of a drawing's title block (ISO 7200), by field."""
         return {
             "owner": self.owner,
             "title": self.title or self.design,
@@ -105,7 +105,7 @@ class Stamp:
 
     @property
     def _short_material(self) -> str:
-        """The materials for the title block: without the names of parts where these have no room."""
+        """Return the materials for the title block: without the names of parts where these have no room."""
         field_ = STAMPED_FIELDS["iso-material"]
         if width_of(self.material, field_.letters) <= field_.room:
             return self.material
@@ -113,7 +113,7 @@ class Stamp:
 
     @property
     def material(self) -> str:
-        """The materials of all parts, each once; of several, with the names of their parts."""
+        """Return the materials of all parts, each once; of several, with the names of their parts."""
         parts: dict[str, list[str]] = {}
         for part, material in self.materials.items():
             parts.setdefault(material, []).append(part)
@@ -123,7 +123,7 @@ class Stamp:
 
 
 def stamped(file: bytes, kind: str, stamp: Stamp) -> bytes:
-    """The file of that kind with its stamp; as it is if the kind carries none."""
+    """Return the file of that kind with its stamp; as it is if the kind carries none."""
     write = _WRITERS.get(kind)
     return write(file.decode(_ENCODING[kind]), stamp).encode(_ENCODING[kind]) if write else file
 
@@ -155,7 +155,7 @@ class _Hole:
 
 
 def _holes(text: str) -> list[_Hole]:
-    """Every such place in the order of the text: file and time, products, their versions."""
+    """Return every such place in the order of the text: file and time, products, their versions."""
     file = _FILE.search(text)
     holes = [_Hole(*file.span(1), 2, _file)] if file else []
     for number, product in enumerate(_PRODUCT.finditer(text)):
@@ -170,7 +170,7 @@ def _file(stamp: Stamp) -> tuple[str, ...]:
 
 
 def _root(stamp: Stamp) -> tuple[str, ...]:
-    """Id, name and description of the product that is the file."""
+    """Return the id, name and description of the product that is the file."""
     described = (
         f"design {stamp.design}",
         f"variant {stamp.variant}" if stamp.variant else "",
@@ -182,7 +182,7 @@ def _root(stamp: Stamp) -> tuple[str, ...]:
 
 
 def _part(name: str, stamp: Stamp) -> tuple[str, ...]:
-    """Id, name and description of a part of an assembly."""
+    """Return the id, name and description of a part of an assembly."""
     return f"{stamp.stem}_{name}", name, stamp.materials.get(name, "")
 
 
@@ -199,7 +199,7 @@ def _stamped_step(text: str, stamp: Stamp) -> str:
 
 
 def _behind_strings(text: str, place: int, count: int) -> int:
-    """Behind so many strings with commas between them, as far as they stand at a place."""
+    """Return the place behind so many strings with commas between them, as far as they stand at a place."""
     for number in range(count):
         if number:
             place = _behind_comma(text, place)
@@ -232,7 +232,7 @@ def _stamped_dxf(text: str, stamp: Stamp) -> str:
 
 
 def _lines(stamp: Stamp) -> dict[str, str]:
-    """The lines of a title block as they are drawn, those of older drawings among them, by their marks."""
+    """Return lines of a title block as they are drawn, those of older drawings among them, by their marks."""
     older = {name: _clipped(f"{name}: {value}") for name, value in stamp.block.items()}
     fields = stamp.fields
     return older | {

@@ -41,7 +41,7 @@ def check_statements(
 
 
 def shown(values: Sequence[Value] | None, kind: str) -> str:
-    """The values of a statement as text."""
+    """Return the values of a statement as text."""
     if values is None:
         return "nothing"
     text = ", ".join(value if isinstance(value, str) else f"{value:.12g}" for value in values)

@@ -82,7 +82,7 @@ class Compared:
 
     @property
     def agrees(self) -> bool:
-        """Whether both are there and equal."""
+        """Return whether both are there and equal."""
         return self.expected is not None and self.expected == self.stated
 
 
@@ -97,12 +97,12 @@ class _Entity:
 
 
 def is_validated(step: bytes) -> bool:
-    """True if a STEP file states validation properties, such as the volume of a part."""
+    """Return whether a STEP file states validation properties, such as the volume of a part."""
     return f"'{VALIDATION}'".encode() in step
 
 
 def read_statements(step: bytes) -> list[Statement]:
-    """Every statement of a STEP file, in the order of the file, each kind by itself."""
+    """Return every statement of a STEP file, in the order of the file, each kind by itself."""
     return list(_Reader(_entities(step)).statements())
 
 
@@ -134,7 +134,7 @@ def _by_kind(statements: Sequence[Statement]) -> defaultdict[str, list[Statement
 
 
 def _entities(step: bytes) -> dict[int, _Entity]:
-    """The entities of the sorts that are needed, by their number."""
+    """Return the entities of the sorts that are needed, by their number."""
     entities: dict[int, _Entity] = {}
     for statement in _split(step):
         start = _START.match(statement) if len(statement) <= LONGEST else None
@@ -152,7 +152,7 @@ def _entities(step: bytes) -> dict[int, _Entity]:
 
 
 def _split(step: bytes) -> Iterator[str]:
-    """The statements of a text, which end with semicolons outside of strings."""
+    """Yield the statements of a text, which end with semicolons outside of strings."""
     pieces: list[bytes] = []
     for match in _PIECE.finditer(step):
         if match[0] == b";":
@@ -189,7 +189,7 @@ class _Reader:
                 self._of[sort].append((number, entity))
 
     def statements(self) -> Iterator[Statement]:
-        """All statements."""
+        """Yield all statements."""
         yield from self._dimensions()
         for _, datum in self._of["DATUM"]:
             if datum.sorts[0] == "DATUM" and datum.texts:
@@ -249,7 +249,7 @@ class _Reader:
                 yield Statement(kind, self._part(entity), next(values, ()))
 
     def _part(self, entity: _Entity) -> str:
-        """The name of the product that a property is of: by shape, definition and formation."""
+        """Return the name of the product that a property is of: by shape, definition and formation."""
         for _ in range(4):
             following = self._follow(entity.refs[:1])
             if following is None:

@@ -60,7 +60,7 @@ def write_step(
     *,
     rounds_noise: bool = False,
 ) -> bytes:
-    """The parts in millimetres, with product names and colours; equal parts, equal bytes.
+    """Return the parts in millimetres, with product names and colours; equal parts, equal bytes.
 
     A single part at a single place is one product; several are an assembly. With `annotations` the file also
     has their dimensions, and the properties of its parts; the parameters in its header are attributes then.
@@ -86,7 +86,7 @@ def write_step(
 
 
 def read_step(step: bytes) -> tuple[Body, ...]:
-    """The bodies in a STEP file, each once, in the order of the file.
+    """Return the bodies in a STEP file, each once, in the order of the file.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def read_step(step: bytes) -> tuple[Body, ...]:
 
 
 def rigid(place: Location) -> tuple[Array, Array]:
-    """Rotation (3, 3) and translation (3,) [mm] of a place."""
+    """Return the rotation (3, 3) and translation (3,) [mm] of a place."""
     motion = place.wrapped.Transformation()
     rows = np.array([[motion.Value(i, j) for j in (1, 2, 3, 4)] for i in (1, 2, 3)])
     return rows[:, :3], rows[:, 3]
@@ -142,7 +142,7 @@ def is_single(parts: Sequence[Part]) -> bool:
 
 
 def _placed(solid: Shape, place: Location) -> Shape:
-    """A solid in the coordinates of its place: as a product of its own it has no other."""
+    """Return a solid in the coordinates of its place: as a product of its own it has no other."""
     if place.wrapped.IsIdentity():
         return solid
     return Shape.cast(BRepBuilderAPI_Transform(solid.wrapped, place.wrapped.Transformation(), True).Shape())
@@ -170,7 +170,7 @@ def _bodies(document: TDocStd_Document) -> Iterator[Body]:
 
 
 def _instances(label: TDF_Label, place: TopLoc_Location) -> Iterator[tuple[TDF_Label, TopLoc_Location]]:
-    """The products below a label that are not assemblies, each time that they are used."""
+    """Yield the products below a label that are not assemblies, each time that they are used."""
     components = TDF_LabelSequence()
     if not XCAFDoc_ShapeTool.GetComponents_s(label, components):
         yield label, place

@@ -58,7 +58,7 @@ def finished(
 
 
 def without_noise(text: str) -> str:
-    """The kernel's text with a zero for every coordinate nearer to it than 1e-12."""
+    """Return the kernel's text with a zero for every coordinate nearer to it than 1e-12."""
     return _POINT.sub(lambda point: _NOISE.sub("0.", point[0]), text)
 
 
@@ -88,7 +88,7 @@ def _annotated(data: str, names: Sequence[str]) -> str:
 
 
 def _styles(data: str, colours: Iterable[Colour]) -> str:
-    """Entities that colour the solids of the data section, product by product."""
+    """Return the entities that colour the solids of the data section, product by product."""
     first = _last_number(data) + 1
     solids = set(_SOLID.findall(data))
     lines: list[str] = []
@@ -100,7 +100,7 @@ def _styles(data: str, colours: Iterable[Colour]) -> str:
 
 
 def _last_number(data: str) -> int:
-    """The number of the last entity of a data section; found from its end, for the section is long."""
+    """Return the number of the last entity of a data section; found from its end, for the section is long."""
     place = data.rfind("\n#")
     while (last := _NUMBER.match(data, place + 1)) is None:
         place = data.rindex("\n#", 0, place)
@@ -108,7 +108,7 @@ def _last_number(data: str) -> int:
 
 
 def _style(n: int, solid: str, context: str, colour: Colour) -> Iterator[str]:
-    """The nine entities, numbered from n, by which ISO 10303-46 gives a solid its colour."""
+    """Yield the nine entities, numbered from n, by which ISO 10303-46 gives a solid its colour."""
     red, green, blue = (f"{channel:.6f}" for channel in colour)
     entities = (
         f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',(#{n + 1}),{context})",

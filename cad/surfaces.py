@@ -47,7 +47,7 @@ class Surface:
         return bool(abs(flat) < _COINCIDENT and abs(upright) < _COINCIDENT)
 
     def turned(self, axis: Vector) -> Surface:
-        """The same surface, its direction that of the axis and not against it."""
+        """Return the same surface, its direction that of the axis and not against it."""
         if self.direction.dot(axis) >= 0:
             return self
         low, high = self.reach
@@ -65,20 +65,20 @@ class Seen:
     tori: tuple[float, ...] = ()  # radii of their tubes [mm]
 
     def levels(self, axis: Vector) -> list[float]:
-        """The coordinates [mm] at which planes cross the axis at a right angle, ascending."""
+        """Return the coordinates [mm] at which planes cross the axis at a right angle, ascending."""
         return _distinct(plane.point.dot(axis) for plane in self.planes if plane.along(axis))
 
     def length(self, axis: Vector) -> float:
-        """From the first to the last plane across the axis [mm]."""
+        """Return the distance from the first to the last plane across the axis [mm]."""
         levels = self.levels(axis)
         return levels[-1] - levels[0]
 
     def about(self, axis: Vector) -> list[Surface]:
-        """The cylinders about the axis, each pointing along it."""
+        """Return the cylinders about the axis, each pointing along it."""
         return [cylinder.turned(axis) for cylinder in self.cylinders if cylinder.about(axis)]
 
     def diameters(self, axis: Vector) -> list[float]:
-        """Diameters of the cylinders about the axis [mm], ascending."""
+        """Return the diameters of the cylinders about the axis [mm], ascending."""
         return _distinct(cylinder.diameter for cylinder in self.about(axis))
 
 
@@ -95,7 +95,7 @@ class FaceSeen:
 
 
 def faces_of(solid: Shape) -> list[FaceSeen]:
-    """Every face of a solid, in the order of the solid."""
+    """Return every face of a solid, in the order of the solid."""
     return [_face(n, BRepAdaptor_Surface(face.wrapped)) for n, face in enumerate(solid.Faces())]
 
 
@@ -139,6 +139,6 @@ def _surface(axis: Any) -> Surface:
 
 
 def _distinct(values: Iterable[float]) -> list[float]:
-    """Values in ascending order, those that coincide once."""
+    """Return the values in ascending order, those that coincide once."""
     ordered = sorted(values)
     return ordered[:1] + [high for low, high in pairwise(ordered) if high - low > _COINCIDENT]

@@ -114,7 +114,7 @@ class Carried:
 
     @property
     def others_named(self) -> tuple[str, ...]:
-        """The dimensions that it names, of a length that repeats along a shaft."""
+        """Return the dimensions that it names, of a length that repeats along a shaft."""
         return (self.where,) if isinstance(self.where, str) else tuple(self.where)
 
     def among(self, drawn: Collection[str]) -> Carried:
@@ -134,11 +134,11 @@ class Limits:
 
     @property
     def width(self) -> float:
-        """Upper less lower limit [mm]."""
+        """Return the upper less lower limit [mm]."""
         return round(self.upper - self.lower, _DIGITS)
 
     def share(self, part: float) -> float:
-        """A share of the width [mm], as geometric tolerances are declared."""
+        """Return a share of the width [mm], as geometric tolerances are declared."""
         return round(self.width * part, _DIGITS)
 
 
@@ -154,7 +154,7 @@ class TolerancedTemplate(Template):
 
 
 def carried(cls: type[TolerancedTemplate]) -> dict[str, Carried]:
-    """What a model declares, by parameter.
+    """Return what a model declares, by parameter.
 
     Raises
     ------
@@ -227,18 +227,18 @@ def _wrong(cls: type[TolerancedTemplate], name: str, detail: str) -> TypeError:
 
 
 def limits(model: TolerancedTemplate) -> dict[str, Limits]:
-    """The limits that a user gave to dimensions of a model which its faces carry, by parameter."""
+    """Return the limits that a user gave to dimensions of a model which its faces carry, by parameter."""
     declared, given = type(model).toleranced, model.ledger.typed
     return dict(_single((name, typed) for name in declared if isinstance(typed := given.get(name), Typed)))
 
 
 def limits_in(header: Header) -> dict[str, Limits]:
-    """The limits in the header of a STEP file, by parameter; files without tolerances have none."""
+    """Return the limits in the header of a STEP file, by parameter; files without tolerances have none."""
     return limits_of(header.parameters)
 
 
 def limits_of(texts: Mapping[str, str]) -> dict[str, Limits]:
-    """The limits in parameters as texts, such as `48 mm H7`, by parameter."""
+    """Return the limits in parameters as texts, such as `48 mm H7`, by parameter."""
     return dict(_single(_read(texts)))
 
 
@@ -253,7 +253,7 @@ def _read(parameters: Mapping[str, str]) -> Iterator[tuple[str, Typed]]:
 
 
 def _single(pairs: Iterator[tuple[str, Typed]]) -> Iterator[tuple[str, Limits]]:
-    """The limits of single values, where they leave any room."""
+    """Yield the limits of single values, where they leave any room."""
     for name, typed in pairs:
         tolerance, si = typed.tolerance, typed.si
         if isinstance(tolerance, Tolerance) and isinstance(si, float):
@@ -264,7 +264,7 @@ def _single(pairs: Iterator[tuple[str, Typed]]) -> Iterator[tuple[str, Limits]]:
 
 
 def written(text: str, name: str, within: Limits) -> str:
-    """A quantity's text with its limits: `48 mm H7`, `48 mm +0.05/-0.02 mm`; `name` is its unit."""
+    """Return a quantity's text with its limits: `48 mm H7`, `48 mm +0.05/-0.02 mm`; `name` is its unit."""
     if within.zone is not None:
         return f"{text} {within.zone}"
     lower, upper = in_unit(within, name)
@@ -272,7 +272,7 @@ def written(text: str, name: str, within: Limits) -> str:
 
 
 def in_unit(within: Limits, name: str) -> tuple[float, float]:
-    """Lower and upper limit deviation in a unit of length."""
+    """Return the lower and upper limit deviation in a unit of length."""
     factor = unit("mm").factor / unit(name).factor
     lower, upper = (float(f"{end * factor:.12g}") for end in (within.lower, within.upper))
     return lower, upper

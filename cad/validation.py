@@ -19,7 +19,7 @@ _NUMBER = re.compile(rb"^#(\d+) *=", re.MULTILINE)
 
 
 def with_validation(step: bytes) -> bytes:
-    """The file with the properties of each part; as it is if it has some.
+    """Return the file with the properties of each part; as it is if it has some.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ from templates.core.language.template import Template
 
 
 async def to_try(catalogues: Catalogues, template: str, version: int) -> type[Template]:
-    """A version, or the draft of a worksheet: what is answered is not kept.
+    """Return a version, or the draft of a worksheet: what is answered is not kept.
 
     Raises
     ------
@@ -57,7 +57,7 @@ class Answering:
             self.pool.admit(client)
 
     async def answer(self, request: Request, question: Question, within: float | None = None) -> Response:
-        """The answer of a calculation process; 202 with a job once nobody waits for it any longer.
+        """Return the answer of a calculation process; 202 with a job once nobody waits for it any longer.
 
         Waits `within` [s], by default as long as the request prefers.
 

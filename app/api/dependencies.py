@@ -54,13 +54,13 @@ from app.worksheets.service import Worksheets
 
 
 def services_of(request: Request) -> Services:
-    """The parts of the service that answers a request."""
+    """Return the parts of the service that answers a request."""
     services: Services = request.app.state.services
     return services
 
 
 def _part(name: str) -> Callable[[Request], Awaitable[object]]:
-    """The dependency that gives a part of the services by its name."""
+    """Return the dependency that gives a part of the services by its name."""
 
     async def part(request: Request) -> object:
         return getattr(services_of(request), name)
@@ -108,7 +108,7 @@ IdempotencyKey = Annotated[
 
 
 async def get_once(request: Request, client: TheClient, idempotency_key: IdempotencyKey = None) -> Once:
-    """The service that recognises a repeated request."""
+    """Return the service that recognises a repeated request."""
     scope = f"{request.method} {request.scope['path']}"
     return Once(idempotency_key, scope, await fingerprint(request), client)
 

@@ -29,7 +29,7 @@ async def last_event(
         ),
     ] = None,
 ) -> int | None:
-    """The number of the last event that the client got; None if it got none."""
+    """Return the number of the last event that the client got; None if it got none."""
     return int(last_event_id) if last_event_id else None
 
 
@@ -41,12 +41,12 @@ Still = Callable[[], Awaitable[bool]]
 
 
 async def always() -> bool:
-    """Where nothing asks for a key: the stream may always go on."""
+    """Return where nothing asks for a key: the stream may always go on."""
     return True
 
 
 async def allowed(events: Subscription, still: Still) -> AsyncIterator[Event]:
-    """The events as they come, to the first one that whoever listens may not have any more."""
+    """Yield the events as they come, to the first one that whoever listens may not have any more."""
     async for event in events:
         if not await still():
             return
@@ -62,7 +62,10 @@ async def listening(events: Events, topic: str) -> AsyncIterator[Subscription]:
 
 
 def identity(number: int | None) -> str | None:
-    """The `id` of an event; one that is stored nowhere has none: the client keeps that of the one before."""
+    """Return the `id` of an event.
+
+    One that is stored nowhere has none: the client keeps that of the one before.
+    """
     return None if number is None else str(number)
 
 
@@ -77,7 +80,7 @@ class Whole:
 
     @property
     def event(self) -> ServerSentEvent:
-        """The content as an event to be sent."""
+        """Return the content as an event to be sent."""
         return ServerSentEvent(id=identity(self.number), event=self.state, data=self.data)
 
 

@@ -71,7 +71,7 @@ async def _unless_healed(sha: str, healing: Healing, jobs: Jobs, prefer: str | N
 
 
 def rebuilding(sha: str, job: str) -> Response:
-    """503 for an artifact that a job makes again."""
+    """Return 503 for an artifact that a job makes again."""
     about = problems.problem(REBUILDING, f"artifact {sha} was missing or damaged and is made again")
     place = f"/api/v1/jobs/{job}"
     return problems.answer({**about, "job": place}, {"Retry-After": str(RETRY_AFTER), "Location": place})
@@ -117,7 +117,7 @@ class StoredFile(FileResponse):
         return watched
 
     def _verified_again(self, opened: Opened) -> Opened:
-        """The file after a change that left its bytes as they were, such as a later time or a lost name."""
+        """Return the file after a change that kept its bytes, such as a later time or a lost name."""
         stamp = stamp_of(opened.file)
         opened.file.seek(0)
         if hashlib.file_digest(opened.file, "sha256").hexdigest() != self._sha:

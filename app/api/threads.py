@@ -45,7 +45,10 @@ class Threads:
     async def run_within(
         self, seconds: float, request: Request, function: Callable[P, T], *args: P.args, **options: P.kwargs
     ) -> T:
-        """Likewise; steps are deferred that are not calculated after so long, or after the deadline [s]."""
+        """Run a function as `run_for`, and defer the steps that take longer than so long [s].
+
+        The deadline of the calculation limits that time.
+        """
         if caller := present_caller():
             caller.until = time.monotonic() + min(seconds, caller.steps.deadline)
         return await self.run_for(request, function, *args, **options)

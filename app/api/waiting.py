@@ -30,13 +30,13 @@ _WEIGHT = re.compile(r"\bq=([01](?:\.[0-9]{0,3})?)")
 
 
 def accepted_kinds(accept: str | None) -> list[tuple[str, str]]:
-    """The media types of an Accept header, each with its parameters."""
+    """Return the media types of an Accept header, each with its parameters."""
     named = (part.partition(";") for part in (accept or "").lower().split(",", MOST_ACCEPTED)[:MOST_ACCEPTED])
     return [(media.strip(), parameters) for media, _, parameters in named]
 
 
 def accepted_weights(accept: str | None) -> dict[str, float]:
-    """The weight `q` of each media type of an Accept header, 0 to 1; 1 where it names none."""
+    """Return the weight `q` of each media type of an Accept header, 0 to 1; 1 where it names none."""
     return {media: _weight(parameters) for media, parameters in accepted_kinds(accept)}
 
 
@@ -71,16 +71,16 @@ async def client_left(request: Request) -> None:
 
 
 def accepted(job: str | None, answer: Answer | None = None) -> Response:
-    """202: the work goes on; the job is in Location."""
+    """Return status 202: the work goes on; the job is in Location."""
     place = f"/api/v1/jobs/{job}"
     return written(answer or Accepted(job=place), 202, {"Location": place})
 
 
 def written(answer: Answer, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
-    """An answer as JSON, without the fields that it leaves out."""
+    """Return an answer as JSON, without the fields that it leaves out."""
     return Response(as_json(answer), status, media_type="application/json", headers=dict(headers or {}))
 
 
 def as_json(answer: Answer) -> bytes:
-    """An answer as JSON, without the fields that it leaves out."""
+    """Return an answer as JSON, without the fields that it leaves out."""
     return answer.model_dump_json(by_alias=True, exclude_unset=True).encode()

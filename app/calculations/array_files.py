@@ -23,7 +23,7 @@ MEDIA_TYPES: dict[Form, str] = {"json": JSON, "npy": NPY}
 
 
 def npy(result: Evaluation) -> bytes:
-    """The outputs as one structured array in NumPy's format.
+    """Return the outputs as one structured array in NumPy's format.
 
     Each output is a field of double precision under its name; the field's title adds the unit, such as
     `minimum_film_thickness [um]`. Outputs of one value fill their column.
@@ -45,7 +45,7 @@ def npy(result: Evaluation) -> bytes:
 
 
 def _column(name: str, output: Answer) -> NDArray[np.float64]:
-    """The values of an output; raises NoArray."""
+    """Return the values of an output; raises NoArray."""
     if isinstance(output.value, str):
         raise NoArray(f"{name} is a text; a file of NumPy holds numbers")
     if output.value is None:
@@ -59,7 +59,7 @@ def _column(name: str, output: Answer) -> NDArray[np.float64]:
 
 
 def _shape(columns: dict[str, NDArray[np.float64]]) -> tuple[int, ...]:
-    """The shape of all columns of more than one value; raises NoArray if there are two."""
+    """Return the shape of all columns of more than one value; raises NoArray if there are two."""
     shapes = {column.shape: name for name, column in columns.items() if column.ndim}
     if len(shapes) > 1:
         (first, one), (second, other), *_ = shapes.items()

@@ -34,7 +34,7 @@ class Calculations:
 
     @property
     def lanes(self) -> dict[str, int]:
-        """The threads of the lane of such jobs, for `Jobs.start`.
+        """Return the threads of the lane of such jobs, for `Jobs.start`.
 
         A job of the lane is adopted while it runs, so there is a thread more than calculations that run for
         jobs.

@@ -35,7 +35,7 @@ class Begun:
             self._pool.cancel(calculation)
 
     def take(self, key: Hashable) -> Calculation | None:
-        """The calculation of a question, which is the caller's from now on."""
+        """Return the calculation of a question, which is the caller's from now on."""
         return self._calculations.pop(key, None)
 
     def leave_to(self, job: str) -> None:
@@ -57,10 +57,10 @@ class Begun:
 
 
 def fingerprint(inputs: Mapping[str, Raw]) -> bytes:
-    """A digest of inputs as typed, the same in whatever order their parts are written."""
+    """Return a digest of inputs as typed, the same in whatever order their parts are written."""
     return sha256(json.dumps(inputs, sort_keys=True, default=_plain).encode()).digest()
 
 
 def _plain(value: object) -> object:
-    """A value as JSON; a quantity that was read already becomes the text that its user typed."""
+    """Return a value as JSON; a quantity that was read already becomes the text that its user typed."""
     return [value.value, value.unit, value.extra] if isinstance(value, Typed) else repr(value)

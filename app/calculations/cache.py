@@ -37,11 +37,11 @@ class Cache:
 
     @property
     def size(self) -> int:
-        """The memory of all values [bytes]."""
+        """Return the memory of all values [bytes]."""
         return int(self._kept.currsize)
 
     def get(self, key: Hashable) -> Any:  # whoever keeps a value knows its type
-        """The value kept under a key, or None."""
+        """Return the value kept under a key, or None."""
         with self._lock:
             kept = self._kept.get(key)
         return None if kept is None else kept.value

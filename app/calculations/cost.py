@@ -129,7 +129,7 @@ _costs: WeakKeyDictionary[type[Template], tuple[float, float]] = WeakKeyDictiona
 
 
 def _points(cls: type[Template], shapes: Mapping[str, tuple[int, ...]]) -> Iterable[tuple[int, ...]]:
-    """The axes that are points: a curve is one thing along its last, a table is one as a whole."""
+    """Yield the axes that are points: a curve is one thing along its last, a table is one as a whole."""
     for name, shape in shapes.items():
         declared = cls.inputs.get(name)
         if not isinstance(declared, Table):
@@ -139,7 +139,7 @@ def _points(cls: type[Template], shapes: Mapping[str, tuple[int, ...]]) -> Itera
 def _profiles(
     cls: type[Template], shapes: Mapping[str, tuple[int, ...]], outputs: Collection[str] | None
 ) -> float:
-    """The time for outputs along curves, besides that for the points [s]."""
+    """Return the time for outputs along curves, besides that for the points [s]."""
     curves = (math.prod(s) for name, s in shapes.items() if isinstance(cls.inputs.get(name), Curve))
     return min(MOST_POINTS, max(curves, default=0)) * len(_wanted(cls, outputs)) * PER_VALUE
 
@@ -151,7 +151,7 @@ def _levels(
     tolerance: float | None,
     numbers: int,
 ) -> tuple[str, ...]:
-    """The levels that will be calculated: one, or with a tolerance perhaps all, up to the finest."""
+    """Return the levels that will be calculated: one, or with a tolerance perhaps all, up to the finest."""
     if not cls.levels:
         return (SINGLE,)
     if level in cls.levels:
@@ -161,7 +161,7 @@ def _levels(
 
 
 def _ladder(cls: type[Template], inputs: Mapping[str, Raw], numbers: int) -> tuple[tuple[str, ...], str]:
-    """The levels that answer the question these inputs ask, and the one that is taken by itself."""
+    """Return the levels that answer the question these inputs ask, and the one that is taken by itself."""
     if cls.ladder is Template.ladder:
         return cls.levels, cls.default_level
     probe = inputs if numbers <= PROBED else {name: _first(cls, name, raw) for name, raw in inputs.items()}
@@ -174,7 +174,7 @@ def _ladder(cls: type[Template], inputs: Mapping[str, Raw], numbers: int) -> tup
 
 
 def _first(cls: type[Template], name: str, raw: Raw) -> Raw:
-    """An array's first value, in its unit; anything else as it is."""
+    """Return an array's first value, in its unit; anything else as it is."""
     if isinstance(cls.inputs.get(name), (Curve, Table)):
         return raw
     if isinstance(raw, Typed):
@@ -203,7 +203,7 @@ def _evaluating(
 
 
 def _level_seconds(cls: type[Template], level: str, points: int) -> float:
-    """The measured time of a level for so many points [s]; None if it was not measured."""
+    """Return the measured time of a level for so many points [s]; None if it was not measured."""
     measured = accuracy(cls)
     cost = measured.content["levels"].get(level, {}).get("cost", {}) if measured else {}
     single = float(cost.get("single", 0.0))

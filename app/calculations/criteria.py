@@ -11,14 +11,14 @@ from templates.core.judging.summary import summarised
 
 
 def rendered(ordered: Sequence[Judgement]) -> JsonObject:
-    """`criteria`, worst first, and the `verdict` over them; nothing where there are no criteria."""
+    """Return `criteria`, worst first, and the `verdict` over them; nothing where there are no criteria."""
     if not ordered:
         return {}
     return {"criteria": [criterion(judgement) for judgement in ordered], "verdict": verdict(ordered)}
 
 
 def verdict(ordered: Sequence[Judgement]) -> dict[str, object]:
-    """The verdict over all criteria, which stand in order."""
+    """Return the verdict over all criteria, which stand in order."""
     summary = summarised(ordered)
     return {
         "verdict": summary.verdict,
@@ -30,7 +30,7 @@ def verdict(ordered: Sequence[Judgement]) -> dict[str, object]:
 
 
 def criterion(judgement: Judgement) -> JsonObject:
-    """One criterion as JSON, without the members that do not apply."""
+    """Return one criterion as JSON, without the members that do not apply."""
     unit, value, limit, margin = judgement.unit, judgement.value, judgement.limit, judgement.margin
     parts = {
         "value": None if value is None else _quantity(value, unit),
@@ -66,7 +66,7 @@ def _band(band: tuple[float, float], unit: str) -> dict[str, object]:
 
 
 def _where(places: Sequence[Place]) -> dict[str, object]:
-    """Places by name; what has no unit is a name, such as that of a variant."""
+    """Return places by name; what has no unit is a name, such as that of a variant."""
     return {
         place.name: {"value": place.value, "unit": place.unit} if place.unit else place.value
         for place in places

@@ -41,7 +41,7 @@ class Column:
 
 
 def read_curves(body: bytes) -> dict[str, JsonObject]:
-    """The columns of a table as quantities by name: `{"pressure": {"value": […], "unit": "bar"}}`.
+    """Return the columns of a table as quantities by name: `{"pressure": {"value": […], "unit": "bar"}}`.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def _wrong(name: str, code: str, detail: str) -> InvalidInputs:
 
 
 def _lines(body: bytes) -> Iterator[tuple[int, str]]:
-    """The lines that say something, with their numbers."""
+    """Yield the lines that say something, with their numbers."""
     try:
         text = body.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -106,7 +106,7 @@ def _split(line: str, separator: str) -> list[str]:
 
 
 def _columns(header: list[str], number: int) -> list[Column]:
-    """The columns that a header names."""
+    """Return the columns that a header names."""
     name = f"line {number}"
     if len(header) > MOST_COLUMNS:
         raise _wrong(name, "too_many_columns", f"a table has at most {MOST_COLUMNS} columns")
@@ -126,7 +126,7 @@ def _columns(header: list[str], number: int) -> list[Column]:
 
 
 def _column(text: str) -> Column:
-    """A column from its heading.
+    """Return a column from its heading.
 
     Raises
     ------
@@ -146,7 +146,7 @@ def _column(text: str) -> Column:
 
 
 def _row(fields: list[str], columns: list[Column], separator: str) -> list[float]:
-    """The numbers of a row.
+    """Return the numbers of a row.
 
     Raises
     ------

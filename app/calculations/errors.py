@@ -45,16 +45,16 @@ class InvalidBody(Exception):
 
     @classmethod
     def of(cls, error: ValidationError) -> Self:
-        """From pydantic's own error, as FastAPI locates it, without the values that may be large."""
+        """Return the error for one of pydantic, located as FastAPI does, without large values."""
         listed = error.errors(include_url=False, include_input=False, include_context=False)
         return cls([{**entry, "loc": ("body", *entry["loc"])} for entry in listed])
 
     @classmethod
     def not_json(cls, reason: str) -> Self:
-        """For a body that cannot be parsed, in the words of FastAPI."""
+        """Return the error for a body that cannot be parsed, in the words of FastAPI."""
         entry = ErrorDetails(type="json_invalid", loc=("body", 0), msg="JSON decode error", input=None)
         return cls([{**entry, "ctx": {"error": reason}}])
 
     def errors(self) -> list[ErrorDetails]:
-        """The faults, one by one."""
+        """Return the faults, one by one."""
         return self._listed

@@ -42,7 +42,7 @@ class Film(Template):
 
 
 def solve_film_pressure(raw: dict[str, Raw]) -> FilmPressure:
-    """The field for inputs as a user types them.
+    """Return the field for inputs as a user types them.
 
     Raises
     ------

@@ -38,7 +38,7 @@ FAILURES = (TemplateError, TooManyValues, InvalidBody, NoArray, CannotRebuild)
 
 
 def question_of(payload: Mapping[str, Json], store: Artifacts) -> Question:
-    """The question that the row of a job names; raises ArtifactMissing, ArtifactDamaged."""
+    """Return the question that the row of a job names; raises ArtifactMissing, ArtifactDamaged."""
     fields = {name: part for name, part in payload.items() if name != AGAIN}
     return Question(**{**fields, "body": Pieces.of(store.read(payload["body"]))})
 
@@ -65,7 +65,7 @@ class CalculationJobs:
 
     @property
     def catalogue(self) -> Catalogue[Template]:
-        """The templates, as they are now."""
+        """Return the templates, as they are now."""
         return self.catalogues.templates
 
     def create(self, question: Question, client: str, running: Calculation | None = None) -> str:
@@ -145,7 +145,7 @@ class CalculationJobs:
             self.pool.cancel(calculation)
 
     def _submitted(self, job: Job) -> Calculation:
-        """The calculation of a job from its row, as after a start of the server."""
+        """Return the calculation of a job from its row, as after a start of the server."""
         try:
             question = question_of(job.payload, self.store)
         except (ArtifactMissing, ArtifactDamaged) as error:
@@ -162,5 +162,5 @@ class CalculationJobs:
 
 
 def place_of_answer(job: str, sha: str) -> str:
-    """The address at which the answer of a job is read."""
+    """Return the address at which the answer of a job is read."""
     return f"/api/v1/evaluations/{job}?sha256={sha}"

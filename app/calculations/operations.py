@@ -67,12 +67,12 @@ class Question:
 
     @property
     def media_type(self) -> str:
-        """Of the answer."""
+        """Return the media type of the answer."""
         return MEDIA_TYPES[self.form]
 
 
 def answered(source: Source, question: Question) -> Pieces:
-    """The answer, in the form that the question asks for.
+    """Return the answer, in the form that the question asks for.
 
     Raises
     ------

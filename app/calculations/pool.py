@@ -78,21 +78,21 @@ class CalculationPool:
 
     @property
     def most_jobs(self) -> int:
-        """Calculations that run at the same time as jobs."""
+        """Return calculations that run at the same time as jobs."""
         return self._capacity["jobs"]
 
     @property
     def running(self) -> int:
-        """Calculations that run."""
+        """Return calculations that run."""
         return len(self._active)
 
     @property
     def waiting(self) -> int:
-        """Calculations that wait."""
+        """Return calculations that wait."""
         return len(self._queue)
 
     def occupancy(self) -> dict[str, float]:
-        """The figures of the pool for `app.observation.metrics`."""
+        """Return the figures of the pool for `app.observation.metrics`."""
         return {"running": self.running, "waiting": self.waiting, "size": self.size}
 
     def answers(self) -> bool:
@@ -164,7 +164,7 @@ class CalculationPool:
             thread.join()
 
     def _loser(self, client: str) -> Calculation | None:
-        """The calculation that must give way to one of this client; None if the queue is not full."""
+        """Return the calculation that must give way to one of this client; None if the queue is not full."""
         queue = [calculation for calculation in self._queue if calculation.lane == "answers"]
         if len(queue) - self._room("answers") < self.most_waiting:
             return None

@@ -68,7 +68,7 @@ class CalculationProcesses:
                 processes.close()
 
     def _processes(self, light: bool) -> WarmProcesses:
-        """Processes of a kind, started if there are none.
+        """Return processes of a kind, started if there are none.
 
         Raises
         ------

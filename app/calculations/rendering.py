@@ -32,7 +32,7 @@ _identities: dict[type[Template], Identity] = {}
 
 
 def identity(cls: type[Template]) -> Identity:
-    """Which version calculated: id, version and the digest of its code."""
+    """Return which version calculated: id, version and the digest of its code."""
     if cls not in _identities:
         identified: Identity = {"id": cls.id, "version": cls.version, "digest": digest(cls)}
         if cls.sheet:
@@ -42,12 +42,12 @@ def identity(cls: type[Template]) -> Identity:
 
 
 def quantity(value: object, unit: str | None) -> dict[str, object]:
-    """A value with its unit; a text has none."""
+    """Return a value with its unit; a text has none."""
     return {"value": value} if unit is None else {"value": value, "unit": unit}
 
 
 def outputs(answers: Mapping[str, Answer]) -> JsonObject:
-    """The outputs; what does not exist is null with its reason."""
+    """Return the outputs; what does not exist is null with its reason."""
     shown: dict[str, object] = {}
     for name, output in answers.items():
         if isinstance(output.value, np.ndarray):
@@ -60,7 +60,7 @@ def outputs(answers: Mapping[str, Answer]) -> JsonObject:
 
 
 def _array(output: Answer) -> dict[str, object]:
-    """An output of several points or places; each that does not exist is null with its reason."""
+    """Return an output of several points or places; each that does not exist is null with its reason."""
     if output.reasons is None:
         return quantity(output.value.tolist(), output.unit)
     holes = _with_holes(output.value, output.reasons)
@@ -68,7 +68,10 @@ def _array(output: Answer) -> dict[str, object]:
 
 
 def _with_holes(value: NDArray[np.float64], reasons: NDArray[np.object_]) -> NDArray[np.object_]:
-    """The values as objects, None where there is none; a profile, which has one reason, is one object."""
+    """Return the values as objects, None where there is none.
+
+    A profile, which has one reason, is one object.
+    """
     if value.ndim == reasons.ndim:
         holes = value.astype(object)
         holes[reasons != None] = None  # noqa: E711
@@ -80,7 +83,7 @@ def _with_holes(value: NDArray[np.float64], reasons: NDArray[np.object_]) -> NDA
 
 
 def _plain(value: object) -> object:
-    """A single value or an array as JSON; what was not measured is null."""
+    """Return a single value or an array as JSON; what was not measured is null."""
     if not isinstance(value, np.ndarray):
         return None if value != value else value  # NaN
     if value.ndim == 1:
@@ -89,7 +92,7 @@ def _plain(value: object) -> object:
 
 
 def errors(errors: Mapping[str, object]) -> dict[str, object]:
-    """The error of each output."""
+    """Return the error of each output."""
     return {
         name: _plain(error) if isinstance(error, np.ndarray) else None if error != error else error
         for name, error in errors.items()
@@ -97,7 +100,7 @@ def errors(errors: Mapping[str, object]) -> dict[str, object]:
 
 
 def inputs(echoes: Mapping[str, UsedInput]) -> dict[str, object]:
-    """The inputs as they were used."""
+    """Return the inputs as they were used."""
     shown: dict[str, object] = {}
     for name, used in echoes.items():
         unit = {} if used.unit is None else {"unit": used.unit}
@@ -106,7 +109,7 @@ def inputs(echoes: Mapping[str, UsedInput]) -> dict[str, object]:
 
 
 def evaluation(result: Evaluation) -> JsonObject:
-    """The whole answer to `evaluate`."""
+    """Return the whole answer to `evaluate`."""
     return {
         "template": identity(type(result.template)),
         "inputs": inputs(result.inputs),
@@ -120,12 +123,12 @@ def evaluation(result: Evaluation) -> JsonObject:
 
 
 def warnings(notices: Iterable[Notice]) -> list[dict[str, object]]:
-    """The warnings."""
+    """Return the warnings."""
     return [{"code": w.code, "name": w.name, "detail": w.detail} for w in notices]
 
 
 def solution(result: Solution) -> JsonObject:
-    """The whole answer to `solve`."""
+    """Return the whole answer to `solve`."""
     return {
         "unknown": quantity(result.unknown, result.unit),
         "warnings": warnings(result.warnings),

@@ -20,7 +20,7 @@ def points(inputs: Mapping[str, Raw]) -> int:
 
 
 def arrays(inputs: Mapping[str, Raw]) -> dict[str, Shape]:
-    """The shapes of the arrays among inputs, as typed."""
+    """Return the shapes of the arrays among inputs, as typed."""
     shapes: dict[str, Shape] = {}
     for name, raw in inputs.items():
         is_single = isinstance(raw, str) or (isinstance(raw, Typed) and isinstance(raw.si, float))
@@ -37,7 +37,7 @@ def spanned(shapes: Iterable[Shape]) -> int:
 
 
 def shape(raw: Raw) -> Shape:
-    """The shape of a quantity as typed: by its first items, as what is uneven is refused later."""
+    """Return the shape of a quantity as typed: by its first items, as what is uneven is refused later."""
     if isinstance(raw, Typed):
         return np.shape(raw.si)
     lengths: list[int] = []

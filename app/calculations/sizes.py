@@ -23,7 +23,10 @@ _ATOMS = (float, int, bool, str, bytes, complex, type(None))
 
 
 def size_of(value: object) -> int:
-    """The memory of a value and of all that it refers to [bytes]; what equal parts share may count twice."""
+    """Return the memory of a value and of all that it refers to [bytes].
+
+    What equal parts share may count twice.
+    """
     total, seen, waiting = sys.getsizeof(value), {id(value)}, [value]
     while waiting:
         item = waiting.pop()
@@ -43,6 +46,6 @@ def _is_shared(kind: type) -> bool:
 
 
 def _parts(array: NDArray[np.generic]) -> list[object]:  # arrays of any kind of number
-    """The objects in an array, and of a view the array that owns the numbers."""
+    """Return the objects in an array, and of a view the array that owns the numbers."""
     items = array.ravel().tolist() if array.dtype == object else []
     return items if array.base is None else [*items, array.base]

@@ -54,7 +54,7 @@ Source = FileSource | SheetSource | BroughtSource
 
 
 def source_of(cls: type[Template]) -> Source:
-    """The source of a template, with the code that this process calculates by."""
+    """Return the source of a template, with the code that this process calculates by."""
     if issubclass(cls, ImportedModel):
         return BroughtSource(cls.id, cls.version, cls.imported.text)
     if cls.sheet is not None:
@@ -68,7 +68,7 @@ def source_of(cls: type[Template]) -> Source:
 
 @lru_cache(maxsize=1024)
 def loaded(source: Source) -> type[Template]:
-    """The template in this process, by the code that the server sent.
+    """Return the template in this process, by the code that the server sent.
 
     Raises
     ------
@@ -88,7 +88,7 @@ def loaded(source: Source) -> type[Template]:
 
 
 def class_of(source: SheetSource) -> type[Template]:
-    """The class that a worksheet makes; one class, however often it is asked for.
+    """Return the class that a worksheet makes; one class, however often it is asked for.
 
     Raises
     ------

@@ -24,7 +24,7 @@ def csv_of(
     level: str | None,
     tolerance: float | None,
 ) -> bytes:
-    """The outputs of a template as CSV: a row of names, one of units, and one for each point.
+    """Return the outputs of a template as CSV: a row of names, one of units, and one for each point.
 
     Raises
     ------
@@ -60,7 +60,7 @@ def _column(value: object) -> list[object]:
 
 
 def _cell(value: object) -> object:
-    """A value that no spreadsheet takes for a formula; empty where there is none."""
+    """Return a value that no spreadsheet takes for a formula; empty where there is none."""
     if isinstance(value, str) and value.startswith(_DANGEROUS):
         return f"'{value}"
     return "" if value is None else value

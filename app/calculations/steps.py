@@ -42,7 +42,7 @@ class Steps:
     left: dict[str, Begun] = field(default_factory=dict)  # calculations that wait for their job, by job
 
     def begun(self) -> Begun:
-        """A place for the calculations that one request begins and does not wait for."""
+        """Return a place for the calculations that one request begins and does not wait for."""
         return Begun(self.pool, self.left)
 
     def drop(self, job: str) -> None:
@@ -75,7 +75,7 @@ class Caller:
         level: str | None,
         tolerance: float | None,
     ) -> Evaluation:
-        """The evaluation of a step in the pool; blocks.
+        """Return the evaluation of a step in the pool; blocks.
 
         Raises
         ------
@@ -127,7 +127,9 @@ def evaluated_step(
     level: str | None,
     tolerance: float | None,
 ) -> Evaluation:
-    """The evaluation of a step; blocks. Its design judges it, for criteria may follow from several steps.
+    """Return the evaluation of a step.
+
+    Blocks. Its design judges it, for criteria may follow from several steps.
 
     Raises
     ------
@@ -159,7 +161,7 @@ def in_the_pool(key: Hashable, function: Callable[[*Ts], T], *args: *Ts) -> T:
 
 
 def begun_steps() -> Begun | None:
-    """The calculations that the caller of this context has begun and does not wait for."""
+    """Return the calculations that the caller of this context has begun and does not wait for."""
     caller = _caller.get()
     return caller.begun if caller else None
 
@@ -171,7 +173,7 @@ def _evaluated(
     level: str | None,
     tolerance: float | None,
 ) -> Evaluation:
-    """The evaluation, with all that the template has computed: in a calculation process."""
+    """Return the evaluation, with all that the template has computed: in a calculation process."""
     return evaluate(loaded(source), raw, outputs=outputs, level=level, tolerance=tolerance, judge=False)
 
 
@@ -197,5 +199,5 @@ def call_as(caller: Caller) -> None:
 
 
 def present_caller() -> Caller | None:
-    """For whom this context evaluates steps."""
+    """Return for whom this context evaluates steps."""
     return _caller.get()

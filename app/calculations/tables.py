@@ -82,7 +82,7 @@ def read_table(
     most_faults: int = MOST_FAULTS,
     heading: Heading | None = None,
 ) -> list[TableColumn]:
-    """The columns of a table. Linear in the length of the text, which is at most `most_characters`.
+    """Return the columns of a table. Linear in the length of the text, which is at most `most_characters`.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def read_table(
 
 
 def _lines(text: str, most_rows: int, most_characters: int) -> tuple[list[_Line], bool]:
-    """The lines that are not blank, and whether a comma separates their columns."""
+    """Return the lines that are not blank, and whether a comma separates their columns."""
     if len(text) > most_characters:
         message = f"a table has at most {most_characters} characters, this one {len(text)}; take fewer rows"
         raise _wrong("table", "too_long", message)
@@ -134,7 +134,7 @@ def _lines(text: str, most_rows: int, most_characters: int) -> tuple[list[_Line]
 
 
 def _trimmed(cells: list[str], least: int) -> list[str]:
-    """The cells without the empty ones that a spreadsheet leaves at the end of a row."""
+    """Return the cells without the empty ones that a spreadsheet leaves at the end of a row."""
     empty = next((n for n, cell in enumerate(reversed(cells)) if cell), 0)
     return cells[: max(len(cells) - empty, least)]
 
@@ -150,7 +150,7 @@ def _cells(row: int, line: str, separator: str) -> list[str]:
 
 
 def _headings(lines: Sequence[_Line], faults: _Faults) -> tuple[list[str], list[_Unit], Sequence[_Line]]:
-    """Names and units of the columns (None where a unit is wrong), and the lines below them."""
+    """Return names and units of the columns (None where a unit is wrong), and the lines below them."""
     first = lines[0]
     if not _is_words(first):
         return [f"column {n}" for n in range(1, len(first.cells) + 1)], [""] * len(first.cells), lines
@@ -181,7 +181,7 @@ def _heading(cell: str, place: int) -> tuple[str, str]:
 
 
 def _read_units(line: _Line, names: Sequence[str], texts: Sequence[str], faults: _Faults) -> list[_Unit]:
-    """The units of a row, each checked; empty where there is none, None where it is wrong."""
+    """Return the units of a row, each checked; empty where there is none, None where it is wrong."""
     units: list[_Unit] = []
     for name, text in zip(names, texts, strict=True):
         try:
@@ -199,7 +199,7 @@ def _agreed(
     below: Sequence[str | None],
     faults: _Faults,
 ) -> list[_Unit]:
-    """The units of the two rows of headings, which may not contradict each other."""
+    """Return the units of the two rows of headings, which may not contradict each other."""
     for name, one, other in zip(names, above, below, strict=True):
         if one and other and one != other:
             detail = f"the header says {one}, this row {other}; keep one of them"
@@ -211,7 +211,7 @@ def _agreed(
 
 
 def _numbers(line: _Line, names: Sequence[str], is_comma: bool, faults: _Faults) -> list[float]:
-    """The numbers of a line; what is none, and a line of another length, is added to the faults."""
+    """Return the numbers of a line; what is none, and a line of another length, is added to the faults."""
     if len(line.cells) != len(names):
         detail = f"it has {len(line.cells)} cells, the first row has {len(names)}"
         hint = "; with decimal commas, separate the columns by semicolons or tabs" if is_comma else ""
@@ -227,7 +227,7 @@ def _numbers(line: _Line, names: Sequence[str], is_comma: bool, faults: _Faults)
 
 
 def _number(cell: str, is_comma: bool) -> float:
-    """The number in a cell.
+    """Return the number in a cell.
 
     Raises
     ------

@@ -28,7 +28,7 @@ class Turns:
         self._last: dict[str, int] = {}  # by client, of those who wait or run
 
     def next(self, client: str) -> int:
-        """The turn of a client's next calculation."""
+        """Return the turn of a client's next calculation."""
         turn = max(self._last.get(client, -1) + 1, self._now)
         self._last[client] = turn
         return turn
@@ -43,12 +43,17 @@ class Turns:
 
 
 def first(waiting: Collection[W], running: Counter[str]) -> W | None:
-    """The next to run: the lowest turn; of equal ones, the client that runs fewest; of those, the first."""
+    """Return the next to run: the lowest turn; of equal ones, the client that runs fewest.
+
+    Of those, the first.
+    """
     return min(waiting, key=lambda w: (w.turn, running[w.client]), default=None)
 
 
 def last_of_the_greediest(waiting: Collection[W], newcomer: str) -> W | None:
-    """The one that gives way to a newcomer: the latest of the client that has most waiting, if that is more.
+    """Return the one that gives way to a newcomer.
+
+    The latest of the client that has most waiting, if that is more.
 
     None if the newcomer itself has as many waiting, with this one, as anybody.
     """

@@ -28,14 +28,14 @@ def run_worksheet(cls: type[Template], body: EvaluateIn, system: System) -> Json
 
 
 def worksheet(evaluation: Evaluation, system: System) -> JsonObject:
-    """An evaluation as `evaluate` answers it, in the system's units, with its formulas."""
+    """Return an evaluation as `evaluate` answers it, in the system's units, with its formulas."""
     written = formulas(evaluation.template, system, evaluation.outputs)
     answer = {**rendering.evaluation(evaluation), "formulas": written}
     return answer if system == "si" else Worksheet.model_validate(answer).in_units(system).plain()
 
 
 def formulas(template: Template, system: System, names: Container[str]) -> list[JsonObject]:
-    """The formulas of the outputs named, in the order of the template, each in LaTeX and MathML."""
+    """Return the formulas of the outputs named, in the order of the template, each in LaTeX and MathML."""
     cls = type(template)
     declared = {a: d.meaning.unit for a, d in cls.declarations.items() if d.meaning.unit}
     units = {attribute: shown_unit(unit, system) for attribute, unit in declared.items()}

@@ -11,7 +11,7 @@ from templates.core.errors import Fault, InvalidInputs
 
 
 def argument(name: str, text: str) -> Raw:
-    """The value of an input: `25 kN`, `[1, 3, 4, 2]`, `@diagram.csv` or `@diagram.csv:column`.
+    """Return the value of an input: `25 kN`, `[1, 3, 4, 2]`, `@diagram.csv` or `@diagram.csv:column`.
 
     Of a file, the column named as the input is taken unless another is named.
 

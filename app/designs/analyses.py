@@ -19,7 +19,7 @@ from templates.core.language.template import Template
 
 
 def measured_unit(reference: Reference) -> str:
-    """The unit of what is measured on a solid: `model.mass`, or `throw.torsion.stiffness`."""
+    """Return the unit of what is measured on a solid: `model.mass`, or `throw.torsion.stiffness`."""
     if reference.analysis is None:
         output = reference.output or ""
         return MEASURES.get(output) or BETWEEN[output.rpartition("_")[2]]
@@ -34,7 +34,10 @@ def is_measured(reference: Reference, declared: Iterable[str], cls: type[Templat
 
 
 def is_table(reference: Reference) -> bool:
-    """True if a name means an output of an analysis that is a table or a list; others are single values."""
+    """Return whether a name means an output of an analysis that is a table or a list.
+
+    Others are single values.
+    """
     return axes_of(reference) > 0
 
 
@@ -46,7 +49,7 @@ def axes_of(reference: Reference) -> int:
 
 
 def measured_names(declared: Iterable[str], cls: type[Template]) -> Iterator[str]:
-    """Every name of that sort."""
+    """Yield every name of that sort."""
     yield from MEASURES
     yield from _further(cls)
     yield from (f"{kind}.{output}" for kind in declared for output in KINDS[kind])
@@ -57,7 +60,7 @@ def _further(cls: type[Template]) -> Mapping[str, str]:
 
 
 def questions(name: str, model: Model, cls: type[CadModel]) -> tuple[dict[str, Question], list[Fault]]:
-    """The analyses that a model declares, as far as they can be made, and what is wrong with them."""
+    """Return the analyses that a model declares, as far as they can be made, and what is wrong with them."""
     if not model.analyses:
         return {}, []
     declared = {kind: options for kind, options in model.analyses.items() if kind in KINDS}
@@ -72,7 +75,10 @@ def questions(name: str, model: Model, cls: type[CadModel]) -> tuple[dict[str, Q
 
 
 def remedy(reference: Reference, models: Mapping[str, Mapping[str, Question]]) -> str | None:
-    """A sentence on how to correct an unknown name that means an analysis; None if it does not mean one."""
+    """Return a sentence on how to correct an unknown name that means an analysis.
+
+    None if it does not mean one.
+    """
     model, kind, output = reference.block, reference.analysis, reference.output
     if model not in models or kind not in KINDS or not output:
         return None
@@ -83,7 +89,7 @@ def remedy(reference: Reference, models: Mapping[str, Mapping[str, Question]]) -
 
 
 def used(kind: str, references: Iterable[Reference]) -> tuple[str, ...]:
-    """The outputs of an analysis among what relations use of its model."""
+    """Return the outputs of an analysis among what relations use of its model."""
     return in_order(
         kind,
         {reference.output for reference in references if reference.analysis == kind and reference.output},

@@ -28,7 +28,7 @@ NO_SINGLE_VALUE = (Choice, Curve, Profile, Table, Text)
 
 
 def proposals(graph: Graph) -> list[Proposal]:
-    """One proposal for every unset model parameter that something fits."""
+    """Return one proposal for every unset model parameter that something fits."""
     models = [block for block in graph.blocks.values() if block.is_model]
     candidates = (_proposal(graph, model, name) for model in models for name in model.cls.inputs)
     return [proposal for proposal in candidates if proposal is not None]
@@ -57,7 +57,7 @@ def _reason(model: Block, name: str, called: str, others: list[Reference]) -> st
 
 
 def _named(graph: Graph, model: Block, name: str, called: str) -> Iterator[Reference]:
-    """The values of this name: outputs and inputs of steps first, then parameters of the design."""
+    """Yield the values of this name: outputs and inputs of steps first, then parameters of the design."""
     steps = [block for block in graph.blocks.values() if not block.is_model]
     fitting = [
         step for step in steps if _tells_its_part(called) or (called == name and _share_a_role(step, model))

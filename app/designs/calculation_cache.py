@@ -40,7 +40,7 @@ class CalculationCache:
         self._cache.keep(_digest(text), prepared, BYTES * len(text))
 
     def find(self, plain: Mapping[str, Json]) -> Prepared | None:
-        """The calculation of a document that was saved lately."""
+        """Return the calculation of a document that was saved lately."""
         prepared: Prepared | None = self._cache.get(_digest(canonical_json(plain).encode()))
         return prepared
 

@@ -32,7 +32,9 @@ class Choices:
     catalogues: Catalogues
 
     def decided(self, relation: Relation) -> Relation:
-        """A relation with words in place of the choices that it tests; as it is, if a template is unknown.
+        """Return a relation with words in place of the choices that it tests.
+
+        As it is, if a template is unknown.
 
         Raises
         ------
@@ -50,7 +52,7 @@ class Choices:
         return relation.decided(words)
 
     def _choice(self, name: str) -> tuple[Choice, Raw]:
-        """The declaration of a choice, and its value in the document."""
+        """Return the declaration of a choice, and its value in the document."""
         reference = Reference.parse(name)
         cls, values = self._block(name, reference.block)
         declared = cls.inputs.get(reference.member) if cls else None

@@ -29,7 +29,7 @@ class Pair:
     number: int | None  # of the other side
 
     def rows(self, session: Session) -> tuple[RevisionRow, RevisionRow]:
-        """The older side and the newer one.
+        """Return the older side and the newer one.
 
         Without numbers: of one design its newest revision with the one before, of two their newest ones.
 
@@ -48,7 +48,7 @@ class Pair:
 
 
 def compare(session: Session, pair: Pair) -> Comparison:
-    """The differences between the two revisions.
+    """Return the differences between the two revisions.
 
     Raises
     ------
@@ -106,7 +106,7 @@ class _Parts:
 
 
 def _typed(document: JsonObject) -> dict[str, Json]:
-    """The parameters of a design as typed, and what its variants override."""
+    """Return the parameters of a design as typed, and what its variants override."""
     variants = {f"variants.{name}": values for name, values in document.get("variants", {}).items()}
     return {**document["parameters"], **_named(variants)}
 
@@ -138,7 +138,7 @@ def _outputs(step: JsonObject) -> dict[str, Json]:
 
 
 def _versions(steps: Mapping[str, JsonObject], calculated: Mapping[str, JsonObject]) -> dict[str, str]:
-    """The version of each step with the beginning of its code's digest, and its level."""
+    """Return the version of each step with the beginning of its code's digest, and its level."""
     texts: dict[str, str] = {}
     for name, step in steps.items():
         done = calculated.get(name, {})
@@ -155,7 +155,7 @@ def _model_versions(row: RevisionRow) -> dict[str, str]:
 
 
 def _criteria(results: JsonObject) -> Iterator[tuple[str, VerdictOf]]:
-    """The stored verdicts: of the revision, or of its steps, whose names have no prefix."""
+    """Yield the stored verdicts: of the revision, or of its steps, whose names have no prefix."""
     for item in results.get("criteria", ()):
         yield item["name"], _verdict(item)
     for name, step in results.get("steps", {}).items():

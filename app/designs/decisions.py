@@ -42,7 +42,7 @@ class Asked:
 
 
 def read_budget(raw: Raw) -> float:
-    """A time as typed [s].
+    """Return a time as typed [s].
 
     Raises
     ------
@@ -97,7 +97,7 @@ def _calculated(asked: Asked, database: Database, catalogues: Catalogues) -> tup
 
 
 def _pending(calculation: Calculation) -> ClimbResult:
-    """The answer while the design itself is still calculated."""
+    """Return the answer while the design itself is still calculated."""
     judgements = sorted(Verdicts(calculation).all(), key=lambda judgement: judgement.name)
     return ClimbResult(judgements, (), (), (), "pending")
 

@@ -23,7 +23,7 @@ from templates.core.units.quantity import read_any
 
 
 def read_demands(document: Document, blocks: Mapping[str, Block]) -> tuple[dict[str, Demand], list[Fault]]:
-    """The criteria of a document with the names that they use, and what of them cannot be read."""
+    """Return the criteria of a document with the names that they use, and what of them cannot be read."""
     demands: dict[str, Demand] = {}
     faults: list[Fault] = []
     for name, written in document.criteria.items():
@@ -67,7 +67,7 @@ def _uses(require: str | None) -> dict[str, Reference]:
 
 
 def unknown_names_in(network: Network, unread: Set[str] = frozenset()) -> list[Fault]:
-    """A fault for every name in a criterion of the design that means no number.
+    """Return a fault for every name in a criterion of the design that means no number.
 
     `unread` are blocks whose template is not known, which is a fault of its own.
     """
@@ -84,7 +84,7 @@ def unknown_names_in(network: Network, unread: Set[str] = frozenset()) -> list[F
 
 
 def checked_demands(network: Network, kinds: Mapping[str, Kind]) -> tuple[dict[str, Demand], list[Fault]]:
-    """The criteria of a network with their units checked, from the kinds of its parameters."""
+    """Return the criteria of a network with their units checked, from the kinds of its parameters."""
     demands: dict[str, Demand] = {}
     faults: list[Fault] = []
     for name, demand in network.demands.items():
@@ -121,7 +121,7 @@ def _checked(network: Network, kinds: Mapping[str, Kind], demand: Demand) -> Che
 
 
 def _meaning(network: Network, kinds: Mapping[str, Kind], name: str, reference: Reference) -> Described:
-    """The unit in which a value is shown, and its words."""
+    """Return the unit in which a value is shown, and its words."""
     if cell := network.parameters.get(name):
         typed = None if cell.relations else read_any(cell.raw).unit
         return Described(typed or f"{kinds[name].base:~C}" or "1", name.replace("_", " "))
@@ -131,5 +131,5 @@ def _meaning(network: Network, kinds: Mapping[str, Kind], name: str, reference: 
 
 
 def fault_of(name: str, error: FaultyText) -> Fault:
-    """The fault of a criterion, by its place in the document."""
+    """Return the fault of a criterion, by its place in the document."""
     return error.fault(f"criteria.{name}")

@@ -22,21 +22,21 @@ Numbers = NDArray[np.float64]
 
 
 def differing(old: Mapping[str, Json], new: Mapping[str, Json]) -> list[Compared]:
-    """Every quantity that is not the same, in the order of the newer ones."""
+    """Return every quantity that is not the same, in the order of the newer ones."""
     names = dict.fromkeys([*new, *old])
     pairs = ((name, old.get(name), new.get(name)) for name in names)
     return [_compared(*pair) for pair in pairs if not _is_same(pair[1], pair[2])]
 
 
 def differing_texts(old: Mapping[str, str], new: Mapping[str, str]) -> list[TextChange]:
-    """Every text that is not the same, in the order of the newer ones."""
+    """Return every text that is not the same, in the order of the newer ones."""
     names = dict.fromkeys([*new, *old])
     changes = (TextChange(name=name, old=old.get(name), new=new.get(name)) for name in names)
     return [change for change in changes if change.old != change.new]
 
 
 def leaves(tree: Mapping[str, Json], prefix: str) -> Iterator[tuple[str, Json]]:
-    """The quantities of a tree of names, by their dotted names."""
+    """Yield the quantities of a tree of names, by their dotted names."""
     for name, part in tree.items():
         if isinstance(part, Mapping) and "value" not in part:
             yield from leaves(part, f"{prefix}.{name}")
@@ -60,7 +60,10 @@ def _close(one: Numbers, other: Numbers) -> bool:
 
 
 def _parts(raw: Json) -> JsonObject:
-    """A value as plain parts; what stands in no object, such as a text as typed, is the value itself."""
+    """Return a value as plain parts.
+
+    What stands in no object, such as a text as typed, is the value itself.
+    """
     if isinstance(raw, Mapping):
         return {name: raw[name] for name in PARTS if raw.get(name) is not None}
     return {} if raw is None else {"value": raw}
@@ -79,7 +82,7 @@ def _is_same_kind(one: JsonObject, other: JsonObject) -> bool:
 
 
 def _numbers(parts: JsonObject) -> Numbers | None:
-    """The magnitudes in SI; None of a text, or of what has no unit."""
+    """Return the magnitudes in SI; None of a text, or of what has no unit."""
     scale = _unit_of(parts)
     if scale is None or isinstance(parts.get("value"), (str, bool)):
         return None
@@ -101,7 +104,7 @@ def _compared(name: str, old: Json, new: Json) -> Compared:
 
 
 def _change(one: JsonObject, other: JsonObject, before: Numbers, after: Numbers) -> float | None:
-    """The relative change; None of temperatures, which have no zero that means anything here."""
+    """Return the relative change; None of temperatures, which have no zero that means anything here."""
     if _is_temperature(one) or _is_temperature(other):
         return None
     scale = _largest(before)

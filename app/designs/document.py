@@ -115,12 +115,12 @@ class WrittenCriterion(Bounded):
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
-        """The document without members that are null or empty."""
+        """Return the document without members that are null or empty."""
         return _without_nothing(plain(self), *type(self).model_fields)
 
 
 def _in_natural_order(variants: dict[str, dict[str, Raw]]) -> dict[str, dict[str, Raw]]:
-    """Variants as people count them: main_2 before main_10."""
+    """Return variants as people count them: main_2 before main_10."""
     return {name: variants[name] for name in sorted(variants, key=natural)}
 
 
@@ -179,7 +179,7 @@ class Document(Bounded):
 
 
 def _without_nothing(plain: JsonObject, *names: str) -> JsonObject:
-    """An object without those of the names that hold nothing."""
+    """Return an object without those of the names that hold nothing."""
     return {name: value for name, value in plain.items() if value or name not in names}
 
 
@@ -200,7 +200,7 @@ def _overrides_set(raw: Mapping[str, Raw]) -> int:
 
 
 def _in_models(raw: Mapping[str, Raw]) -> Mapping[str, Json]:
-    """With `model` as the entry of that name in `models`; as it is, if it has no `model`, or both."""
+    """Return a document with `model` as an entry of `models`; as it is without `model`, or with both."""
     if "model" not in raw or "models" in raw:
         return raw
     rest = {key: value for key, value in raw.items() if key != "model"}
@@ -208,7 +208,10 @@ def _in_models(raw: Mapping[str, Raw]) -> Mapping[str, Json]:
 
 
 def merge(document: Mapping[str, Json], patch: Mapping[str, Raw]) -> JsonObject:
-    """The document with a merge patch applied (RFC 7396); a quantity is replaced whole, never merged into."""
+    """Return the document with a merge patch applied (RFC 7396).
+
+    A quantity is replaced whole, never merged into.
+    """
     return dict(_merged(document, _in_models(patch), ()))
 
 
@@ -225,7 +228,10 @@ def _merged(old: Json, patch: Json, path: tuple[str, ...]) -> Json:
 
 
 def _is_container(path: tuple[str, ...]) -> bool:
-    """True if a patch goes on inside: in the document, its groups, its steps and models, and their parts."""
+    """Return whether a patch goes on inside.
+
+    In the document, its groups, its steps and models, and their parts.
+    """
     match path:
         case () | ("parameters" | "steps" | "models" | "criteria" | "variants",):
             return True

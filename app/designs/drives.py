@@ -49,7 +49,7 @@ def network(document: Mapping[str, Raw], catalogues: Catalogues) -> DesignNetwor
 
 
 def network_of(graph: Graph) -> DesignNetwork:
-    """The dependencies in a checked network."""
+    """Return the dependencies in a checked network."""
     columns = _columns(graph)
     return DesignNetwork(
         blocks=[NetworkBlock(name=name, kind=_kind(graph, name), column=columns[name]) for name in columns],
@@ -59,7 +59,7 @@ def network_of(graph: Graph) -> DesignNetwork:
 
 
 def _columns(graph: Graph) -> dict[str, int]:
-    """The column of every parameter and block, in the order of calculation.
+    """Return the column of every parameter and block, in the order of calculation.
 
     A block that uses an input of a later one, or what an iteration assumes, does not wait for it.
     """
@@ -71,7 +71,10 @@ def _columns(graph: Graph) -> dict[str, int]:
 
 
 def _ordered(graph: Graph) -> Iterator[str]:
-    """The names of parameters and blocks as the network orders them; as written where it has no order."""
+    """Yield the names of parameters and blocks as the network orders them.
+
+    As written where it has no order.
+    """
     nodes = graph.order or (*graph.parameters.values(), *graph.blocks.values())
     for node in nodes:
         if isinstance(node, Block) or (isinstance(node, Cell) and node.declared is None):
@@ -79,7 +82,7 @@ def _ordered(graph: Graph) -> Iterator[str]:
 
 
 def _cells(graph: Graph, name: str) -> list[Cell]:
-    """The cells of a block; of a parameter itself."""
+    """Return the cells of a block; of a parameter itself."""
     block = graph.blocks.get(name)
     return list(block.cells.values()) if block else [graph.parameters[name]]
 
@@ -91,7 +94,7 @@ def _kind(graph: Graph, name: str) -> Literal["parameter", "step", "model"]:
 
 
 def _relations(graph: Graph, columns: Columns) -> Iterator[NetworkRelation]:
-    """Every name that every relation uses, where there is such a block."""
+    """Yield every name that every relation uses, where there is such a block."""
     for cell in graph.cells():
         target = cell.reference.block
         for name, source in _sources(cell).items():
@@ -101,18 +104,18 @@ def _relations(graph: Graph, columns: Columns) -> Iterator[NetworkRelation]:
 
 
 def _sources(cell: Cell) -> Mapping[str, Reference]:
-    """The references of a cell: quantities, and the choices that it tests."""
+    """Return the references of a cell: quantities, and the choices that it tests."""
     return {**cell.uses, **cell.tests}
 
 
 def _text(cell: Cell) -> str:
-    """The relation as typed; of a list, its first."""
+    """Return the relation as typed; of a list, its first."""
     texts = cell.raw if isinstance(cell.raw, list) else [cell.raw]
     return next(str(text) for text in texts if is_relation(text))
 
 
 def _names(graph: Graph) -> Iterator[NetworkName]:
-    """Every name that a relation may use."""
+    """Yield every name that a relation may use."""
     for name, kind in graph.kinds.items():
         if name in graph.parameters:
             yield _name(name, "parameter", "parameter of the design", f"{kind.base:~C}" or "1")
@@ -139,7 +142,7 @@ def _name(name: str, role: Role, words: str, unit_text: str) -> NetworkName:
 
 
 def _words(measure: Reference) -> str:
-    """A measure in words: `throw.torsion.stiffness` is the stiffness of the analysis torsion."""
+    """Return a measure in words: `throw.torsion.stiffness` is the stiffness of the analysis torsion."""
     origin = f"{measure.analysis} analysis" if measure.analysis else "measured"
     return f"{measure.own_name.replace('_', ' ')}, {origin}"
 

@@ -21,7 +21,7 @@ DEEPEST = 50  # links; JSON that nests deeper is refused by many readers, and by
 
 
 def explain(calculation: Calculation, parameter: str) -> JsonObject:
-    """The chain behind a model parameter, as nested `because`; what was explained once is named only.
+    """Return the chain behind a model parameter, as nested `because`; what was explained once is named only.
 
     A chain is followed over 50 links; what lies `deeper` has its value only.
     """
@@ -29,12 +29,12 @@ def explain(calculation: Calculation, parameter: str) -> JsonObject:
 
 
 def model_parameters(calculation: Calculation) -> list[str]:
-    """The parameters of all models by their full names: `shell.inner_diameter`."""
+    """Return the parameters of all models by their full names: `shell.inner_diameter`."""
     return [f"{block.name}.{tail}" for block in _models(calculation) for tail in block.cls.inputs]
 
 
 def full_name(calculation: Calculation, name: str) -> str:
-    """The name with its model, where there is one model: `inner_diameter` is enough then."""
+    """Return the name with its model, where there is one model: `inner_diameter` is enough then."""
     models = _models(calculation)
     return f"{models[0].name}.{name}" if len(models) == 1 and name in models[0].cls.inputs else name
 
@@ -52,7 +52,7 @@ class Explainer:
         self.depth = depth
 
     def of(self, reference: Reference) -> JsonObject:
-        """The meaning of a name, and the values on which it depends."""
+        """Return the meaning of a name, and the values on which it depends."""
         name = str(reference)
         if reference in self.explained:
             return {"name": name, "kind": "told_above"}
@@ -93,7 +93,7 @@ class Explainer:
         return {"kind": kind, "template": rendering.identity(cls), **paper, "because": because}
 
     def _value(self, reference: Reference) -> JsonObject | None:
-        """The value with its unit; null while it waits for a solid or is not set."""
+        """Return the value with its unit; null while it waits for a solid or is not set."""
         if reference.output is None:
             kind = f"{self.graph.kinds[reference.block].base:~C}" or "1"
             column = self.calculation.values.get(reference.block)
@@ -116,13 +116,13 @@ class Explainer:
 
 
 def _on_paper(cell: Cell) -> JsonObject:
-    """A relation as LaTeX and MathML, where it is more than a name."""
+    """Return a relation as LaTeX and MathML, where it is more than a name."""
     latex = relation_latex(cell.raw)
     return {"latex": latex, "mathml": mathml(latex)} if latex else {}
 
 
 def shown(si: Value, unit_name: str) -> JsonObject:
-    """A value [SI] in a unit; null where there is none."""
+    """Return a value [SI] in a unit; null where there is none."""
     values = np.asarray(unit(unit_name).from_si(si), dtype=float)
     plain = values.astype(object)
     plain[~np.isfinite(values)] = None
@@ -130,7 +130,7 @@ def shown(si: Value, unit_name: str) -> JsonObject:
 
 
 def _measured_by(node: Solid | SolidAnalysis) -> JsonObject:
-    """The origin of a value: measured on a solid, or computed by an analysis."""
+    """Return the origin of a value: measured on a solid, or computed by an analysis."""
     if isinstance(node, Solid):
         return {"kind": "measured"}
     return {"kind": "analysis", "analysis": node.model.analyses[node.kind].shown()}

@@ -20,7 +20,7 @@ PREFIX = "criteria."  # before the name of a criterion that is called like a par
 
 
 def explain_any(document: Document, calculation: Calculation, name: str) -> JsonObject:
-    """The chain behind a parameter of a model, or behind the verdict of a criterion.
+    """Return the chain behind a parameter of a model, or behind the verdict of a criterion.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def explain_any(document: Document, calculation: Calculation, name: str) -> Json
 
 
 def _explainable(parameters: Sequence[str], criteria: Sequence[str]) -> str:
-    """The names that can be explained in a design, in words."""
+    """Return the names that can be explained in a design, in words."""
     kinds = {"parameters of models": parameters, "verdicts of criteria": criteria}
     there = [f"{kind} ({', '.join(names)})" for kind, names in kinds.items() if names]
     if not there:
@@ -46,7 +46,7 @@ def _explainable(parameters: Sequence[str], criteria: Sequence[str]) -> str:
 
 
 def explain_criterion(document: Document, calculation: Calculation, name: str) -> JsonObject:
-    """The chain behind a verdict: the values of both sides, each as far as it can be followed.
+    """Return the chain behind a verdict: the values of both sides, each as far as it can be followed.
 
     A criterion whose step leaves out an output that it needs was not judged, and has no `criterion`.
     """
@@ -66,7 +66,10 @@ class _Sides:
         self.explainer = Explainer(calculation, depth=1)
 
     def all(self) -> Iterator[JsonObject]:
-        """Every name of the value, then every name of the limit; a side without names stands for itself."""
+        """Yield every name of the value, then every name of the limit.
+
+        A side without names stands for itself.
+        """
         criterion = self.subject.criterion
         for link in self._side(criterion.value):
             yield {**link, "side": "value"}
@@ -81,13 +84,16 @@ class _Sides:
             yield {"name": relation.text, "kind": "written", **({"source": source} if source else {})}
 
     def _link(self, name: str) -> JsonObject:
-        """The values on which a name depends, or the person who gave it."""
+        """Return the values on which a name depends, or the person who gave it."""
         if name in self.subject.references:
             return self.explainer.of(self.subject.references[name])
         return self._limit(self.subject.criterion.limits_by_name[name])
 
     def _limit(self, limit: Limit) -> JsonObject:
-        """The origin of a limit that the calculation does not take: the step, a row, a default, or nobody."""
+        """Return the origin of a limit that the calculation does not take.
+
+        The step, a row, a default, or nobody.
+        """
         block = self.subject.block
         assert block is not None, "a criterion of the design declares no limits"
         typed = self.document.steps[block.name].limits

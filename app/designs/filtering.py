@@ -44,7 +44,7 @@ class DesignFilter:
 
 
 def conditions(session: Session, wanted: DesignFilter) -> Iterator[ColumnElement[bool]]:
-    """The conditions of a filter on a design."""
+    """Yield the conditions of a filter on a design."""
     if wanted.name is not None:
         yield DesignRow.name.icontains(wanted.name, autoescape=True)
     if wanted.archived != "any":
@@ -60,7 +60,7 @@ def conditions(session: Session, wanted: DesignFilter) -> Iterator[ColumnElement
 
 
 def _of_newest(session: Session, wanted: DesignFilter) -> Iterator[ColumnElement[bool]]:
-    """The conditions of a filter on the newest revision of a design."""
+    """Yield the conditions of a filter on the newest revision of a design."""
     if wanted.state is not None:
         yield RevisionRow.state == wanted.state
     if wanted.template is not None:
@@ -80,7 +80,10 @@ def _has_step(session: Session, id: str, version: int | None) -> ColumnElement[b
 
 
 def _document(session: Session) -> ColumnElement[JSON]:
-    """The document, which is stored as text, as JSON. SQLite reads JSON from text; PostgreSQL has a type."""
+    """Return the document, which is stored as text, as JSON. SQLite reads JSON from text.
+
+    PostgreSQL has a type.
+    """
     is_text = session.get_bind().dialect.name == "sqlite"
     return type_coerce(RevisionRow.document, JSON) if is_text else cast(RevisionRow.document, JSON)
 

@@ -37,7 +37,7 @@ __all__ = ["Block", "Catalogues", "Cell", "Graph", "build_graph", "raise_if"]
 
 
 def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list[Fault]]:
-    """The network of a document, and everything that is wrong with it before any value is known.
+    """Return the network of a document, and everything that is wrong with it before any value is known.
 
     A graph with faults is good for a preview of what is right, not for a save.
     """
@@ -75,7 +75,7 @@ def _graph(
 
 
 def _network(document: Document, catalogues: Catalogues) -> tuple[Network, list[Fault]]:
-    """The parameters and blocks of a document, and what of them cannot be read."""
+    """Return the parameters and blocks of a document, and what of them cannot be read."""
     faults: list[Fault] = []
     parameters: dict[str, Cell] = {}
     choices = Choices(document, catalogues)
@@ -94,7 +94,7 @@ def _network(document: Document, catalogues: Catalogues) -> tuple[Network, list[
 def _cell(
     choices: Choices, reference: Reference, name: str, raw: Raw, declared: Input | None = None
 ) -> tuple[Cell, list[Fault]]:
-    """A cell with those of its relations that can be read, and the faults of the others."""
+    """Return a cell with those of its relations that can be read, and the faults of the others."""
     if isinstance(raw, list):
         texts = [item for item in raw if is_relation(item)]
     else:
@@ -115,7 +115,7 @@ def _cell(
 
 
 def _blocks(choices: Choices) -> Iterator[tuple[Block | None, list[Fault]]]:
-    """Every step and every model, None where its template is unknown, with what is wrong with it."""
+    """Yield every step and every model, None where its template is unknown, with what is wrong with it."""
     for name, step in choices.document.steps.items():
         yield _step(choices, name, step)
     for name, model in choices.document.models.items():
@@ -137,7 +137,7 @@ def _step(choices: Choices, name: str, step: Step) -> tuple[Block | None, list[F
 def _related_limits(
     choices: Choices, name: str, step: Step, cls: type[Template]
 ) -> tuple[dict[str, Cell], list[Fault]]:
-    """The limits that a step gives by relations; names that are not limits are left to `_limits`."""
+    """Return the limits that a step gives by relations; names that are not limits are left to `_limits`."""
     cells: dict[str, Cell] = {}
     faults: list[Fault] = []
     if not step.limits:
@@ -156,7 +156,7 @@ def _related_limits(
 def _limits(
     name: str, raw: Mapping[str, Raw], cls: type[Template]
 ) -> tuple[dict[str, GivenLimit], list[Fault]]:
-    """The limits that a step gives by quantities, or by a row of the library."""
+    """Return the limits that a step gives by quantities, or by a row of the library."""
     try:
         return read_limits(cls.declared_criteria, raw), []
     except InvalidInputs as error:
@@ -185,7 +185,7 @@ def _class(
 def _cells(
     choices: Choices, block: str, values: Mapping[str, Raw], cls: type[Template]
 ) -> tuple[dict[str, Cell], list[Fault]]:
-    """The cells of a block; names that its template does not know are faults."""
+    """Return the cells of a block; names that its template does not know are faults."""
     cells: dict[str, Cell] = {}
     unknown = unknown_names(filterfalse(cls.inputs.__contains__, values), cls.inputs, "input")
     faults = [fault.within(block) for fault in unknown]
@@ -199,7 +199,10 @@ def _cells(
 
 
 def _links(network: Network, cell: Cell, unread: Set[str]) -> dict[Reference, Node | None]:
-    """The node behind each name that a cell uses, None if there is none; an assumed value needs none."""
+    """Return the node behind each name that a cell uses, None if there is none.
+
+    An assumed value needs none.
+    """
     return {
         reference: network.node(reference)
         for reference in cell.uses.values()
@@ -211,7 +214,7 @@ Links = Mapping[Cell, Mapping[Reference, Node | None]]
 
 
 def _unknown(network: Network, links: Links) -> Iterator[Fault]:
-    """Names that mean nothing, in relations and in iterations."""
+    """Yield names that mean nothing, in relations and in iterations."""
     models = {block.name: block.analyses for block in network.blocks.values() if block.is_model}
     unknown: list[tuple[str, str]] = []  # where, and what
     for cell, linked in links.items():
@@ -237,7 +240,7 @@ def _unknown(network: Network, links: Links) -> Iterator[Fault]:
 
 
 def _sources(network: Network, links: Links) -> dict[Node, tuple[Node, ...]]:
-    """The nodes from which each node follows directly."""
+    """Return the nodes from which each node follows directly."""
     sources: dict[Node, tuple[Node, ...]] = dict.fromkeys(network.cells(), ())
     for cell, linked in links.items():
         sources[cell] = tuple(dict.fromkeys(filter(None, linked.values())))

@@ -15,7 +15,7 @@ from templates.core.units.units import compatible, unit
 
 
 def checked_kinds(network: Network, cells: Iterable[Cell]) -> tuple[dict[str, Kind], list[Fault]]:
-    """The kind of unit of each parameter, and a fault for each relation whose units do not fit.
+    """Return the kind of unit of each parameter, and a fault for each relation whose units do not fit.
 
     The cells come in order, so that a parameter's unit is known before its use.
     """
@@ -39,7 +39,7 @@ def checked_kinds(network: Network, cells: Iterable[Cell]) -> tuple[dict[str, Ki
 
 
 def _kind(network: Network, kinds: Mapping[str, Kind], cell: Cell) -> Kind:
-    """The kind of a cell, if its relations fit what it sets."""
+    """Return the kind of a cell, if its relations fit what it sets."""
     if not cell.relations:
         return Kind(unit(read_any(cell.raw).unit).base)
     used = {

@@ -45,12 +45,12 @@ class LabelsIn(Bounded):
 
 
 def key_of(tag: str) -> str:
-    """The common key of all spellings of a tag: `Main  bearing` and `main bearing` are one."""
+    """Return the common key of all spellings of a tag: `Main  bearing` and `main bearing` are one."""
     return clean(tag).casefold()
 
 
 def clean(tag: str) -> str:
-    """A tag as it is kept: composed letters, single blanks."""
+    """Return a tag as it is kept: composed letters, single blanks."""
     return " ".join(filter(None, unicodedata.normalize("NFC", tag).split(" ")))
 
 
@@ -61,7 +61,7 @@ class Labelling:
         self.designs, self.database = designs, designs.database
 
     def labels(self, id: str) -> Labels:
-        """The labels of a design."""
+        """Return the labels of a design."""
         with self.database.read() as session:
             return _labels(session, repository.design(session, id))
 
@@ -86,7 +86,7 @@ class Labelling:
     def change(
         self, id: str, patch: Mapping[str, Raw], note: str | None, expected: str | None, once: Once
     ) -> Saved:
-        """As `Designs.change`; but a new name alone keeps the results, and calculates nothing."""
+        """Change a design as `Designs.change`; a new name alone keeps the results."""
         if set(patch) == {"name"}:
             saved = self._renamed(id, patch, note, expected, once)
             if saved is not None:
@@ -96,7 +96,7 @@ class Labelling:
     def _renamed(
         self, id: str, patch: Mapping[str, Raw], note: str | None, expected: str | None, once: Once
     ) -> Saved | None:
-        """A revision with another name and the same results; None where the usual way has to do it."""
+        """Return a revision with another name and the same results; None where the usual way has to do it."""
 
         def unit(session: Session) -> Saved:
             if once.begin(session):
@@ -126,7 +126,7 @@ class _UsualWay(Exception):
 
 
 def _carried(head: RevisionRow, name: str, note: str | None) -> Written:
-    """The content of a revision under another name."""
+    """Return the content of a revision under another name."""
     models = [
         ModelState(m.name, m.model, m.model_version, m.parameters, m.relations, (), m.build_key)
         for m in (*head.models, *head.variant_models)
@@ -167,7 +167,7 @@ def _labels(session: Session, row: DesignRow) -> Labels:
 
 
 def tags_of(session: Session, ids: Sequence[str]) -> dict[str, list[str]]:
-    """The tags of designs, by design, in alphabetical order."""
+    """Return the tags of designs, by design, in alphabetical order."""
     tags: dict[str, list[str]] = {id: [] for id in ids}
     query = select(DesignTagRow.design_id, DesignTagRow.tag).where(DesignTagRow.design_id.in_(ids))
     for id, tag in session.execute(query.order_by(DesignTagRow.key)):
@@ -176,7 +176,7 @@ def tags_of(session: Session, ids: Sequence[str]) -> dict[str, list[str]]:
 
 
 def all_tags(session: Session) -> Iterable[TagUse]:
-    """The tags of designs that are listed, the most used first."""
+    """Return the tags of designs that are listed, the most used first."""
     count = func.count()
     query = (
         select(func.min(DesignTagRow.tag), count)

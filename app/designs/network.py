@@ -44,12 +44,12 @@ class Cell:
 
     @cached_property
     def tests(self) -> Mapping[str, Reference]:
-        """The choices that its relations test; these are decided already."""
+        """Return the choices that its relations test; these are decided already."""
         return {name: Reference.parse(name) for relation in self.relations for name in relation.decided_by}
 
     @cached_property
     def relations_by_text(self) -> Mapping[str, Relation]:
-        """Its relations by their text, as the items of a list have it."""
+        """Return its relations by their text, as the items of a list have it."""
         return {relation.text: relation for relation in self.relations}
 
 
@@ -73,17 +73,17 @@ class Block:
 
     @cached_property
     def is_model(self) -> bool:
-        """Whether it has a shape."""
+        """Return whether it has a shape."""
         return issubclass(self.cls, CadModel)
 
     @cached_property
     def solid(self) -> Solid:
-        """The build of a model."""
+        """Return the build of a model."""
         return Solid(self)
 
     @cached_property
     def analysed(self) -> Mapping[str, SolidAnalysis]:
-        """The analyses that a model declares, by their kind."""
+        """Return the analyses that a model declares, by their kind."""
         return {kind: SolidAnalysis(self, kind) for kind in self.analyses}
 
 
@@ -128,14 +128,14 @@ class Network:
     demands: Mapping[str, Demand] = field(default_factory=dict)  # criteria that the design writes itself
 
     def cells(self) -> Iterator[Cell]:
-        """Every cell of the design."""
+        """Yield every cell of the design."""
         yield from self.parameters.values()
         for block in self.blocks.values():
             yield from block.cells.values()
             yield from block.related.values()
 
     def cell(self, reference: Reference) -> Cell | None:
-        """The cell of this name."""
+        """Return the cell of this name."""
         if reference.output is None:
             return self.parameters.get(reference.block)
         block = self.blocks.get(reference.block)
@@ -146,7 +146,7 @@ class Network:
         return block.cells.get(reference.member)
 
     def node(self, reference: Reference) -> Node | None:
-        """The node from which a name in a relation takes its value; None if nothing is named so."""
+        """Return the node from which a name in a relation takes its value; None if nothing is named so."""
         block, output = self.blocks.get(reference.block), reference.output
         if block is None or output is None:
             return self.parameters.get(reference.block) if output is None else None
@@ -159,7 +159,7 @@ class Network:
         return block.analysed[reference.analysis] if reference.analysis else block.solid
 
     def names(self) -> list[str]:
-        """Every name that a relation may use, for a remedy."""
+        """Return every name that a relation may use, for a remedy."""
         inside = (f"{b.name}.{n}" for b in self.blocks.values() for n in (*b.cls.inputs, *b.cls.formulas))
         models = (block for block in self.blocks.values() if block.is_model)
         measured = (
@@ -169,7 +169,7 @@ class Network:
 
     @cached_property
     def used(self) -> Mapping[str, tuple[Reference, ...]]:
-        """References of relations, iterations and criteria to each block, in the order of the names."""
+        """Return references of relations, iterations and criteria to each block, ordered by name."""
         names = {str(reference): reference for reference in self.assumed}
         for cell in self.cells():
             names.update(cell.uses)
@@ -181,29 +181,32 @@ class Network:
         return {block: tuple(references) for block, references in blocks.items()}
 
     def computed(self, step: Block) -> tuple[str, ...] | None:
-        """The outputs that a step computes: all (None), or those that it names and those that are used."""
+        """Return the outputs that a step computes.
+
+        All (None), or those that it names and those that are used.
+        """
         if step.outputs is None:
             return None
         linked = (reference.member for reference in self.used.get(step.name, ()))
         return tuple(dict.fromkeys([*step.outputs, *(name for name in linked if name in step.cls.formulas)]))
 
     def wanted(self, model: str, kind: str) -> tuple[str, ...]:
-        """The outputs of an analysis that relations or iterations use."""
+        """Return the outputs of an analysis that relations or iterations use."""
         return used(kind, self.used.get(model, ()))
 
     def unit_of(self, reference: Reference) -> str:
-        """The declared unit of a name inside a block."""
+        """Return the declared unit of a name inside a block."""
         declared = _declared(self.blocks[reference.block], reference)
         return declared.meaning.unit if declared else measured_unit(reference)
 
 
 def limits_of(cls: type[Template]) -> dict[str, Limit]:
-    """The limits that the criteria of a template take from its user."""
+    """Return the limits that the criteria of a template take from its user."""
     return {limit.name: limit for criterion in cls.declared_criteria for limit in criterion.limits}
 
 
 def _declared(block: Block, reference: Reference) -> Input | Formula[Template] | None:
-    """The input or formula of a block that a reference names; None of what is measured."""
+    """Return the input or formula of a block that a reference names; None of what is measured."""
     if reference.analysis is not None or reference.output is None:
         return None
     return block.cls.inputs.get(reference.output) or block.cls.formulas.get(reference.output)

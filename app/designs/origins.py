@@ -14,7 +14,7 @@ from templates.core.errors import FaultyText
 
 
 def literals_behind(calculation: Calculation, starts: Iterable[Reference]) -> list[Cell]:
-    """The single quantities as typed that values follow from, each formula by what it uses itself.
+    """Return the single quantities as typed that values follow from, each formula by what it uses itself.
 
     What acts through a measure of a solid is among them.
     """
@@ -34,7 +34,7 @@ def literals_behind(calculation: Calculation, starts: Iterable[Reference]) -> li
 
 
 def _inputs(graph: Graph, reference: Reference) -> list[Reference]:
-    """The cells of a block that an input or output of it follows from; all, if a measure does."""
+    """Return the cells of a block that an input or output of it follows from; all, if a measure does."""
     block = graph.blocks[reference.block]
     if not is_member(graph, reference):
         return [cell.reference for cell in block.cells.values()]
@@ -50,7 +50,7 @@ def _is_single(calculation: Calculation, cell: Cell) -> bool:
 
 
 def through_solids(graph: Graph, wanted: Wanted) -> Mapping[Reference, Block]:
-    """The cells that act on values through a solid, each with the model of one such solid.
+    """Return the cells that act on values through a solid, each with the model of one such solid.
 
     A step counts as a whole, as it is calculated: all its inputs are needed.
     """
@@ -67,7 +67,7 @@ def through_solids(graph: Graph, wanted: Wanted) -> Mapping[Reference, Block]:
 
 
 def measures_behind(calculation: Calculation, wanted: Wanted) -> dict[Reference, float]:
-    """The measures of solids [SI] that values follow from, as far as they are known; no tables."""
+    """Return the measures of solids [SI] that values follow from, as far as they are known; no tables."""
     measures: dict[Reference, float] = {}
     for reference in _needs(calculation.graph, wanted).waiting:
         if is_table(reference):

@@ -19,7 +19,7 @@ WITH = "with"
 
 
 def changed(document: Document, catalogues: Catalogues, others: Overrides, unknown: str) -> Document:
-    """The document with other values; nothing of the original changes.
+    """Return the document with other values; nothing of the original changes.
 
     Raises
     ------
@@ -44,7 +44,10 @@ def _faults(graph: Graph, others: Overrides, unknown: str) -> Iterator[Fault]:
 
 
 def _misfit(graph: Graph, name: str, raw: Raw) -> Iterator[Fault]:
-    """A fault if a value is none of its place: a word that is not an option, a quantity of another kind."""
+    """Yield a fault if a value is none of its place.
+
+    A word that is not an option, a quantity of another kind.
+    """
     reference = Reference.parse(name)
     block = graph.blocks.get(reference.block)
     declared = block.cls.inputs[reference.member] if block else None

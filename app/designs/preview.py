@@ -94,7 +94,7 @@ def preview(asked: Previewed, database: Database, catalogues: Catalogues) -> Rep
 
 
 def _steps_of(document: Document) -> list[tuple[str, int]]:
-    """The versions that the steps of a document name."""
+    """Return the versions that the steps of a document name."""
     named = ((step.template, step.version) for step in document.steps.values())
     return [(template, version) for template, version in named if isinstance(version, int)]
 
@@ -102,7 +102,7 @@ def _steps_of(document: Document) -> list[tuple[str, int]]:
 def _variants(
     database: Database, catalogues: Catalogues, document: Document, base: Calculation
 ) -> list[Outcome]:
-    """The variants of a document, refused as a save refuses them."""
+    """Return the variants of a document, refused as a save refuses them."""
     outcomes, faults = checked(document, base, Available(catalogues, built(database), analysed(database)))
     raise_if(faults)
     return outcomes
@@ -135,14 +135,14 @@ def _steps(calculation: Calculation, criteria: Sequence[Judgement] = ()) -> dict
 
 
 def _outputs(steps: Mapping[str, RevisionStep]) -> dict[str, Output]:
-    """All outputs of all steps by their names in relations: `film.minimum_film_thickness`."""
+    """Return all outputs of all steps by their names in relations: `film.minimum_film_thickness`."""
     return {
         f"{name}.{output}": value for name, step in steps.items() for output, value in step.outputs.items()
     }
 
 
 def _analysed(calculation: Calculation) -> dict[str, AnalysisOutput | None]:
-    """The outputs of analyses that relations use, by their names there; null while pending."""
+    """Return the outputs of analyses that relations use, by their names there; null while pending."""
     outputs: dict[str, AnalysisOutput | None] = {}
     for block in calculation.graph.blocks.values():
         for kind in block.analyses:
@@ -162,7 +162,7 @@ def _warnings(steps: Mapping[str, RevisionStep]) -> list[Warning]:
 
 
 def _values(new: Calculation) -> dict[str, Shown]:
-    """The values of the design's parameters in SI, without those that wait for a solid."""
+    """Return the values of the design's parameters in SI, without those that wait for a solid."""
     names = (name for name in new.graph.parameters if name in new.values)
     return {
         name: Shown(

@@ -20,7 +20,7 @@ LONGEST_PLACE = 200  # characters of where in a document something is wrong
 
 
 def read_document(raw: Mapping[str, Raw]) -> Document:
-    """A document from JSON.
+    """Return a document from JSON.
 
     Raises
     ------
@@ -39,7 +39,10 @@ def _fault(error: Mapping[str, Json]) -> Fault:
 
 
 def resolved(document: Document, catalogues: Catalogues) -> Document:
-    """The document with every version pinned: latest is resolved once, when a step or model comes in."""
+    """Return the document with every version pinned.
+
+    Latest is resolved once, when a step or model comes in.
+    """
     versions = [step.version for step in document.steps.values()]
     versions += [model.version for model in document.models.values()]
     if all(isinstance(version, int) for version in versions):

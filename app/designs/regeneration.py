@@ -104,7 +104,7 @@ class Regeneration:
             repository.fail(session, job.design, job.revision, {**problem, "changed": changed})
 
     def _prepared(self, plain: Mapping[str, Json]) -> Prepared:
-        """A revision's document and its calculation: that of its save, or calculated again."""
+        """Return a revision's document and its calculation: that of its save, or calculated again."""
         if prepared := self.calculation_cache.find(plain):
             return prepared
         document = Document.model_validate(plain)
@@ -116,7 +116,7 @@ class Regeneration:
         return calculate(graph, built(self.database), analysed(self.database), assumed)
 
     def _settled(self, prepared: Prepared, context: JobContext) -> tuple[Calculation, list[JsonObject]]:
-        """The calculation with all solids built and all iterations settled, and the rounds that it took."""
+        """Return the calculation with all solids built and iterations converged, and its rounds."""
         document, calculation = prepared
         rounds = list[JsonObject]()
         while True:
@@ -137,7 +137,7 @@ class Regeneration:
             calculation = self._calculated(calculation.graph, measured)
 
     def _variants(self, document: Document, base: Calculation, context: JobContext) -> list[Outcome]:
-        """The variants of a document, each with its solids or with the reason why it has none."""
+        """Return the variants of a document, each with its solids or with the reason why it has none."""
         if not document.variants:
             return []
         raise_if(row_faults(base))
@@ -149,7 +149,7 @@ class Regeneration:
         return self._settled(prepared, context)[0]
 
     def _built(self, calculation: Calculation, context: JobContext) -> Calculation:
-        """The calculation once every model in it is built, and analysed as far as somebody uses it.
+        """Return the calculation once every model in it is built, and analysed as far as somebody uses it.
 
         Models may wait for each other's measures, so each round makes what can be made.
         """
@@ -181,7 +181,7 @@ class Regeneration:
 
 
 def _lane(job: Job) -> Lane:
-    """The lane of a job: whoever changes a bearing does not wait for calculations of minutes."""
+    """Return the lane of a job: whoever changes a bearing does not wait for calculations of minutes."""
     return "answers" if job.kind == REGENERATE else "jobs"
 
 

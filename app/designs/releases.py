@@ -33,7 +33,7 @@ NEWEST_RELEASED = Statement(_EVER_RELEASED.where(~_IS_WITHDRAWN), "design")
 
 
 def newest_released(session: Session, design: str) -> int:
-    """The number of the newest released revision of a design.
+    """Return the number of the newest released revision of a design.
 
     Raises
     ------
@@ -47,7 +47,7 @@ def newest_released(session: Session, design: str) -> int:
 
 
 def released_of(session: Session, designs: Collection[str]) -> dict[str, int]:
-    """The newest released revision of each of these designs that has one."""
+    """Return the newest released revision of each of these designs that has one."""
     query = (
         select(ApprovalRow.design_id, func.max(ApprovalRow.revision))
         .where(ApprovalRow.design_id.in_(designs), ApprovalRow.step == "released", ~_IS_WITHDRAWN)
@@ -57,7 +57,7 @@ def released_of(session: Session, designs: Collection[str]) -> dict[str, int]:
 
 
 def state_of(session: Session, row: RevisionRow) -> Step | None:
-    """The last step of the approval of a revision; None before the first."""
+    """Return the last step of the approval of a revision; None before the first."""
     newest = select(ApprovalRow.step).where(
         ApprovalRow.design_id == row.design_id, ApprovalRow.revision == row.number
     )
@@ -65,5 +65,5 @@ def state_of(session: Session, row: RevisionRow) -> Step | None:
 
 
 def last_of(steps: Collection[str]) -> Step | None:
-    """The last of some steps; None if there are none."""
+    """Return the last of some steps; None if there are none."""
     return next((step for step in reversed(ORDER) if step in steps), None)

@@ -47,7 +47,7 @@ class Written:
 
 
 def design(session: Session, id: str) -> DesignRow:
-    """A design that is not deleted.
+    """Return a design that is not deleted.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def design(session: Session, id: str) -> DesignRow:
 
 
 def locked(session: Session, id: str) -> DesignRow:
-    """A design that is not deleted, as it is now; no other unit changes it before the end of this one.
+    """Return a design that is not deleted, as it is now; no other unit changes it before the end of this one.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def locked(session: Session, id: str) -> DesignRow:
 
 
 def revision(session: Session, id: str, number: int) -> RevisionRow:
-    """A revision; those of a deleted design are kept.
+    """Return a revision; those of a deleted design are kept.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def revision(session: Session, id: str, number: int) -> RevisionRow:
 
 
 def lean(session: Session, id: str, number: int) -> RevisionRow:
-    """A revision whose results are loaded only if somebody reads them from the row.
+    """Return a revision whose results are loaded only if somebody reads them from the row.
 
     Raises
     ------
@@ -104,12 +104,12 @@ def lean(session: Session, id: str, number: int) -> RevisionRow:
 
 
 def head(session: Session, id: str) -> RevisionRow:
-    """The newest revision of a design."""
+    """Return the newest revision of a design."""
     return revision(session, id, design(session, id).head)
 
 
 def lean_head(session: Session, id: str) -> RevisionRow:
-    """The newest revision of a design, as `lean` has it."""
+    """Return the newest revision of a design, as `lean` has it."""
     return lean(session, id, design(session, id).head)
 
 
@@ -125,7 +125,7 @@ class Newest(NamedTuple):
 
 
 def newest(session: Session, id: str, number: int | None = None) -> Newest:
-    """A revision of a design that is not deleted, by default the newest, without its results.
+    """Return a revision of a design that is not deleted, by default the newest, without its results.
 
     Raises
     ------
@@ -138,7 +138,7 @@ def newest(session: Session, id: str, number: int | None = None) -> Newest:
 
 
 def model_names(session: Session, id: str, number: int) -> list[str]:
-    """The models of a revision, without those of its variants.
+    """Return the models of a revision, without those of its variants.
 
     Raises
     ------
@@ -152,7 +152,7 @@ def model_names(session: Session, id: str, number: int) -> list[str]:
 
 
 def document(session: Session, id: str, number: int) -> JsonObject:
-    """The document of a revision, without its results.
+    """Return the document of a revision, without its results.
 
     Raises
     ------
@@ -169,12 +169,12 @@ def _no_revision(id: str, number: int) -> NotFound:
 
 
 def of_ids(session: Session, ids: Collection[str]) -> list[DesignRow]:
-    """The designs of these ids that are not deleted."""
+    """Return the designs of these ids that are not deleted."""
     return list(session.scalars(select(DesignRow).where(DesignRow.id.in_(ids), DesignRow.deleted.is_(None))))
 
 
 def newest_number(session: Session, id: str) -> int:
-    """The number of a design's newest revision, whether it is deleted or not."""
+    """Return the number of a design's newest revision, whether it is deleted or not."""
     row = session.get(DesignRow, id)
     assert row is not None, "a revision has its design"
     return row.head
@@ -183,7 +183,7 @@ def newest_number(session: Session, id: str) -> int:
 def designs(
     session: Session, limit: int, cursor: str | None, wanted: DesignFilter | None = None
 ) -> list[DesignRow]:
-    """One page of the designs that a filter selects, newest first, and one more if there are more."""
+    """Return one page of the designs that a filter selects, newest first, and one more if there are more."""
     query = select(DesignRow).where(DesignRow.deleted.is_(None)).order_by(DesignRow.id.desc())
     if wanted is not None:
         query = query.where(*conditions(session, wanted))
@@ -193,7 +193,7 @@ def designs(
 
 
 def revisions(session: Session, id: str, limit: int, before: int | None) -> list[RevisionRow]:
-    """One page of a design's revisions, newest first, and one more if there are more."""
+    """Return one page of a design's revisions, newest first, and one more if there are more."""
     query = select(RevisionRow).where(RevisionRow.design_id == id).order_by(RevisionRow.number.desc())
     query = query.options(_LEAN)
     if before is not None:
@@ -202,14 +202,17 @@ def revisions(session: Session, id: str, limit: int, before: int | None) -> list
 
 
 def create(session: Session, name: str, written: Written, at: str | None = None) -> tuple[str, int]:
-    """A new design with its first revision, `at` the time given or now; its id and the revision's number."""
+    """Return a new design with its first revision, `at` the time given or now.
+
+    Its id and the revision's number.
+    """
     id, created = new_id(session), at or now()
     statements.NEW_DESIGN.run(session, {"id": id, "name": name, "created": created, "head": 0})
     return id, append(session, id, 0, written, created)
 
 
 def append(session: Session, id: str, base: int, written: Written, at: str | None = None) -> int:
-    """A new revision of a design whose newest one is `base`, `at` the time given or now; its number.
+    """Return a new revision of a design whose newest one is `base`, `at` the time given or now; its number.
 
     The row of the design decides: of several servers that append to the same revision, one succeeds.
 
@@ -291,12 +294,12 @@ def delete(session: Session, id: str) -> None:
 
 
 def newest_good(session: Session, id: str, model: str, until: int) -> RevisionModelRow | None:
-    """The newest revision, up to this one, whose model of this name was built and accepted."""
+    """Return the newest revision, up to this one, whose model of this name was built and accepted."""
     return _model(statements.GOOD.run(session, {"of": id, "model": model, "until": until}))
 
 
 def built_model(session: Session, id: str, number: int, model: str) -> RevisionModelRow | None:
-    """A model of a revision, if it was built."""
+    """Return a model of a revision, if it was built."""
     return _model(statements.BUILT.run(session, {"of": id, "model": model, "at": number}))
 
 
@@ -306,7 +309,7 @@ def _model(rows: Sequence[Row]) -> RevisionModelRow | None:
 
 
 def changed_since_good(session: Session, id: str, number: int) -> list[str]:
-    """The model parameters of a revision that differ from those of the last good model."""
+    """Return the model parameters of a revision that differ from those of the last good model."""
     changed: list[str] = []
     for model in revision(session, id, number).models:
         good = newest_good(session, id, model.name, number - 1)

@@ -37,7 +37,7 @@ class ModelState:
 def stored(
     calculation: Calculation, rounds: list[JsonObject], criteria: Sequence[Judgement] | None = None
 ) -> JsonObject:
-    """The results that a revision keeps beside its models, with its `criteria` if they are judged."""
+    """Return the results that a revision keeps beside its models, with its `criteria` if they are judged."""
     criteria = judged(calculation) if criteria is None else criteria
     return {
         "steps": steps(calculation, criteria),
@@ -48,7 +48,7 @@ def stored(
 
 
 def analyses(calculation: Calculation) -> dict[str, JsonObject]:
-    """By model, every analysis that it declares, with those outputs that are used and known."""
+    """Return by model every analysis that it declares, with its used and known outputs."""
     return {
         block.name: {
             kind: in_design(
@@ -64,7 +64,7 @@ def analyses(calculation: Calculation) -> dict[str, JsonObject]:
 
 
 def steps(calculation: Calculation, criteria: Sequence[Judgement]) -> dict[str, JsonObject]:
-    """Every step: its evaluation, or that it waits for a solid or for its job.
+    """Return every step: its evaluation, or that it waits for a solid or for its job.
 
     Its criteria stand with those of the design; it keeps the warnings of those that are not met.
     """
@@ -88,7 +88,7 @@ def _step(calculation: Calculation, block: Block, criteria: Sequence[Judgement])
 
 
 def _warnings(evaluation: Evaluation, block: Block, criteria: Sequence[Judgement]) -> list[JsonObject]:
-    """The warnings of a step, those of criteria as they were judged in the design."""
+    """Return the warnings of a step, those of criteria as they were judged in the design."""
     prefix = f"{block.name}."
     own = [
         replace(judgement, name=judgement.name.removeprefix(prefix))
@@ -100,7 +100,7 @@ def _warnings(evaluation: Evaluation, block: Block, criteria: Sequence[Judgement
 
 
 def models(calculation: Calculation) -> list[ModelState]:
-    """Every model with its resolved parameters and the key of its build."""
+    """Return every model with its resolved parameters and the key of its build."""
     blocks = (block for block in calculation.graph.blocks.values() if block.is_model)
     return [_model(calculation, block) for block in blocks]
 

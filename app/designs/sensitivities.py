@@ -50,25 +50,25 @@ class Asked:
 
     @property
     def values(self) -> list[Reference]:
-        """The name, if it is that of a value."""
+        """Return the name, if it is that of a value."""
         return [] if self.subject else [Reference.parse(self.name)]
 
     @property
     def criteria(self) -> list[str]:
-        """The name, if it is that of a criterion."""
+        """Return the name, if it is that of a criterion."""
         return [self.name] if self.subject else []
 
     @property
     def wanted(self) -> Wanted:
-        """All values that are needed."""
+        """Return all values that are needed."""
         return Wanted.of(self.values, [self.subject] if self.subject else [])
 
     def unit(self, net: Net) -> str:
-        """The unit in which the value is shown."""
+        """Return the unit in which the value is shown."""
         return self.subject.criterion.unit if self.subject else net.unit(*self.values)
 
     def columns(self, table: Table) -> tuple[Array, Array | None]:
-        """The value [SI] of each row, and of a criterion the margin, positive where it is met."""
+        """Return the value [SI] of each row, and of a criterion the margin, positive where it is met."""
         if self.subject is None:
             return table.columns[Reference.parse(self.name)], None
         judged = table.judged[self.name]
@@ -86,7 +86,7 @@ class Sensitivities:
 def sensitivities(
     document: Document, calculation: Calculation, catalogues: Catalogues, asked: Asked
 ) -> Sensitivities:
-    """The sensitivities of a value to the single quantities, as typed, that it follows from."""
+    """Return the sensitivities of a value to the single quantities, as typed, that it follows from."""
     wanted = asked.wanted
     behind = literals_behind(calculation, [*wanted.references, *wanted.inside])
     solids = through_solids(calculation.graph, wanted)
@@ -110,14 +110,14 @@ def _of_solid(place: str, model: str) -> Sensitivity:
 
 
 def _rank(item: Sensitivity) -> tuple[int, float]:
-    """The largest elasticity first, then slopes without one, then places without a slope."""
+    """Return the largest elasticity first, then slopes without one, then places without a slope."""
     if item.elasticity is not None:
         return 0, -abs(item.elasticity)
     return (2 if item.slope is None else 1), 0.0
 
 
 def _left_out(places: int, through: int, shown: int) -> str | None:
-    """A sentence on the places that the list leaves out; None if it has all."""
+    """Return a sentence on the places that the list leaves out; None if it has all."""
     if places > MOST_VARIED:
         return (
             f"only the first {MOST_VARIED} of {places + through} places were varied; {MOST_SHOWN} are listed"
@@ -136,7 +136,7 @@ class Surroundings:
     places: Sequence[Reference]
 
     def items(self) -> Iterator[Sensitivity]:
-        """The sensitivity to each place, in the order of the places.
+        """Yield the sensitivity to each place, in the order of the places.
 
         Raises
         ------
@@ -181,7 +181,7 @@ class Surroundings:
             )
 
     def _at(self) -> str:
-        """The levels of the steps that are calculated."""
+        """Return the levels of the steps that are calculated."""
         steps = [step.name for step in self._net.design.steps(self.asked.wanted)]
         used = [f"{name} at {self._levels[name]}" for name in steps if name in self._levels]
         return f" ({', '.join(used)})" if used else ""
@@ -194,7 +194,7 @@ class Surroundings:
             raise self._refused("no_value", self._missing(table))
 
     def _missing(self, table: Table) -> str:
-        """Why the design itself has no value."""
+        """Return why the design itself has no value."""
         waiting = self._net.design.needs(self.asked.wanted).waiting
         if tables := sorted(str(reference) for reference in waiting if is_table(reference)):
             what = f"{listed(tables)}, a table or a list"
@@ -220,7 +220,7 @@ class Surroundings:
 
     @cached_property
     def _levels(self) -> dict[str, str | None]:
-        """The levels that the design used."""
+        """Return the levels that the design used."""
         blocks = self.calculation.graph.blocks
         used = {name: evaluation.level for name, evaluation in self.calculation.evaluations.items()}
         return {name: level for name, level in used.items() if level in blocks[name].cls.levels}
@@ -244,7 +244,7 @@ class Surroundings:
 
 
 def _one_sided(below: int, above: int, value: Array, table: Table) -> str | None:
-    """Why a slope is missing, or is that of one side of the place."""
+    """Return why a slope is missing, or is that of one side of the place."""
     missing = [row for row in (below, above) if not math.isfinite(value[row])]
     if not missing:
         return None
@@ -255,5 +255,8 @@ def _one_sided(below: int, above: int, value: Array, table: Table) -> str | None
 
 
 def _is_temperature(*units: str) -> bool:
-    """True if any is a unit of temperatures, whose ratios mean nothing; their differences have ratios."""
+    """Return whether any is a unit of temperatures, whose ratios mean nothing.
+
+    Their differences have ratios.
+    """
     return any(unit(name).base == registry.kelvin and not unit(name).difference for name in units)

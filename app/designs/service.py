@@ -125,7 +125,7 @@ class Designs:
     def create(
         self, raw: Mapping[str, Raw], note: str | None, once: Once, action: str = "design.create"
     ) -> Saved:
-        """A new design.
+        """Return a new design.
 
         Raises
         ------
@@ -149,7 +149,7 @@ class Designs:
     def change(
         self, id: str, patch: Mapping[str, Raw], note: str | None, expected: str | None, once: Once
     ) -> Saved:
-        """A new revision with a merge patch applied; a patch that changes nothing makes none.
+        """Return a new revision with a merge patch applied; a patch that changes nothing makes none.
 
         Raises
         ------
@@ -166,7 +166,7 @@ class Designs:
         return self._append(id, base, merge(document, patch), note, once, "design.change", created)
 
     def restore(self, id: str, number: int, note: str | None, expected: str | None, once: Once) -> Saved:
-        """A new revision equal to an old one."""
+        """Return a new revision equal to an old one."""
         with self.database.read() as session:
             if before := once.find(session):
                 return _saved_before(before)
@@ -177,7 +177,7 @@ class Designs:
         return self._append(id, design.head, document, words, once, "design.restore", design.created)
 
     def copy(self, id: str, name: str | None, once: Once) -> Saved:
-        """A new design with the newest document of another."""
+        """Return a new design with the newest document of another."""
         with self.database.read() as session:
             number, document, *_ = repository.newest(session, id)
         named = {**document, "name": name or f"{document['name'][:190]} (copy)"}
@@ -196,7 +196,7 @@ class Designs:
     def auto_map(
         self, id: str, apply: bool, expected: str | None, once: Once
     ) -> tuple[list[Proposal], Saved | None]:
-        """Proposals for unset model parameters, and the revision with them if they are to be applied."""
+        """Return proposals for unset model parameters, and the revision with them if they are applied."""
         repeated = self._repeated(once) if apply else None
         with self.database.read() as session:
             number = repeated.revision - 1 if repeated else repository.head(session, id).number
@@ -212,7 +212,10 @@ class Designs:
         return proposed, self.change(id, {"models": models}, "auto-map", expected or f'"{number}"', once)
 
     def prepare(self, raw: Mapping[str, Raw]) -> tuple[Document, Calculation]:
-        """A document read and calculated with what is built already; faults are left in the calculation."""
+        """Return a document read and calculated with what is built already.
+
+        Faults are left in the calculation.
+        """
         document = resolved(read_document(raw), self.catalogues)
         available = built(self.database), analysed(self.database)
         return document, calculate(self._graph(document), *available, starts(document))
@@ -249,7 +252,7 @@ class Designs:
         return self._saved(unit, draft)
 
     def draft(self, raw: Mapping[str, Raw], note: str | None, action: str) -> Draft:
-        """The revision to write for a document; its results wait for a job if any part of it waits.
+        """Return the revision to write for a document; its results wait for a job if any part of it waits.
 
         Raises
         ------
@@ -273,7 +276,7 @@ class Designs:
         return Draft(written, _kind(calculation.graph, is_deferred), is_deferred, begun_steps())
 
     def _variants(self, document: Document, base: Calculation) -> list[Outcome]:
-        """The variants of a document, as far as they can be calculated now.
+        """Return the variants of a document, as far as they can be calculated now.
 
         Raises
         ------
@@ -292,7 +295,7 @@ class Designs:
         )
 
     def faulty_variants(self, raw: Mapping[str, Raw]) -> list[Fault]:
-        """All faults for which a save would refuse the variants of a document.
+        """Return all faults for which a save would refuse the variants of a document.
 
         Raises
         ------
@@ -305,7 +308,10 @@ class Designs:
     def _enqueued(
         self, session: Session, design: str, revision: int, draft: Draft, once: Once, *, created: str, at: str
     ) -> Saved:
-        """The job of a revision, if it needs one, and the record of the request; in one transaction."""
+        """Return the job of a revision, if it needs one, and the record of the request.
+
+        In one transaction.
+        """
         job, answer, written = None, None, draft.written
         if written.state == "regenerating":
             job = self.jobs.enqueue(
@@ -337,14 +343,17 @@ class Designs:
 
 
 def _with_builds(session: Session, draft: Draft) -> Draft:
-    """The draft with its builds renewed: one that was deleted since it was looked up must be built again."""
+    """Return the draft with its builds renewed.
+
+    One that was deleted since it was looked up must be built again.
+    """
     if renew(session, [model.build for model in draft.written.models if model.build]):
         return draft
     return replace(draft, written=replace(draft.written, results=None, state="regenerating"))
 
 
 def _kind(graph: Graph, is_deferred: bool) -> str:
-    """The kind of job that completes a design."""
+    """Return the kind of job that completes a design."""
     if analyses_wanted(graph):
         return REGENERATE_SLOWLY
     return CALCULATE if is_deferred else REGENERATE

@@ -30,17 +30,17 @@ class Local:
 
     @property
     def count(self) -> int:
-        """1 + 2 d rows."""
+        """Return 1 + 2 d rows."""
         return 1 + 2 * len(self.at)
 
     def rows(self, first: int, last: int) -> Array:
-        """Rows number `first` to `last`, the last one excluded."""
+        """Return rows number `first` to `last`, the last one excluded."""
         moved = np.diag(self.steps)
         with np.errstate(over="ignore"):
             return np.asarray(self.at + np.vstack([np.zeros_like(self.at), -moved, moved]))[first:last]
 
     def beside(self, variable: int) -> tuple[int, int]:
-        """The numbers of the rows below and above the point in one variable."""
+        """Return the numbers of the rows below and above the point in one variable."""
         return 1 + variable, 1 + len(self.at) + variable
 
 
@@ -58,7 +58,10 @@ class Slopes:
 
 
 def slopes_at(points: Local, y: Array) -> Slopes:
-    """The slopes of a value at a point from its values [SI] at the rows of `points`; NaN is no value."""
+    """Return the slopes of a value at a point from its values [SI] at the rows of `points`.
+
+    NaN is no value.
+    """
     dimensions = len(points.at)
     value, below, above = float(y[0]), y[1 : 1 + dimensions], y[1 + dimensions :]
     with np.errstate(all="ignore"):
@@ -70,7 +73,7 @@ def slopes_at(points: Local, y: Array) -> Slopes:
 
 
 def slope_in(over: str, under: str, slope: float) -> Quantity | None:
-    """A slope [SI] of something declared in the unit `over`, for each unit `under` of a variable.
+    """Return a slope [SI] of something declared in the unit `over`, for each unit `under` of a variable.
 
     None where it is not finite.
     """

@@ -46,7 +46,7 @@ class SolidField:
     high: float
 
     def on(self, glb: Glb) -> Field:
-        """Values at the corners of a surface."""
+        """Return values at the corners of a surface."""
         return Field(self.title, self.unit, self._values(glb), self.low, self.high)
 
     def _values(self, glb: Glb) -> Array:
@@ -81,7 +81,7 @@ class ModeShape(SolidField):
 def fields_of(
     session: Session, catalogue: Catalogue[CadModel], id: str, number: int, name: str
 ) -> dict[str, SolidField]:
-    """The fields of a model in a revision, by their names; none of what is no crank.
+    """Return the fields of a model in a revision, by their names; none of what is no crank.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def fields_of(
 
 
 def field_of(fields: Mapping[str, SolidField], id: str) -> SolidField:
-    """One of the fields.
+    """Return one of the fields.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def _uses(
 
 
 def _points(session: Session, model: RevisionModel) -> Array | None:
-    """Where the tensors of an analysis are [mm]; they were stored with them."""
+    """Return where the tensors of an analysis are [mm]; they were stored with them."""
     if UNIT_LOADS not in model.analyses:
         return None
     stored = analysis_rows.outputs_of(session, model.analyses[UNIT_LOADS].id)
@@ -159,7 +159,7 @@ def _modes(revision: Revision, name: str, whole: WholeShaft) -> Iterator[ModeSha
 
 
 def ends_of(step: RevisionStep, throws: int) -> tuple[list[int], int, int] | None:
-    """Which inertias of a train, from 0, are the throws of a shaft, its nose and its flange.
+    """Return which inertias of a train, from 0, are the throws of a shaft, its nose and its flange.
 
     The throws are those that cylinders excite, in their order. Nose and flange are the one inertia that an
     elastic shaft joins to the first or the last throw; where there is not one, the throw's own. None if other
@@ -184,7 +184,10 @@ def ends_of(step: RevisionStep, throws: int) -> tuple[list[int], int, int] | Non
 
 
 def _takes(step: RevisionStep, prefix: str) -> bool:
-    """True if a relation of a step uses what begins so; `big_shaft.chain.` does not begin with `shaft.`."""
+    """Return whether a relation of a step uses what begins so.
+
+    `big_shaft.chain.` does not begin with `shaft.`.
+    """
     begins = re.compile(rf"(?<![\w.]){re.escape(prefix)}")
     return any(begins.search(str(relation)) for relation in step.relations.values())
 

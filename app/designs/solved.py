@@ -75,7 +75,7 @@ class SolveDesignIn(Bounded):
 
 
 def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
-    """Every solution, in SI units.
+    """Return every solution, in SI units.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
 
 
 def _single(raw: object, unit: str, name: str) -> float:
-    """One value [SI] as typed."""
+    """Return one value [SI] as typed."""
     try:
         value = read(raw, unit).si
     except FaultyText as error:
@@ -160,7 +160,10 @@ class _Written:
         )
 
     def _verdicts(self, value: float) -> dict[str, Word]:
-        """The verdict of every criterion with one value of the unknown; what needs a solid is not checked."""
+        """Return the verdict of every criterion with one value of the unknown.
+
+        What needs a solid is not checked.
+        """
         own = applied(self.document, {self.curve.x.name: {"value": value, "unit": self.x}})
         graph, faults = build_graph(own, self.catalogues)
         if faults:

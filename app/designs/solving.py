@@ -50,12 +50,12 @@ class DesignCurve(SampledCurve):
 
     @property
     def level(self) -> str | None:
-        """The level of the step whose output it is."""
+        """Return the level of the step whose output it is."""
         return self.levels.get(self.target.block)
 
     @property
     def chooses(self) -> bool:
-        """No: all levels are fixed."""
+        """Return False: all levels are fixed."""
         return False
 
     @property
@@ -64,17 +64,17 @@ class DesignCurve(SampledCurve):
         return 1_000_000
 
     def at_level(self, level: str) -> DesignCurve:
-        """The same curve, with the step whose output it is at one level."""
+        """Return the same curve, with the step whose output it is at one level."""
         return replace(self, levels={**self.levels, self.target.block: level})
 
     def level_at(self, x: float) -> str | None:
-        """The level at one value; raises InvalidInputs where the design is refused there."""
+        """Return the level at one value; raises InvalidInputs where the design is refused there."""
         if refusal := self._table(np.array([x])).refusals.get(0):
             raise InvalidInputs([Fault(refusal.place, refusal.code, refusal.detail)])
         return self.level
 
     def outputs(self, x: Array) -> Outputs:
-        """The output at values of the unknown [SI]."""
+        """Return the output at values of the unknown [SI]."""
         table = self._table(x)
         values, error = table.columns[self.target], table.errors.get(self.target)
         return Outputs(values, self._reasons(table), self.level, error)
@@ -101,7 +101,7 @@ class DesignRoots:
 
 
 def roots_of_design(net: Net, wanted: Wanted) -> DesignRoots:
-    """Every value of the unknown that gives the target.
+    """Return every value of the unknown that gives the target.
 
     Raises
     ------
@@ -118,7 +118,10 @@ def roots_of_design(net: Net, wanted: Wanted) -> DesignRoots:
 
 
 def _levels(net: Net, wanted: Wanted) -> tuple[dict[str, str | None], dict[str, str | None]]:
-    """The levels of the curve, and those of its solutions; none of the first is finer than the second."""
+    """Return the levels of the curve, and those of its solutions.
+
+    None of the first is finer than the second.
+    """
     rows, outputs = {wanted.unknown: evenly(*wanted.between, PROBED)}, [wanted.target]
     cheap = net.levels_for(rows, outputs, max(EXPLORED, wanted.tolerance or 0.0))
     if wanted.tolerance is not None:
@@ -129,12 +132,12 @@ def _levels(net: Net, wanted: Wanted) -> tuple[dict[str, str | None], dict[str, 
 
 
 def _coarser(net: Net, step: str, one: str | None, other: str | None) -> str | None:
-    """The cheaper of two levels of a step."""
+    """Return the cheaper of two levels of a step."""
     ladder = list(net.graph.blocks[step].cls.levels)
     levels = [level for level in (one, other) if level in ladder]
     return min(levels, key=ladder.index) if levels else one
 
 
 def _meaning(net: Net, reference: Reference) -> Meaning:
-    """A name of the design as messages call it, with its declared unit."""
+    """Return a name of the design as messages call it, with its declared unit."""
     return Meaning(words=str(reference), unit=net.unit(reference), name=str(reference))

@@ -21,7 +21,7 @@ _MM3 = 1e-9  # m³
 
 
 def stamp(session: Session, model: RevisionModelRow) -> Stamp:
-    """The stamp of a built model: always the same, because a revision never changes."""
+    """Return the stamp of a built model: always the same, because a revision never changes."""
     about = {"of": model.design_id, "at": model.number}
     ((document, created),) = statements.DOCUMENT.run(session, about)
     build = rows.build(session, model.build_key or "")
@@ -37,7 +37,7 @@ def stamp(session: Session, model: RevisionModelRow) -> Stamp:
 
 
 def signed(session: Session, model: RevisionModelRow, owner: str) -> Stamp:
-    """The stamp with what a title block says of the approval: it changes with every step of that.
+    """Return the stamp with what a title block says of the approval: it changes with every step of that.
 
     From the hand-over on the author has the name of that time, as in a report.
     """
@@ -58,7 +58,10 @@ def signed(session: Session, model: RevisionModelRow, owner: str) -> Stamp:
 
 
 def _materials(build: rows.Build) -> Mapping[str, str]:
-    """The materials of a build's parts; of a build of an older recipe that of the whole, by its density."""
+    """Return the materials of a build's parts.
+
+    Of a build of an older recipe that of the whole, by its density.
+    """
     measured: Mapping[str, Json] = build.measurements
     if "materials" in measured:
         materials: dict[str, str] = measured["materials"]

@@ -47,7 +47,7 @@ class Results:
 
     @cached_property
     def digest(self) -> str:
-        """SHA-256 of their canonical form, which a signature covers."""
+        """Return the SHA-256 of their canonical form, which a signature covers."""
         return hashlib.sha256(canonical_json(_JSON.process_result_value(self.text)).encode()).hexdigest()
 
 
@@ -56,7 +56,7 @@ _keeping = Lock()
 
 
 def results_of(session: Session, row: RevisionRow) -> Results:
-    """The results of a revision; empty while there are none."""
+    """Return the results of a revision; empty while there are none."""
     text: str | None = session.scalar(_TEXT, {"of": row.design_id, "at": row.number})
     if text is None:
         return Results(None, {}, {}, [], {})

@@ -16,7 +16,7 @@ from cad.regenerate import build_key
 
 
 def built(database: Database) -> Measured:
-    """Measurements of the models that have been built."""
+    """Return measurements of the models that have been built."""
 
     def measured(shape: CadModel) -> Measures | None:
         with database.read() as session:
@@ -26,7 +26,7 @@ def built(database: Database) -> Measured:
 
 
 def analysed(database: Database) -> Analysed:
-    """Results of finite elements on models, where all wanted results are stored."""
+    """Return results of finite elements on models, where all wanted results are stored."""
 
     def stored(shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Outputs | None:
         with database.read() as session:

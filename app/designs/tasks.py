@@ -31,7 +31,7 @@ class CatalogueTask:
 
     @classmethod
     def of(cls, templates: Versions, models: Versions, catalogues: Catalogues) -> CatalogueTask:
-        """The task of some versions.
+        """Return the task of some versions.
 
         Raises
         ------
@@ -41,7 +41,7 @@ class CatalogueTask:
         return cls(_sources(catalogues.templates, templates), _sources(catalogues.models, models))
 
     def read(self) -> Catalogues:
-        """The versions in this process."""
+        """Return the versions in this process."""
         templates = _catalogue(self.templates, Template, "template")
         return Catalogues(templates, _catalogue(self.models, CadModel, "model"))
 
@@ -55,7 +55,7 @@ class DesignTask:
 
     @classmethod
     def of(cls, document: JsonObject, catalogues: Catalogues) -> DesignTask:
-        """The task of a revision's document.
+        """Return the task of a revision's document.
 
         Raises
         ------
@@ -68,7 +68,7 @@ class DesignTask:
         return cls(canonical_json(document), CatalogueTask.of(steps, models, catalogues))
 
     def read(self) -> tuple[Document, Catalogues]:
-        """The design in this process, and what it is made of."""
+        """Return the design in this process, and what it is made of."""
         return Document.model_validate(from_json(self.document)), self.parts.read()
 
 

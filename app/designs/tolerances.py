@@ -18,7 +18,7 @@ OF_A_MODEL = (
 
 
 def warnings(document: JsonObject) -> list[Warning]:
-    """A warning for every parameter of a design's document that has `plus` or `minus`."""
+    """Return a warning for every parameter of a design's document that has `plus` or `minus`."""
     listed = list(map(_warning, unused(document["parameters"])))
     for name, model in document["models"].items():
         listed += (

@@ -23,7 +23,7 @@ STEP = "step"
 
 
 def newest(session: Session, id: str, number: int | None = None) -> Design:
-    """A design as of a revision, by default the newest.
+    """Return a design as of a revision, by default the newest.
 
     Raises
     ------
@@ -35,7 +35,7 @@ def newest(session: Session, id: str, number: int | None = None) -> Design:
 
 
 def current(id: str, number: int, document: JsonObject, created: str, changed: str) -> Design:
-    """A design as of a revision for which nothing is to be regenerated."""
+    """Return a design as of a revision for which nothing is to be regenerated."""
     return _design(id, number, document, created, changed, "current", None)
 
 
@@ -68,7 +68,10 @@ def _design(
 
 
 def _variants(document: JsonObject) -> JsonObject:
-    """The overrides of the variants of a design, in their natural order; empty if it has no variants."""
+    """Return the overrides of the variants of a design, in their natural order.
+
+    Empty if it has no variants.
+    """
     variants = document.get("variants", {})
     return {"variants": {name: variants[name] for name in sorted(variants, key=natural)}} if variants else {}
 
@@ -76,7 +79,7 @@ def _variants(document: JsonObject) -> JsonObject:
 def listed(
     row: DesignRow, revision: RevisionRow, tags: list[str], released: int | None = None
 ) -> DesignSummary:
-    """A design in a list."""
+    """Return a design in a list."""
     return DesignSummary(
         id=row.id,
         name=revision.document["name"],
@@ -91,7 +94,7 @@ def listed(
 
 
 def revision(session: Session, row: RevisionRow) -> Revision:
-    """A revision: its inputs, which never change, and its results."""
+    """Return a revision: its inputs, which never change, and its results."""
     results = results_of(session, row)
     steps, models = row.document["steps"], row.models
     return Revision.model_validate(
@@ -110,7 +113,7 @@ def revision(session: Session, row: RevisionRow) -> Revision:
 
 
 def summary(session: Session, row: RevisionRow) -> Revision:
-    """A revision without its steps, models and results."""
+    """Return a revision without its steps, models and results."""
     return Revision.model_validate({**_heading(session, row), "steps": {}, "models": {}, "iterations": []})
 
 
@@ -130,18 +133,18 @@ def _heading(session: Session, row: RevisionRow) -> dict[str, object]:
 
 
 def _signed(session: Session, row: RevisionRow) -> dict[str, str | int]:
-    """The revision that a released one replaces, and the progress of its approval, as far as they exist."""
+    """Return the revision that a released one replaces, and the progress of its approval, if any."""
     said = {"supersedes": row.supersedes, "approval": releases.state_of(session, row)}
     return {name: value for name, value in said.items() if value is not None}
 
 
 def author(session: Session, id: str | None) -> Author | None:
-    """The author of an action, by their present name; None where nobody noted it."""
+    """Return the author of an action, by their present name; None where nobody noted it."""
     return None if id is None else Author(id=id, name=names(session, [id]).get(id, id))
 
 
 def _waiting(typed: JsonObject) -> JsonObject:
-    """A step as typed, while it waits for a solid or for its job."""
+    """Return a step as typed, while it waits for a solid or for its job."""
     template = {"id": typed["template"], "version": typed["version"]}
     empty: JsonObject = {"outputs": {}, "level": None, "error": {}, "warnings": []}
     return {"template": template, "inputs": typed["inputs"], **empty, "pending": True}
@@ -159,7 +162,7 @@ def _model(session: Session, row: RevisionModelRow) -> JsonObject:
 
 
 def measurements(session: Session, id: str) -> dict[str, ModelMeasurements]:
-    """Measurements of the newest good model of every name."""
+    """Return measurements of the newest good model of every name."""
     head = repository.lean_head(session, id)
     measured: dict[str, ModelMeasurements] = {}
     for model in head.models:
@@ -180,12 +183,12 @@ def measurements(session: Session, id: str) -> dict[str, ModelMeasurements]:
 
 
 def _analyses(session: Session, id: str, number: int) -> Mapping[str, dict[str, ModelAnalysis]]:
-    """The analyses in a revision by model; none in revisions of before there were any."""
+    """Return the analyses in a revision by model; none in revisions of before there were any."""
     return results_of(session, repository.lean(session, id, number)).analyses
 
 
 def good_model(session: Session, id: str, name: str | None, number: int | None) -> RevisionModelRow:
-    """The model to serve: of one revision, or the newest good one of the design.
+    """Return the model to serve: of one revision, or the newest good one of the design.
 
     Raises
     ------
@@ -222,6 +225,6 @@ def _why(row: RevisionRow) -> str:
 
 
 def file(session: Session, model: RevisionModelRow, kind: str) -> File | None:
-    """A file of a model's build, or None if it is not made yet."""
+    """Return a file of a model's build, or None if it is not made yet."""
     row = rows.artifact(session, model.build_key or "", kind)
     return File(kind, row.sha256) if row else None

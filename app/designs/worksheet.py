@@ -38,7 +38,7 @@ def worksheet(
     only: str | None = None,
     has_formulas: bool = True,
 ) -> RevisionWorksheet:
-    """A revision with `formulas`, from the inputs and at the level that its job used.
+    """Return a revision with `formulas`, from the inputs and at the level that its job used.
 
     With `only` it has no other step than this one; without formulas none is written out.
 
@@ -62,27 +62,30 @@ def worksheet(
 def previewed(
     calculation: Calculation, steps: Mapping[str, RevisionStep], system: System
 ) -> dict[str, PreviewedStep]:
-    """The steps of a preview with `formulas`; a step that waits for a solid has none yet."""
+    """Return the steps of a preview with `formulas`; a step that waits for a solid has none yet."""
     evaluations = calculation.evaluations
     written = {name: _formulas(e.template, system, e.outputs) for name, e in evaluations.items()}
     return {name: _with_formulas(step, written.get(name, []), system) for name, step in steps.items()}
 
 
 def _with_formulas(step: RevisionStep, rows: list[WorkedFormula], system: System) -> PreviewedStep:
-    """A step in a system of units, its inputs as typed."""
+    """Return a step in a system of units, its inputs as typed."""
     shown = step.in_units(system)
     fields = {name: getattr(shown, name) for name in shown.model_fields_set}
     return PreviewedStep.model_validate({**fields, "inputs": step.inputs, "formulas": rows})
 
 
 def checked(step: RevisionStep, catalogue: Catalogue[Template]) -> list[Check]:
-    """Every bound and rule of a revision's step, compared with its values; none if these are not known."""
+    """Return every bound and rule of a revision's step, compared with its values.
+
+    None if these are not known.
+    """
     template = _calculated(step, catalogue, with_arrays=True)
     return [] if template is None else list(checks(template))
 
 
 def _written_out(step: RevisionStep, catalogue: Catalogue[Template], system: System) -> list[WorkedFormula]:
-    """The formulas of a revision's step; none if their values are not known."""
+    """Return the formulas of a revision's step; none if their values are not known."""
     template = _calculated(step, catalogue)
     return [] if template is None else _formulas(template, system, step.outputs)
 
@@ -90,7 +93,7 @@ def _written_out(step: RevisionStep, catalogue: Catalogue[Template], system: Sys
 def _calculated(
     step: RevisionStep, catalogue: Catalogue[Template], *, with_arrays: bool = False
 ) -> Template | None:
-    """The template of a step that has results, from its record, or calculated again as its job did.
+    """Return the template of a step that has results, from its record, or calculated again as its job did.
 
     It is calculated again if the revision was written before there were records, if the version has changed
     since, and if arrays are wanted that the record leaves out. None if it has no results, if calculating is
@@ -114,7 +117,7 @@ def _is_edited(cls: type[Template], step: RevisionStep) -> bool:
 
 
 def _retyped(used: UsedInput) -> Raw:
-    """An input as it was used, as one that can be given again."""
+    """Return an input as it was used, as one that can be given again."""
     if "unit" not in used.model_fields_set:
         return used.value
     return {name: getattr(used, name) for name in used.model_fields_set if name != "source"}
@@ -146,7 +149,7 @@ def remember(answer: JsonObject, evaluation: Evaluation) -> None:
 
 
 def _formulas(template: Template, system: System, names: Collection[str]) -> list[WorkedFormula]:
-    """The formulas written out, or as they were written out for equal values before."""
+    """Return the formulas written out, or as they were written out for equal values before."""
     key = _values_of(template)
     if key is None:
         return [WorkedFormula.model_validate(row) for row in formulas(template, system, names)]
@@ -165,7 +168,10 @@ _writing = Lock()
 
 
 def _values_of(template: Template) -> Hashable | None:
-    """The single values that the template has, by which its formulas are written; None if it has arrays."""
+    """Return the single values that the template has, by which its formulas are written.
+
+    None if it has arrays.
+    """
     values = [vars(template).get(attribute) for attribute in template.declarations]
     if any(isinstance(value, (np.ndarray, tuple)) for value in values):
         return None
@@ -173,7 +179,7 @@ def _values_of(template: Template) -> Hashable | None:
 
 
 def _evaluated(cls: type[Template], step: RevisionStep) -> Evaluation:
-    """The evaluation of a step as its job did it, kept because a revision never changes."""
+    """Return the evaluation of a step as its job did it, kept because a revision never changes."""
     question = _Question.of(step)
     kept: Evaluation | None = cache.get(question.key(cls))
     if kept is None:

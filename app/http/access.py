@@ -84,12 +84,15 @@ class Access:
             await self.app(scope, receive, send)
 
     async def _is_still(self, door: Door, scope: Scope, who: Principal) -> bool:
-        """True if a request would be let in as the same principal now; a stream lasts longer than a key."""
+        """Return whether a request would be let in as the same principal now.
+
+        A stream lasts longer than a key.
+        """
         guest = await self._guest(door, scope)
         return guest is not None and guest.principal == who
 
     async def _guest(self, door: Door, scope: Scope) -> Guest | None:
-        """Whoever sends a request; a key that is sent counts alone, even where it is not valid."""
+        """Return whoever sends a request; a key that is sent counts alone, even where it is not valid."""
         cookies = b""
         for name, value in scope["headers"]:
             if name == b"authorization":

@@ -34,7 +34,7 @@ class _Sink:
 
 
 def archived(members: Iterable[Member]) -> Iterator[bytes]:
-    """A ZIP in parts: one for every file, and its directory."""
+    """Yield a ZIP in parts: one for every file, and its directory."""
     sink = _Sink()
     with zipfile.ZipFile(sink, "w", zipfile.ZIP_DEFLATED) as archive:  # type: ignore[call-overload]
         for name, read in members:
@@ -50,7 +50,10 @@ def _about(name: str) -> zipfile.ZipInfo:
 
 
 def distinct(names: Iterable[str]) -> list[str]:
-    """Names of files that differ on every file system: of those that would be one, the later get a number."""
+    """Return names of files that differ on every file system.
+
+    Of those that would be one, the later get a number.
+    """
     used, result = set[str](), list[str]()
     for name in names:
         stem, _, kind = name.rpartition(".")

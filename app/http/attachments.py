@@ -19,18 +19,18 @@ from cad.file_names import plain_name
 
 
 def disposition(plain: str, wide: str, how: str = "attachment") -> str:
-    """Content-Disposition with the name in ASCII, and in all letters (RFC 6266, RFC 8187)."""
+    """Return the Content-Disposition with the name in ASCII, and in all letters (RFC 6266, RFC 8187)."""
     return f"{how}; filename=\"{plain}\"; filename*=UTF-8''{quote(wide, safe='')}"
 
 
 def named(design: str, revision: int, kind: str, how: str) -> str:
-    """Content-Disposition of a file that is of a whole design: `{design}_r{revision}.{kind}`."""
+    """Return the Content-Disposition of a file that is of a whole design: `{design}_r{revision}.{kind}`."""
     tail = f"_r{revision}.{kind}"
     return disposition(plain_name(design) + tail, wide_name(design) + tail, how)
 
 
 def tag(file: bytes) -> str:
-    """A strong ETag: equal bytes have equal tags."""
+    """Return a strong ETag: equal bytes have equal tags."""
     return f'"{hashlib.sha256(file).hexdigest()}"'
 
 
@@ -41,13 +41,13 @@ def is_at_hand(if_none_match: str | None, etag: str) -> bool:
 
 
 def unchanged(headers: Mapping[str, str]) -> Response:
-    """304, with the headers that a 200 would have but for those of its body."""
+    """Return 304, with the headers that a 200 would have but for those of its body."""
     kept = {name: value for name, value in headers.items() if name != "Content-Disposition"}
     return Response(status_code=304, headers=kept)
 
 
 def http_time(date: str) -> str:
-    """A time in UTC (ISO 8601, without a zone) as HTTP writes it."""
+    """Return a time in UTC (ISO 8601, without a zone) as HTTP writes it."""
     return format_datetime(datetime.fromisoformat(date).replace(tzinfo=UTC), usegmt=True)
 
 

@@ -31,7 +31,7 @@ def is_session(text: str) -> bool:
 
 
 async def get_client(request: Request) -> str:
-    """The client of a request; its prefix says how: `principal:`, `name:`, `session:` or `address:`.
+    """Return the client of a request; its prefix says how: `principal:`, `name:`, `session:` or `address:`.
 
     Raises
     ------
@@ -52,7 +52,7 @@ async def get_client(request: Request) -> str:
 
 
 def from_whom(scope: Scope) -> str:
-    """The client of a request as `get_client` has it; a name that is none counts as none."""
+    """Return the client of a request as `get_client` has it; a name that is none counts as none."""
     if (who := scope.get(PRINCIPAL)) is not None:
         return client_of(who.id)
     headers = Headers(scope=scope)

@@ -196,5 +196,5 @@ class TimedProtocol(WholeTarget):
 
 
 def protocol(limits: ConnectionLimits, busy: ASGIApp) -> type[TimedProtocol]:
-    """The protocol for a server with these limits; `busy` answers beyond the number of connections."""
+    """Return the protocol for a server with these limits; `busy` answers beyond the number of connections."""
     return type("Protocol", (TimedProtocol,), {"limits": limits, "busy": staticmethod(busy)})

@@ -100,7 +100,7 @@ def install(app: FastAPI, hosts: Hosts, refuse: Callable[[HttpError], Response])
 
 
 def protected(send: Send) -> Send:
-    """A `send` that adds the headers which an answer does not have."""
+    """Return a `send` that adds the headers which an answer does not have."""
 
     async def add(message: Message) -> None:
         if message["type"] == "http.response.start":
@@ -199,5 +199,5 @@ def _is_own(origin: str, asked: Authority, scheme: str, hosts: Hosts) -> bool:
 
 
 def _shown(value: bytes) -> str:
-    """A text of the client in a form that is safe in a message."""
+    """Return a text of the client in a form that is safe in a message."""
     return ascii(value[:LONGEST].decode("latin-1"))

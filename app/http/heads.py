@@ -77,7 +77,7 @@ class HeadLimit:
 
 
 def _too_large(scope: Scope) -> str:
-    """The limit that a head exceeds; empty if it exceeds none."""
+    """Return the limit that a head exceeds; empty if it exceeds none."""
     headers, query = scope["headers"], scope["query_string"]
     size = sum(len(name) + len(value) for name, value in headers) + len(query)
     if size + len(scope.get("raw_path") or b"") > LONGEST_HEAD:
@@ -88,7 +88,10 @@ def _too_large(scope: Scope) -> str:
 
 
 def _without_quoted_cookies(headers: Iterable[tuple[bytes, bytes]]) -> Iterable[tuple[bytes, bytes]]:
-    """The headers without cookies in quotes, which take quadratic time to read. None of ours is quoted."""
+    """Yield the headers without cookies in quotes, which take quadratic time to read.
+
+    None of ours is quoted.
+    """
     for name, value in headers:
         yield name, (_plain_cookies(value) if name == b"cookie" and b'"' in value else value)
 

@@ -73,14 +73,14 @@ def _refuse(texts: Mapping[str, str]) -> None:
 
 
 def _position(text: str) -> str:
-    """Line and column of the first U+0000 in a text, as editors count."""
+    """Return line and column of the first U+0000 in a text, as editors count."""
     before = text[: text.index(NUL)]
     line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
     return f"line {line}, column {column}" if "\n" in text else f"character {column}"
 
 
 def _places(value: object) -> Iterator[tuple[str, str]]:
-    """The place of a U+0000 in JSON: the path with dots, and the text or name that holds it."""
+    """Yield the place of a U+0000 in JSON: the path with dots, and the text or name that holds it."""
     waiting: list[tuple[str, object]] = [("", value)]
     while waiting:
         place, part = waiting.pop()

@@ -27,7 +27,9 @@ REFERENCE = "#/components/schemas/{model}"
 
 
 def operation_id(route: APIRoute) -> str:
-    """The name of an operation in a generated client: `evaluate_template`, `show_report_of_revision_as`.
+    """Return the name of an operation in a generated client.
+
+    `evaluate_template`, `show_report_of_revision_as`.
 
     It is the name of the route's function; one that serves several paths says which.
     """
@@ -154,7 +156,10 @@ def install(app: FastAPI) -> None:
 
 
 def policy(page: bytes) -> str:
-    """The policy of a page with inline scripts: they may run, and nothing else that is not from here."""
+    """Return the policy of a page with inline scripts.
+
+    They may run, and nothing else that is not from here.
+    """
     digests = (b64encode(hashlib.sha256(script).digest()).decode() for script in _INLINE.findall(page))
     hashes = " ".join(f"'sha256-{digest}'" for digest in digests)
     return (

@@ -40,7 +40,7 @@ LONGEST_PLACE = 200  # characters of where in a body something is wrong; its nam
 
 
 def describe(error: Exception) -> JsonObject:
-    """An error as a problem (RFC 9457), with all that it carries."""
+    """Return an error as a problem (RFC 9457), with all that it carries."""
     kind = kind_of(error)
     detail = kind.remedy if kind is INTERNAL else _detail(error)
     carried = next((tell(error) for cls, tell in _CARRIED.items() if isinstance(error, cls)), {})
@@ -48,12 +48,12 @@ def describe(error: Exception) -> JsonObject:
 
 
 def _detail(error: Exception) -> str:
-    """The text of an error. FastAPI's own would quote the whole body; `_validation` says it better."""
+    """Return the text of an error. FastAPI's own would quote the whole body; `_validation` says it better."""
     return "" if isinstance(error, RequestValidationError) else str(error)
 
 
 def problem(kind: Kind, detail: str) -> JsonObject:
-    """A problem object."""
+    """Return a problem object."""
     return {"type": f"/problems/{kind.slug}", "title": kind.title, "status": kind.status, "detail": detail}
 
 
@@ -144,7 +144,7 @@ def explain_problem(slug: str) -> ProblemKind:
 
 
 def answer(about: Mapping[str, Json], headers: Mapping[str, str] | None = None) -> Response:
-    """A problem as a response; it carries the id of the request."""
+    """Return a problem as a response; it carries the id of the request."""
     about = {**about, "request_id": id_} if (id_ := logs.REQUEST_ID.get()) else about
     return ProblemResponse(dict(about), about["status"], headers=dict(headers or {}), media_type=MEDIA_TYPE)
 
@@ -153,7 +153,7 @@ class ProblemResponse(JSONResponse):
     """A problem quotes what a client sent, but no key."""
 
     def render(self, content: object) -> bytes:
-        """The problem as JSON."""
+        """Return the problem as JSON."""
         return without_keys(super().render(content).decode()).encode()
 
 
@@ -170,7 +170,7 @@ _PASSING = (jobs.QueueFull, RowsLost, storage.ArtifactsUnreachable, storage.Data
 
 
 def refusal(error: Exception) -> Response:
-    """The answer to an error, with the headers that it names."""
+    """Return the answer to an error, with the headers that it names."""
     headers = getattr(error, "headers", {})
     if isinstance(error, _PASSING):
         headers = {"Retry-After": str(error.retry_after)}

@@ -81,7 +81,7 @@ def install(app: FastAPI) -> None:
 
 
 def route_of(scope: Scope) -> str:
-    """The template of the path, of which there are few; never the path."""
+    """Return the template of the path, of which there are few; never the path."""
     route = scope.get("route")
     if route is not None:
         return route.path  # type: ignore[no-any-return]
@@ -89,7 +89,7 @@ def route_of(scope: Scope) -> str:
 
 
 def method_of(scope: Scope) -> str:
-    """The method, or `other`: anybody may invent one."""
+    """Return the method, or `other`: anybody may invent one."""
     return scope["method"] if scope["method"] in _METHODS else "other"
 
 

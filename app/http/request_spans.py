@@ -59,7 +59,7 @@ def install(app: FastAPI, traces: Traces) -> None:
 
 
 def _of_caller(scope: Scope) -> str:
-    """The context that a caller sends, if it has the right form."""
+    """Return the context that a caller sends, if it has the right form."""
     for name, value in scope["headers"]:
         if name == b"traceparent" and _TRACEPARENT.fullmatch(value):
             return str(value.decode())

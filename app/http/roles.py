@@ -66,7 +66,7 @@ def public() -> params.Depends:
 
 
 def needs_of(route: BaseRoute) -> Needs:
-    """The roles that a route needs."""
+    """Return the roles that a route needs."""
     declared = [one.dependency for one in getattr(route, "dependencies", ())]
     needed = [one for one in declared if isinstance(one, Needs)]
     if needed:
@@ -102,7 +102,7 @@ def install(app: FastAPI) -> None:
 
 
 def routes_of(app: FastAPI) -> list[BaseRoute]:
-    """All routes of an app, those of its routers included.
+    """Return all routes of an app, those of its routers included.
 
     `fastapi.routing.iter_route_contexts` gives the same, but prepares each route for requests: 0.3 s at the
     start that belong to the first requests. A test compares the two.

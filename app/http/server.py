@@ -45,7 +45,7 @@ _IDLE = ("threading.py", "queue.py", "selectors.py", "thread.py", "connection.py
 
 
 def configuration(app: FastAPI, settings: Settings, port: int | None = None) -> uvicorn.Config:
-    """Uvicorn's configuration with the service's limits, on the port of the settings or on another."""
+    """Return uvicorn's configuration with the service's limits, on the port of the settings or on another."""
     limits = ConnectionLimits(
         settings.connections,
         settings.header_seconds,

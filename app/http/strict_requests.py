@@ -88,17 +88,17 @@ class StrictRequest(Request):
 
     @property
     def pace(self) -> Pace:
-        """The pace of all large bodies and answers of the app."""
+        """Return the pace of all large bodies and answers of the app."""
         return self.app.state.pace  # type: ignore[no-any-return]
 
     async def pieces(self) -> Pieces:
-        """The body as it came."""
+        """Return the body as it came."""
         if not hasattr(self, "_pieces"):
             self._pieces = Pieces(tuple([part async for part in self._received()]))
         return self._pieces
 
     async def body(self) -> bytes:
-        """The body as one object; to join a large one holds the interpreter, see `pieces`."""
+        """Return the body as one object; to join a large one holds the interpreter, see `pieces`."""
         if not hasattr(self, "_body"):
             self._body = (await self.pieces()).joined()
         return self._body
@@ -118,7 +118,7 @@ class StrictRequest(Request):
                 await self.pace.step()
 
     async def json(self) -> Json:
-        """The body as JSON.
+        """Return the body as JSON.
 
         Raises
         ------
@@ -144,7 +144,7 @@ class StrictRoute(APIRoute):
         self.takes = frozenset(self.methods or ())
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[object, None, Response]]:
-        """FastAPI's handler behind the checks."""
+        """Return FastAPI's handler behind the checks."""
         handler = super().get_route_handler()
 
         async def strict(request: Request) -> Response:
@@ -340,7 +340,7 @@ def require_model(request: Request) -> None:
 
 
 async def _read(request: StrictRequest) -> object:
-    """The body as JSON, or nothing if it is none: that is refused elsewhere."""
+    """Return the body as JSON, or nothing if it is none: that is refused elsewhere."""
     try:
         return await request.json()
     except JSONDecodeError:
@@ -405,7 +405,7 @@ class BodyLimit:
 
 
 async def fingerprint(request: Request) -> str:
-    """SHA-256 of a request's body; with parameters in its address, of these too."""
+    """Return the SHA-256 of a request's body; with parameters in its address, of these too."""
     digest = hashlib.sha256(await request.body())
     if query := request.scope["query_string"]:
         digest.update(b"?" + query)

@@ -11,25 +11,25 @@ from app.storage.tables import ApiKeyRow, PrincipalRow
 
 
 def principal(row: PrincipalRow) -> schemas.Principal:
-    """A principal."""
+    """Return a principal."""
     return schemas.Principal.model_validate(
         {name: getattr(row, name) for name in schemas.Principal.model_fields}
     )
 
 
 def me(who: Principal, amounts: schemas.Usage) -> schemas.Me:
-    """The principal that sends the request."""
+    """Return the principal that sends the request."""
     roles = [role for role in ROLES if role in who.roles]
     return schemas.Me(id=who.id, name=who.name, kind=who.kind, roles=roles, usage=amounts)
 
 
 def key(row: ApiKeyRow) -> schemas.Key:
-    """A key, without its secret."""
+    """Return a key, without its secret."""
     return schemas.Key.model_validate({name: getattr(row, name) for name in schemas.Key.model_fields})
 
 
 def used(amounts: Used, limits: Limits | None) -> schemas.Usage:
-    """The usage beside the limits."""
+    """Return the usage beside the limits."""
     return schemas.Usage(
         requests=amounts.requests,
         jobs=amounts.jobs,

@@ -151,7 +151,7 @@ def change_size(old: Value, new: Value) -> float:
 
 
 def _together(old: Value, new: Value) -> tuple[Array, Array]:
-    """Both values as arrays of one shape, if one of them is a single value for all places of the other."""
+    """Return both values as arrays of one shape, if one is a single value for all places of the other."""
     one, other = np.asarray(old, dtype=float), np.asarray(new, dtype=float)
     if one.ndim and other.ndim:
         return one, other

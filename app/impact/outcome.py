@@ -28,7 +28,7 @@ class Judged:
 
     @classmethod
     def in_row(cls, verdict: Verdict, criterion: Criterion, margin: float) -> Judged:
-        """From a row: the margin [SI] is NaN where there is none."""
+        """Return the judgement of a row; the margin [SI] is NaN where there is none."""
         scale = "K" if criterion.is_temperature else criterion.unit
         return cls(verdict, scale, _finite(margin / unit(scale).factor))
 

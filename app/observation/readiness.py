@@ -40,7 +40,7 @@ class Readiness:
         self._kept: tuple[float, dict[str, str | None]] | None = None
 
     async def failures(self) -> dict[str, str | None]:
-        """The state of each check: what is wrong, or None where nothing is."""
+        """Return the state of each check: what is wrong, or None where nothing is."""
         async with self._lock:
             if self._kept is None or time.monotonic() - self._kept[0] > KEPT:
                 said = await asyncio.gather(*(check() for check in self._checks.values()))

@@ -1,6 +1,6 @@
 """The throw star: the crankpins of an engine seen from its flywheel, each with the cylinders on it.
 
-`static/crank_star.js` draws the same in the page. x is up and y left, as `engine` 2 counts its angles, so the
+`static/crank_star.js` draws the same in the page. x is up and y left, as `engine` 1 counts its angles, so the
 shaft turns against the hands of a clock. Pins at one angle are one ray, whichever throws they are on.
 """
 

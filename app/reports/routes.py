@@ -86,7 +86,7 @@ class ReportRequest:
         number: int | None,
         kind: str | None,
     ) -> Response:
-        """The report of a revision, the newest if none is named: on the screen or on paper.
+        """Return the report of a revision, the newest if none is named: on the screen or on paper.
 
         Raises
         ------
@@ -102,7 +102,7 @@ class ReportRequest:
         return await self._printed(report, wanted, job)
 
     async def _waited(self, pictures: Sequence[Pictures], id: str, number: int) -> str | None:
-        """The job that still makes pictures of this revision when the client's patience ends, if any does."""
+        """Return the job that still draws pictures of this revision when the client stops waiting, if any."""
         lists = [await run_in_threadpool(each, id, number, self.client) for each in pictures]
         ends = time.monotonic() + patience(self.prefer, PATIENCE)
         for job in chain.from_iterable(lists):
@@ -112,7 +112,7 @@ class ReportRequest:
         return None
 
     async def _printed(self, report: Report, kind: str, job: str | None) -> Response:
-        """A report on the screen or on paper, or that it is as it was."""
+        """Return a report on the screen or on paper, or that it is as it was."""
         headers = _headers(report, kind, job)
         if job is None and self.if_none_match and headers["ETag"] in self.if_none_match:
             return Response(status_code=304, headers=headers)
@@ -136,7 +136,7 @@ async def report_request(
     prefer: Prefer = None,
     if_none_match: IfNoneMatch = None,
 ) -> ReportRequest:
-    """The parts of a request that all routes of reports have in common."""
+    """Return the parts of a request that all routes of reports have in common."""
     return ReportRequest(request, reports, press, jobs, threads, client, units, accept, prefer, if_none_match)
 
 
@@ -222,7 +222,7 @@ def _headers(report: Report, kind: str, job: str | None) -> dict[str, str]:
 
 
 def _wanted(what: str, kind: str | None, accept: str | None, kinds: Mapping[str, str]) -> str:
-    """The kind that the path names, else that which the client likes best; the first by default.
+    """Return the kind that the path names, else that which the client likes best; the first by default.
 
     Raises
     ------

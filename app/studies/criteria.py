@@ -13,7 +13,10 @@ from templates.core.judging.criterion import Criterion
 
 
 def criterion_of(net: Net, name: str) -> Criterion:
-    """A criterion as it is judged: as the design writes it, else as the template of its step declares it."""
+    """Return a criterion as it is judged.
+
+    As the design writes it, else as the template of its step declares it.
+    """
     return subjects(net.graph)[name].criterion
 
 

@@ -77,7 +77,7 @@ class Plan:
 
 
 def planned(task: Task, rows: Rows | None, solid_seconds: float) -> tuple[Plan, Array | None]:
-    """The plan of a study, and the values [SI] of the rows that its user gave, if the method is `table`.
+    """Return the plan of a study, and the values [SI] of the given rows if the method is `table`.
 
     `solid_seconds` is how long it takes to build a solid [s], for rows that wait for solids.
 

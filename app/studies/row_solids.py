@@ -224,7 +224,7 @@ def _refuse(result: Resolved, numbers: Sequence[int], refusal: Refusal) -> None:
 
 
 def _distinct(matrix: Array, among: Mask) -> Iterator[tuple[Array, list[int]]]:
-    """The distinct rows among some of a matrix, each with the numbers of the rows that are equal to it."""
+    """Yield the distinct rows of a matrix, each with the numbers of the rows equal to it."""
     numbers = np.flatnonzero(among)
     if not len(numbers):
         return

@@ -125,7 +125,7 @@ def _outcome(ready: Prepared, problem: Problem, search: Search, book: _Book) -> 
 def _compared(
     problem: Problem, search: Search, book: _Book, seed: int, first: Promised, notes: tuple[str, ...]
 ) -> tuple[tuple[Promised, ...], tuple[str, ...]]:
-    """The promise of each level, and the notes with one more if there are not rows enough for all levels."""
+    """Return the promise of each level, and the notes, with one more if rows are lacking for a level."""
     others: list[Promised] = []
     try:
         for level in range(CONFIRM + 1, len(search.levels)):

@@ -37,7 +37,7 @@ class _Answering:
     findings: Findings
 
     def whole(self, revision: int) -> answers.ToleranceAnalysis:
-        """About the analysis, and every output by its name."""
+        """Return the answer: the analysis, and every output by its name."""
         outputs = {
             str(reference): self._output(column, reference)
             for column, reference in enumerate(self.analysis.outputs)
@@ -198,7 +198,7 @@ def _share(share: indices.Share) -> answers.Share:
 
 
 def _needed(one: Yield, points: int) -> int | None:
-    """The points for which the standard error is as small as aimed at, if it falls as that of random ones."""
+    """Return the points needed for the wanted standard error, if it falls as that of random points."""
     if one.standard_error <= AIM:
         return None
     return points << ceil(2 * log2(one.standard_error / AIM))

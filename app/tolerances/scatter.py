@@ -134,7 +134,7 @@ def _spread(values: Array) -> Spread | None:
 
 
 def _range(values: Array) -> tuple[float, float]:
-    """Of a histogram; of one value alone, a little to both sides."""
+    """Return the range of a histogram; of one value alone, a little to both sides."""
     low, high = float(values.min()), float(values.max())
     margin = 0.0 if np.nextafter(low, np.inf) < high and high - low > 1e-9 * abs(high) else 1e-6 * abs(low)
     return (low - margin, high + margin) if high + margin > low - margin else (low - 0.5, high + 0.5)

@@ -44,7 +44,7 @@ class _Measured(BaseModel):
 
 
 def table(measured: Accuracy) -> Table:
-    """The levels of the answer to `GET …/accuracy`, with the outputs that were measured."""
+    """Return the levels of the answer to `GET …/accuracy`, with the outputs that were measured."""
     levels = [_level(name, _Measured.model_validate(level)) for name, level in measured.levels.items()]
     outputs = list(dict.fromkeys(name for level in levels for name in level.errors))
     return Table(levels, outputs[:SHOWN])

@@ -60,7 +60,7 @@ async def create(request: Request, services: ThePageServices) -> Response:
 async def _with_step(
     request: Request, services: PageServices, typed: Mapping[str, str], document: dict[str, JsonValue]
 ) -> Response:
-    """A design with one step; its form, where that is not filled in, or refused."""
+    """Return a design with one step; its form, where that is not filled in, or refused."""
     if "design_name" not in typed:  # the form of the home page: its name is that of the design
         await new_step(services, typed)  # a template that does not exist is refused here
         return go(address("/designs/new", {**typed, "design_name": str(document["name"]), "name": ""}))
@@ -74,7 +74,7 @@ async def _with_step(
 def _step_again(
     request: Request, step: NewStep, action: str, hidden: Mapping[str, str], refused: Refused
 ) -> Response:
-    """The form of a step that was refused."""
+    """Return the form of a step that was refused."""
     if refused.status != ILL_NAMED:
         raise refused
     notice = None if refused.faults else f"Nothing was saved: {refused.problem.detail}"
@@ -194,7 +194,7 @@ async def _again(
     refused: Refused,
     part: Mapping[str, str] = NOTHING,
 ) -> Response:
-    """The page with a form that was refused; of a stale one, only what its user changed is kept."""
+    """Return the page with a form that was refused; of a stale one, only what its user changed is kept."""
     if refused.status not in (STALE, ILL_NAMED):
         raise refused
     notice = (
@@ -224,7 +224,7 @@ def _refuse_taken(design: Design, patch: Patch) -> None:
 
 
 def _block(typed: Mapping[str, str]) -> Patch:
-    """The merge patch that adds or removes what a form names."""
+    """Return the merge patch that adds or removes what a form names."""
     name = typed.get("name", "").strip()
     match typed.get("add", ""):
         case "parameter":
@@ -267,6 +267,6 @@ async def _label(services: PageServices, id: str, typed: dict[str, str]) -> None
 
 
 def _back(typed: dict[str, str]) -> Response:
-    """To the list from which a form was sent."""
+    """Redirect to the list from which a form was sent."""
     back = typed.get("back", "/")
     return go(back if _LIST.fullmatch(back) else "/")

@@ -30,7 +30,7 @@ class Place(NamedTuple):
 
     @property
     def path(self) -> str:
-        """Its address."""
+        """Return its address."""
         return f"/designs/{self.id}" if self.is_design else f"/designs/{self.id}/revisions/{self.number}"
 
 

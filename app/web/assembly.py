@@ -42,7 +42,7 @@ class Files(StaticFiles):
     """Files that a browser keeps, and asks about before it uses them: after an update it has the new ones."""
 
     def lookup_path(self, path: str) -> tuple[str, os.stat_result | None]:
-        """The file of a path; the system's calls raise on a null byte instead of finding nothing."""
+        """Return the file of a path; the system's calls raise on a null byte instead of finding nothing."""
         return ("", None) if "\0" in path else super().lookup_path(path)
 
     def file_response(
@@ -52,7 +52,7 @@ class Files(StaticFiles):
         scope: Scope,
         status_code: int = 200,
     ) -> Response:
-        """The file, or that it is still the same."""
+        """Return the file, or that it is still the same."""
         response = super().file_response(full_path, stat_result, scope, status_code)
         response.headers["Cache-Control"] = "no-cache"
         response.headers["X-Content-Type-Options"] = "nosniff"

@@ -70,7 +70,10 @@ def _model(design: Design, name: str) -> DesignModel:
 async def _manifest(
     services: PageServices, model: DesignModel, typed: Mapping[str, str]
 ) -> dict[str, JsonValue]:
-    """The manifest of the model's assembly with the part that was typed; a new one if it is no assembly."""
+    """Return the manifest of the model's assembly with the part that was typed.
+
+    A new one if it is no assembly.
+    """
     described = await services.run(
         show_model, model.id, model.version, services.catalogues, services.database
     )
@@ -84,7 +87,7 @@ async def _manifest(
 
 
 def _component(typed: Mapping[str, str]) -> dict[str, JsonValue]:
-    """The entry of a part, as far as anything was typed."""
+    """Return the entry of a part, as far as anything was typed."""
     entry: dict[str, JsonValue] = {"name": typed.get("component", "")}
     if model := typed.get("source", ""):
         id, _, version = model.partition(":")
@@ -98,7 +101,7 @@ def _component(typed: Mapping[str, str]) -> dict[str, JsonValue]:
 async def _brought(
     services: PageServices, typed: Mapping[str, str], manifest: Mapping[str, JsonValue]
 ) -> dict[str, JsonValue]:
-    """The version of the model that a manifest becomes, as a design names it.
+    """Return the version of the model that a manifest becomes, as a design names it.
 
     Raises
     ------
@@ -147,6 +150,6 @@ async def _form(
 
 
 async def _bought(services: PageServices) -> list[TemplateSummary]:
-    """The STEP files that were brought, the newest of each."""
+    """Return the STEP files that were brought, the newest of each."""
     items = (await services.run(list_models, services.catalogues, limit=500)).items
     return [item for item in items if item.latest and item.title.startswith(_FIXED)]

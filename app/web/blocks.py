@@ -43,7 +43,10 @@ class StepBlock:
 
     @property
     def main(self) -> list[str]:
-        """The results shown at once: all of a few; of many, those with a value that no formula uses."""
+        """Return the results shown at once: all of a few.
+
+        Of many, those with a value that no formula uses.
+        """
         if len(self.outputs) <= MOST_AT_ONCE:
             return self.outputs
         used = {name for formula in self.template.formulas for name in formula.uses}
@@ -56,13 +59,13 @@ class StepBlock:
 
     @property
     def intermediate(self) -> list[str]:
-        """The results that are folded away."""
+        """Return the results that are folded away."""
         main = set(self.main)
         return [name for name in self.outputs if name not in main]
 
     @property
     def has_faults(self) -> bool:
-        """Whether one of its fields holds what was refused."""
+        """Return whether one of its fields holds what was refused."""
         return any(one.error for one in (*self.fields, *self.options, *self.limits))
 
 
@@ -79,7 +82,7 @@ class ModelBlock:
 
     @property
     def targets(self) -> set[str]:
-        """The names of its parameters in a design."""
+        """Return the names of its parameters in a design."""
         return {f"{self.name}.{tail}" for tail in properties(self.model.parameters)}
 
 
@@ -100,7 +103,7 @@ def steps_of(
     templates: Mapping[str, Template],
     computed: Mapping[str, Sequence[str] | None] | None = None,
 ) -> list[StepBlock]:
-    """Every step with its results and pictures; `computed` names outputs where only some are."""
+    """Return every step with its results and pictures; `computed` names outputs where only some are."""
     return [
         _step(name, template, revision.steps[name], (computed or {}).get(name))
         for name, template in templates.items()
@@ -115,21 +118,21 @@ def _step(name: str, template: Template, step: PreviewedStep, computed: Sequence
 
 
 def _with_places(step: PreviewedStep, names: Iterable[str]) -> PreviewedStep:
-    """A step whose results are awaited, with places for the page's script to fill in."""
+    """Return a step whose results are awaited, with places for the page's script to fill in."""
     waiting = Output(value=None, reason="is not calculated yet")
     names = list(names)
     return step.model_copy(update={"outputs": dict.fromkeys(names, waiting), "error": dict.fromkeys(names)})
 
 
 def with_result(block: StepBlock, written: PreviewedStep | None) -> StepBlock:
-    """A step with its formulas, if they are `written` out; one whose results are awaited has none."""
+    """Return a step with its formulas, if they are `written` out; one whose results are awaited has none."""
     return block if written is None or written.pending else replace(block, result=written)
 
 
 def with_fields(
     block: StepBlock, design: Design, refusal: Refusal, tables: Sequence[LibraryTable]
 ) -> StepBlock:
-    """A step of a design with the fields of its form; `tables` are those of the library."""
+    """Return a step of a design with the fields of its form; `tables` are those of the library."""
     step, template, result = design.steps[block.name], block.template, block.result
     used = {} if result.pending or not result.outputs else result.inputs
     typed, faults = refusal.typed, refusal.faults
@@ -145,7 +148,7 @@ def with_fields(
 
 
 def models_of(revision: Revision, models: Mapping[str, Model]) -> list[ModelBlock]:
-    """Every model with the values of its parameters."""
+    """Return every model with the values of its parameters."""
     return [ModelBlock(name, model, revision.models[name].parameters) for name, model in models.items()]
 
 
@@ -156,7 +159,7 @@ def with_changes(
     before: Revision | None,
     previewed: Mapping[str, ParameterChange],
 ) -> ModelBlock:
-    """A model of a design with the fields of its form, and what changed since the revision before."""
+    """Return a model of a design with the fields of its form, and what changed since the revision before."""
     name, values, schema = block.name, block.values, block.model.parameters
     cells = design.models[name].parameters
     status = {tail: _status(previewed.get(f"{name}.{tail}")) for tail in values}
@@ -173,13 +176,16 @@ def _status(change: ParameterChange | None) -> str | None:
 
 
 def _changed(before: RevisionModel | None, values: Mapping[str, Shown]) -> dict[str, Shown]:
-    """The parameters of a model before, where they differ from the values now."""
+    """Return the parameters of a model before, where they differ from the values now."""
     old = before.parameters if before else {}
     return {name: value for name, value in old.items() if value != values.get(name)}
 
 
 def painted(steps: Iterable[StepBlock], models: Sequence[ModelBlock]) -> dict[str, object] | None:
-    """The film pressure to paint on a plain bearing: that of the step to whose diameter its bore is tied."""
+    """Return the film pressure to paint on a plain bearing.
+
+    That of the step to whose diameter its bore is tied.
+    """
     bores = {block.name: block.model.film_bore for block in models if block.model.film_bore}
     texts = {field.name: field.text for block in models for field in block.fields}
     for step in steps:

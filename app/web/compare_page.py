@@ -33,7 +33,7 @@ class Asked:
     of: str
 
     def numbers(self, id: str) -> tuple[int | None, int | None]:
-        """The revisions to compare; None where no number was chosen."""
+        """Return the revisions to compare; None where no number was chosen."""
         return _number(self.revision), _number(self.number) if self._is_meant(id) else None
 
     def _is_meant(self, id: str) -> bool:
@@ -75,13 +75,13 @@ async def compare_page(request: Request, services: PageServices, id: str, asked:
 
 
 async def _other(services: PageServices, design: Design, id: str) -> Design | None:
-    """The design on the other side; None if there is none of this id."""
+    """Return the design on the other side; None if there is none of this id."""
     if not id:
         return design
     return await services.find(services.designs.show, id) if _ID.fullmatch(id) else None
 
 
 def _numbers(newest: int, chosen: int) -> list[int]:
-    """The revisions that a picker offers, newest first, the chosen one among them."""
+    """Return the revisions that a picker offers, newest first, the chosen one among them."""
     numbers = set(range(newest, max(0, newest - MOST_NUMBERS), -1)) | {chosen}
     return sorted(numbers, reverse=True)

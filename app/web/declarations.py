@@ -34,12 +34,12 @@ class AnalysisLine:
 
     @property
     def levels(self) -> list[str]:
-        """The levels of its kinds."""
+        """Return the levels of its kinds."""
         return list(dict.fromkeys(level for kind in self.kinds.values() for level in kind.levels))
 
     @property
     def boundaries(self) -> list[str]:
-        """The ways in which the loaded end may be held."""
+        """Return the ways in which the loaded end may be held."""
         return list(dict.fromkeys(name for kind in self.kinds.values() for name in kind.boundaries))
 
 
@@ -57,7 +57,7 @@ Line = TypeVar("Line", AnalysisLine, IterationLine)
 
 
 def errors_of(part: Mapping[str, str], faults: Mapping[str, str]) -> dict[str, tuple[str, str]]:
-    """The faults of a refused form's fields: the name of the fault and its detail, by field."""
+    """Return the faults of a refused form's fields: the name of the fault and its detail, by field."""
     match part.get("declare") or part.get("add"):
         case "analysis":
             fields, begins = _OF_ANALYSIS, f"models.{part.get('model', '')}.analyses.{part.get('kind', '')}."
@@ -78,7 +78,7 @@ def errors_of(part: Mapping[str, str], faults: Mapping[str, str]) -> dict[str, t
 
 
 def _refused(line: Line, refusal: Refusal) -> Line:
-    """The line with what was typed and what is wrong, if its form was refused."""
+    """Return the line with what was typed and what is wrong, if its form was refused."""
     part = refusal.part
     if isinstance(line, AnalysisLine):
         is_its = part.get("declare") == "analysis" and part.get("model") == line.model
@@ -92,7 +92,7 @@ def _refused(line: Line, refusal: Refusal) -> Line:
 
 
 def analysis_lines(design: Design, models: Sequence[ModelBlock], refusal: Refusal) -> list[AnalysisLine]:
-    """The analyses of every model that can be analysed, each followed by an empty line."""
+    """Return the analyses of every model that can be analysed, each followed by an empty line."""
     lines: list[AnalysisLine] = []
     for block in models:
         if kinds := block.model.analyses:
@@ -106,7 +106,7 @@ def analysis_lines(design: Design, models: Sequence[ModelBlock], refusal: Refusa
 
 
 def iteration_lines(design: Design, refusal: Refusal) -> list[IterationLine]:
-    """The iterations, then an empty line."""
+    """Return the iterations, then an empty line."""
     lines = [IterationLine(str(place), _texts(one)) for place, one in enumerate(design.iterations)]
     lines.append(IterationLine(texts=dict.fromkeys(_OF_ITERATION, "")))
     return [_refused(line, refusal) for line in lines]
@@ -128,7 +128,7 @@ def measures(design: Design, models: Sequence[ModelBlock]) -> Iterator[str]:
 
 
 def change_of(design: Design, typed: Mapping[str, str]) -> Change | None:
-    """The merge patch that a form of this page asks for; None for another form."""
+    """Return the merge patch that a form of this page asks for; None for another form."""
     match typed.get("declare", ""):
         case "analysis":
             name = typed.get("kind", "").strip()  # an analysis is called by its kind
@@ -140,7 +140,7 @@ def change_of(design: Design, typed: Mapping[str, str]) -> Change | None:
 
 
 def _analysis(typed: Mapping[str, str]) -> dict[str, JsonValue]:
-    """The options of an analysis; null removes those that were emptied."""
+    """Return the options of an analysis; null removes those that were emptied."""
     return {
         name: _value(name, typed.get(name, ""))
         for name in _OF_ANALYSIS
@@ -149,7 +149,7 @@ def _analysis(typed: Mapping[str, str]) -> dict[str, JsonValue]:
 
 
 def _iterations(design: Design, typed: Mapping[str, str]) -> list[JsonValue]:
-    """All iterations, with one added, changed or removed."""
+    """Return all iterations, with one added, changed or removed."""
     given = {name: _value(name, typed[name]) for name in _OF_ITERATION if typed.get(name, "").strip()}
     whole: list[JsonValue] = [one.model_dump(mode="json") for one in design.iterations]
     place = typed.get("place", "")

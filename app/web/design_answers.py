@@ -29,7 +29,7 @@ async def revision_of(
     only: str | None = None,
     has_formulas: bool = True,
 ) -> RevisionWorksheet:
-    """A revision as a worksheet, in the units that the page shows; with `only`, that step alone."""
+    """Return a revision as a worksheet, in the units that the page shows; with `only`, that step alone."""
     units = units_of(request)
     return await services.calculate(within, services.reports.worksheet, id, number, units, only, has_formulas)
 
@@ -40,12 +40,12 @@ async def job_of(services: PageServices, id: str) -> Job:
 
 
 def steps_of_design(design: Design) -> dict[str, tuple[str, int]]:
-    """Id and version of the template of every step."""
+    """Return the id and version of the template of every step."""
     return {name: (step.template, step.version) for name, step in design.steps.items()}
 
 
 async def templates_of(services: PageServices, steps: Mapping[str, tuple[str, int]]) -> dict[str, Template]:
-    """The template of every step; steps of one version share it."""
+    """Return the template of every step; steps of one version share it."""
     versions = {
         (id, version): await services.run(show_template, id, version, services.catalogues)
         for id, version in dict.fromkeys(steps.values())
@@ -54,7 +54,7 @@ async def templates_of(services: PageServices, steps: Mapping[str, tuple[str, in
 
 
 async def described_models(services: PageServices, design: Design | RevisionWorksheet) -> dict[str, CadModel]:
-    """The description of every model; models of one version share it."""
+    """Return the description of every model; models of one version share it."""
     places = {name: (model.id, model.version) for name, model in design.models.items()}
     versions = {
         (id, version): await services.run(show_model, id, version, services.catalogues, services.database)
@@ -74,7 +74,7 @@ class Upgrade(NamedTuple):
 
 
 async def upgrades_of(services: PageServices, templates: Mapping[str, Template]) -> list[Upgrade]:
-    """The steps of a design, by name with their templates, that do not use the latest version."""
+    """Return the steps of a design, by name with their templates, that do not use the latest version."""
     old = {name: template for name, template in templates.items() if not template.latest}
     newest = {id: await _newest(services, id) for id in {template.id for template in old.values()}}
     return [
@@ -92,14 +92,14 @@ ON_DESIGN = 10  # comments on the page of a design; that of a revision has all, 
 
 
 async def approval_of(services: PageServices, id: str, number: int) -> Approvals:
-    """The approval of a revision."""
+    """Return the approval of a revision."""
     return await services.run(services.approving.show, id, number)
 
 
 async def comments_of(
     services: PageServices, id: str, number: int | None, limit: int, cursor: str = ""
 ) -> CommentList:
-    """Comments on a revision, or on all of a design."""
+    """Return comments on a revision, or on all of a design."""
     if number:
         return await services.run(list_comments, id, number, services.comments, limit, cursor or None)
     return await services.run(list_all_comments, id, services.comments, limit, cursor or None)

@@ -97,7 +97,10 @@ async def design_page(
     notice: str | None = None,
     status: int = 200,
 ) -> Response:
-    """The newest revision in a form; or a form that was refused, with what was typed and what is wrong."""
+    """Return the newest revision in a form.
+
+    Or a form that was refused, with what was typed and what is wrong.
+    """
     design = await services.run(services.designs.show, id)
     revision, preview, parameters, steps, folded, parts, models, verdict, in_full = await _form(
         request, services, design, refusal
@@ -233,20 +236,20 @@ def _verdict(revision: RevisionWorksheet, design: Design, templates: Mapping[str
 def _blocks(
     revision: RevisionWorksheet, design: Design, templates: Mapping[str, Template]
 ) -> list[StepBlock]:
-    """The steps with their results and the outputs of their fold lines."""
+    """Return the steps with their results and the outputs of their fold lines."""
     computed = {name: step.outputs for name, step in design.steps.items()}
     return with_keys(steps_of(revision, templates, computed), revision, design)
 
 
 async def _before(request: Request, services: PageServices, design: Design) -> RevisionWorksheet | None:
-    """The revision before the newest; of it the page shows parameters of models alone."""
+    """Return the revision before the newest; of it the page shows parameters of models alone."""
     if design.revision == 1 or not design.models:
         return None
     return await revision_of(request, services, design.id, design.revision - 1, within=0, has_formulas=False)
 
 
 async def step_section(request: Request, services: PageServices, id: str, name: str) -> Response:
-    """The section of one step, unfolded, for the page of a long design; its script fetches it.
+    """Return the section of one step, unfolded, for the page of a long design; its script fetches it.
 
     Raises
     ------
@@ -274,7 +277,7 @@ async def _analyses(
     measured: Mapping[str, ModelMeasurements],
     models: Mapping[str, Model],
 ) -> dict[str, list[Analysis]]:
-    """The finished analyses of every model's solid."""
+    """Return the finished analyses of every model's solid."""
     return {
         name: await finished_analyses(request, services, part.build, models[name], part.analyses)
         for name, part in measured.items()
@@ -284,7 +287,7 @@ async def _analyses(
 async def _fields_of_solids(
     services: PageServices, id: str, measured: Mapping[str, ModelMeasurements]
 ) -> dict[str, list[SolidField]]:
-    """The fields that can be painted on each model; none on a model without analyses."""
+    """Return the fields that can be painted on each model; none on a model without analyses."""
     fields: dict[str, list[SolidField]] = {name: [] for name in measured}
     for name, part in measured.items():
         if part.analyses:
@@ -296,7 +299,7 @@ async def _fields_of_solids(
 
 
 async def _proposals(services: PageServices, design: Design) -> list[Proposal]:
-    """Relations for parameters of models that are not set; none for whoever may not save them."""
+    """Return relations for parameters of models that are not set; none for whoever may not save them."""
     if not (design.models and acting().may("author")):
         return []
     return await services.calculate(None, services.designs.proposals, design.id)
@@ -305,14 +308,14 @@ async def _proposals(services: PageServices, design: Design) -> list[Proposal]:
 def _loose(
     fields: list[sheet.Field], faults: Mapping[str, str], wrong: Mapping[str, tuple[str, str]]
 ) -> dict[str, str]:
-    """The faults that belong neither to a field of the worksheet nor to one of a small form."""
+    """Return the faults that belong neither to a field of the worksheet nor to one of a small form."""
     shown = {name for name, _ in wrong.values()}
     loose = sheet.loose_faults(fields, faults)
     return {name: detail for name, detail in loose.items() if name not in shown}
 
 
 def _fields(steps: list[StepBlock], models: list[ModelBlock]) -> list[sheet.Field]:
-    """Every field of the blocks."""
+    """Return every field of the blocks."""
     of_models = [field for block in models for field in block.fields]
     return of_models + [field for block in steps for field in (*block.fields, *block.options, *block.limits)]
 
@@ -324,7 +327,7 @@ async def _variants(request: Request, services: PageServices, id: str) -> Varian
 
 
 async def _job(services: PageServices, design: Design) -> Job | None:
-    """The job that regenerates the design, if one does."""
+    """Return the job that regenerates the design, if one does."""
     if design.state != "regenerating":
         return None
     jobs = (await services.run(list_jobs, services.jobs, limit=200)).items
@@ -332,7 +335,7 @@ async def _job(services: PageServices, design: Design) -> Job | None:
 
 
 async def _choices(services: PageServices) -> dict[str, list[TemplateSummary]]:
-    """The templates and models that a design may take in."""
+    """Return the templates and models that a design may take in."""
     groups = {
         "templates": (await services.run(list_templates, services.catalogues, limit=500)).items,
         "models": (await services.run(list_models, services.catalogues, limit=500)).items,

@@ -47,12 +47,12 @@ class Box:
 
     @property
     def link(self) -> str:
-        """The link to its place on the page of the design."""
+        """Return the link to its place on the page of the design."""
         return LINKS[self.kind].format(self.name)
 
     @property
     def right(self) -> float:
-        """The coordinate at which wires leave it."""
+        """Return the coordinate at which wires leave it."""
         return self.x + self.width
 
 
@@ -88,7 +88,7 @@ class _Item:
 
 
 def drawing(network: DesignNetwork) -> Drawing | None:
-    """The drawing of a design; None where nothing drives anything."""
+    """Return the drawing of a design; None where nothing drives anything."""
     if not network.relations:
         return None
     items = [*_blocks(network), *_lanes(network)]
@@ -117,7 +117,7 @@ def _count(items: Sequence[_Item]) -> int:
 
 
 def _blocks(network: DesignNetwork) -> list[_Item]:
-    """Every step and model, and the parameters that drive or are driven, in columns without an empty one."""
+    """Return steps, models and the parameters that drive or are driven, in non-empty columns."""
     used = {_block(name) for one in network.relations for name in (one.source, one.target)}
     shown = [block for block in network.blocks if block.kind != "parameter" or block.name in used]
     return [_item(block, network.relations) for block in shown]
@@ -132,7 +132,7 @@ def _item(block: NetworkBlock, relations: Sequence[NetworkRelation]) -> _Item:
 
 
 def _lanes(network: DesignNetwork) -> list[_Item]:
-    """The places of values in the columns that they pass."""
+    """Return the places of values in the columns that they pass."""
     columns = {block.name: block.column for block in network.blocks}
     passed = {
         (one.source, column): None
@@ -144,7 +144,7 @@ def _lanes(network: DesignNetwork) -> list[_Item]:
 
 
 def _wish(item: _Item, places: Mapping[str, float]) -> float:
-    """The mean height of what drives it; at the top without any."""
+    """Return the mean height of what drives it; at the top without any."""
     if item.block is None:
         return places.get(item.name, places[_block(item.name)])
     sources = [places.get(one.source, places.get(_block(one.source), 0.0)) for one in item.inputs]
@@ -193,7 +193,7 @@ def _wires(
 
 
 def _forward(points: Sequence[tuple[float, float]]) -> str:
-    """Bends between columns, straight through them."""
+    """Return the bends of a line between columns, straight through them."""
     (x, y), *rest = points
     path = f"M{x:.1f},{y:.1f}"
     for place, (to_x, to_y) in enumerate(rest):
@@ -205,7 +205,7 @@ def _forward(points: Sequence[tuple[float, float]]) -> str:
 
 
 def _backward(start: tuple[float, float], end: tuple[float, float], bottom: float) -> str:
-    """Down behind the column, back below all boxes, and up before the other column."""
+    """Return a line down behind the column, back below all boxes, and up before the other column."""
     (x, y), (to_x, to_y), out = start, end, GAP / 2
     return (
         f"M{x:.1f},{y:.1f}C{x + out:.1f},{y:.1f} {x + out:.1f},{bottom:.1f} {x:.1f},{bottom:.1f}"
@@ -222,7 +222,7 @@ def _tail(name: str) -> str:
 
 
 def _set(one: NetworkRelation) -> str:
-    """A relation as text: `inner_diameter = film.bearing_diameter`."""
+    """Return a relation as text: `inner_diameter = film.bearing_diameter`."""
     return f"{_tail(one.target)} {one.relation.strip()}".strip()
 
 

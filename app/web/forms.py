@@ -37,19 +37,19 @@ class Names(Protocol):
 
     @property
     def parameters(self) -> Collection[str]:
-        """Names of the design's own parameters."""
+        """Return names of the design's own parameters."""
 
     @property
     def steps(self) -> Collection[str]:
-        """Names of its steps."""
+        """Return names of its steps."""
 
     @property
     def models(self) -> Collection[str]:
-        """Names of its models."""
+        """Return names of its models."""
 
 
 async def fields(request: Request) -> dict[str, str]:
-    """The fields of a form that was sent.
+    """Return the fields of a form that was sent.
 
     Raises
     ------
@@ -71,7 +71,7 @@ async def forms_only(request: Request) -> None:
 
 
 def patch_of(design: Names, typed: Mapping[str, str]) -> Patch:
-    """The merge patch with what a form's user changed."""
+    """Return the merge patch with what a form's user changed."""
     patch: Patch = {}
     blocks = {*design.steps, *design.models}
     for name, text in kept(typed).items():
@@ -81,7 +81,7 @@ def patch_of(design: Names, typed: Mapping[str, str]) -> Patch:
 
 
 def kept(typed: Mapping[str, str]) -> dict[str, str]:
-    """The fields that differ from the form's first state, which its hidden field `was` holds."""
+    """Return the fields that differ from the form's first state, which its hidden field `was` holds."""
     try:
         old = _WAS.validate_json(typed.get("was", "{}"))
     except ValueError:
@@ -102,7 +102,10 @@ def _parts(name: str) -> tuple[str, str, str]:
 
 
 def texts(design: Design) -> dict[str, str]:
-    """The texts of a design, field by field: `.scale`, `film.radial_load`, `film@level`, `model.width`."""
+    """Return the texts of a design, field by field.
+
+    `.scale`, `film.radial_load`, `film@level`, `model.width`.
+    """
     blocks = {name: step.inputs for name, step in design.steps.items()}
     blocks |= {name: model.parameters for name, model in design.models.items()}
     fields = {f".{name}": text_of(value) for name, value in design.parameters.items()}
@@ -131,7 +134,7 @@ def _put(patch: Patch, design: Names, name: str, value: JsonValue) -> None:
 
 
 def inner(outer: dict[str, JsonValue], name: str) -> dict[str, JsonValue]:
-    """The object of a name; an empty one where there is none yet."""
+    """Return the object of a name; an empty one where there is none yet."""
     inner = outer.setdefault(name, {})
     assert isinstance(inner, dict)
     return inner

@@ -81,7 +81,7 @@ _OUTPUTS: list[JsonValue] = [
 
 
 def _bearings(mains: int, cylinders: int) -> dict[str, JsonValue]:
-    """A variant for every main and every big end."""
+    """Return a variant for every main and every big end."""
     big_ends: dict[str, JsonValue] = {
         f"big_end_{n}": {
             "bearing": f"{n}",
@@ -96,7 +96,7 @@ def _bearings(mains: int, cylinders: int) -> dict[str, JsonValue]:
 
 
 def _places(between: str, cylinders: Sequence[float], webs: float) -> dict[str, JsonValue]:
-    """Positions of cylinders, mains and webs: a wider bore makes the engine longer.
+    """Return positions of cylinders, mains and webs: a wider bore makes the engine longer.
 
     A throw is as long as a bore and what is `between` two bores. Cylinders stand `cylinders` [mm] off the
     middle of their throw, webs `webs` [mm] before and behind it.
@@ -118,7 +118,7 @@ def _document(
     bearings: dict[str, JsonValue],
     train: Train,
 ) -> dict[str, JsonValue]:
-    """A design: the engine, a film in one bearing with its shell, the crankshaft, torsion, life.
+    """Return a design: the engine, a film in one bearing with its shell, the crankshaft, torsion, life.
 
     A variant for each bearing.
     """
@@ -135,14 +135,14 @@ def _document(
         "steps": {
             "engine": {
                 "template": "engine",
-                "version": 2,
+                "version": 1,
                 "inputs": {**engine, **placed, "crankpin_diameter": "= pin_diameter"},
                 "outputs": _OUTPUTS,
                 "limits": {"permissible_main_load": "60 kN", "permissible_crankpin_load": "60 kN"},
             },
             "film": {
                 "template": "oil_film_cycle",
-                "version": 2,
+                "version": 1,
                 "level": "mobility",
                 "inputs": {
                     "crank_angle": "= engine.crank_angle",

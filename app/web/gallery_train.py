@@ -33,12 +33,15 @@ class Train:
     flywheel: str  # inertia
 
     def on(self, throw: int) -> Sequence[int]:
-        """The cylinders on a throw, counted from 1."""
+        """Return the cylinders on a throw, counted from 1."""
         return [self.per_throw * (throw - 1) + n + 1 for n in range(self.per_throw)]
 
 
 def parameters(train: Train) -> dict[str, JsonValue]:
-    """The parameters that both steps use: torque of cylinder 1, loads of the throws, twisting moments."""
+    """Return the parameters that both steps use.
+
+    Torque of cylinder 1, loads of the throws, twisting moments.
+    """
     last = THROWS
     torques = {f"torque_{k}": _torque(train, k) for k in range(1, last)}
     front = " + ".join(torques)
@@ -70,7 +73,7 @@ def _load(axis: str, cylinders: Sequence[int]) -> str:
 
 
 def _torque(train: Train, throw: int) -> str:
-    """Torque of the rods on a pin about the shaft, over the cycle."""
+    """Return the torque of the rods on a pin about the shaft, over the cycle."""
     cylinders = train.on(throw)
     angle = f"engine.crank_angle + engine.crankpin_angles[{cylinders[0]}]"
     x, y = _load("x", cylinders), _load("y", cylinders)
@@ -78,12 +81,14 @@ def _torque(train: Train, throw: int) -> str:
 
 
 def steps(train: Train) -> dict[str, JsonValue]:
-    """Forced torsion of the train, life of the throw beside the flywheel."""
+    """Return forced torsion of the train, life of the throw beside the flywheel."""
     return {"torsion": _torsion(train), "life": _life()}
 
 
 def analyses() -> dict[str, JsonValue]:
-    """Results of finite elements on the crankshaft: the stiffness of each throw, tensors at its fillets.
+    """Return results of finite elements on the crankshaft.
+
+    The stiffness of each throw, tensors at its fillets.
 
     The stiffness between bearings differs from `coarse` to `fine` by less than from formula to formula, so
     the cheap level serves. Stresses of `coarse` are up to a third too low.
@@ -95,7 +100,7 @@ def analyses() -> dict[str, JsonValue]:
 
 
 def _between(throw: int) -> str:
-    """Stiffness from the pin of a throw to that of the next: half of either throw, in series."""
+    """Return the stiffness from the pin of a throw to that of the next: half of either throw, in series."""
     this, following = (f"{STIFFNESS}[{n}]" for n in (throw, throw + 1))
     return f"= 2 * {this} * {following} / ({this} + {following})"
 

@@ -36,12 +36,12 @@ class Line:
 
     @property
     def effect(self) -> str:
-        """The effect of the version on the design, in words."""
+        """Return the effect of the version on the design, in words."""
         return EFFECTS[self.impact.effect]
 
     @property
     def margin(self) -> str:
-        """The margin that is lost most: `0.59 µm of thick (114 %)`."""
+        """Return the margin that is lost most: `0.59 µm of thick (114 %)`."""
         lost = self.impact.margin
         if lost is None:
             return ""
@@ -50,7 +50,7 @@ class Line:
 
     @property
     def output(self) -> str:
-        """The output that changes most: `film.minimum_film_thickness: 3.24 µm → 2.66 µm (−18 %)`."""
+        """Return the output that changes most: `film.minimum_film_thickness: 3.24 µm → 2.66 µm (−18 %)`."""
         moved = self.impact.output
         if moved is None:
             return ""
@@ -61,7 +61,7 @@ class Line:
 
     @property
     def parameters(self) -> list[str]:
-        """The CAD parameters that change: `shell.inner_diameter: 48.003 mm → 48.002 mm`."""
+        """Return the CAD parameters that change: `shell.inner_diameter: 48.003 mm → 48.002 mm`."""
         return [
             f"{_placed(one.name, one.variant)}: {_shown(one.old)} → {_shown(one.new)}"
             for one in self.impact.parameters

@@ -96,7 +96,7 @@ async def _report(request: Request, services: PageServices, id: str) -> Response
 
 
 def _values(region: ImportedRegion) -> tuple[str, str]:
-    """Both results in words: the first items of a list."""
+    """Return both results in words: the first items of a list."""
     return _written(region.mathcad, region.unit), _written(region.worksheet, region.unit)
 
 

@@ -20,7 +20,7 @@ from app.web.sheet import Field
 
 
 def limits_of(filled: Mapping[str, str]) -> dict[str, JsonValue]:
-    """The limits among the fields of a template's form that hold a text."""
+    """Return the limits among the fields of a template's form that hold a text."""
     return {name.removeprefix(LIMITS): value_of(text) for name, text in filled.items() if is_limit(name)}
 
 
@@ -30,7 +30,7 @@ def is_limit(control: str) -> bool:
 
 
 async def library(services: PageServices) -> list[LibraryTable]:
-    """Every table of the library."""
+    """Return every table of the library."""
     listed = await services.run(list_library_tables)
     return [await services.run(show_library_table, table.id) for table in listed.items]
 
@@ -43,7 +43,7 @@ def limit_fields(
     faults: Mapping[str, str],
     tables: Sequence[LibraryTable],
 ) -> list[Field]:
-    """A choice for each table that gives limits of this template, then a field for each limit.
+    """Return a choice for each table that gives limits of this template, then a field for each limit.
 
     `block` is the name of the step; empty on the page of the template, which calculates without one.
     """
@@ -60,7 +60,7 @@ def limit_fields(
 
 
 def _field(name: str, control: str, declared: Declared) -> Field:
-    """An empty field; its hint says what holds while it stays empty."""
+    """Return an empty field; its hint says what holds while it stays empty."""
     default = declared.default_formula or "not given"
     return Field(
         name=name,
@@ -77,14 +77,14 @@ def _field(name: str, control: str, declared: Declared) -> Field:
 def _rows(
     id: str | None, limits: Mapping[str, Declared], tables: Sequence[LibraryTable]
 ) -> Iterator[LibraryRow]:
-    """The rows of a table that have a value for a limit which is taken from it."""
+    """Yield the rows of a table that have a value for a limit which is taken from it."""
     taken = {name for name, limit in limits.items() if id and limit.filled_by == id}
     rows = (row for table in tables if table.id == id for row in table.rows)
     yield from (row for row in rows if not taken.isdisjoint(row.values))
 
 
 def with_rows(fields: Sequence[Field], tables: Sequence[LibraryTable]) -> list[Field]:
-    """The fields of inputs, with the rows of the library that may fill them as suggestions."""
+    """Return the fields of inputs, with the rows of the library that may fill them as suggestions."""
     filling = [dict(_filling(_tail(one.name), tables)) for one in fields]
     return [
         replace(one, suggestions=rows) if rows else one for one, rows in zip(fields, filling, strict=True)
@@ -92,7 +92,7 @@ def with_rows(fields: Sequence[Field], tables: Sequence[LibraryTable]) -> list[F
 
 
 def _tail(name: str) -> str:
-    """The name of an input without that of its step."""
+    """Return the name of an input without that of its step."""
     return Reference.parse(name).own_name
 
 

@@ -29,7 +29,10 @@ ABOUT = {"units"}
 
 
 async def model_page(request: Request, services: PageServices, id: str, version: int) -> Response:
-    """The page, with the build of what the address asks for; of the example, where it asks for nothing."""
+    """Return the page, with the build of what the address asks for.
+
+    Of the example, where it asks for nothing.
+    """
     model = await services.run(show_model, id, version, services.catalogues, services.database)
     typed = {n: text for n, text in request.query_params.items() if n not in ABOUT and text.strip()}
     cells = {name: value_of(text) for name, text in typed.items()} if typed else model.example
@@ -58,7 +61,10 @@ async def finished_analyses(
     model: Model,
     declared: Mapping[str, ModelAnalysis] | None = None,
 ) -> list[Analysis]:
-    """The analyses of a build that have results by now; those of a design under the load that it gives."""
+    """Return the analyses of a build that have results by now.
+
+    Those of a design under the load that it gives.
+    """
     if not model.analyses or build is None:
         return []
     units = units_of(request)
@@ -75,7 +81,10 @@ async def finished_analyses(
 async def _built(
     services: PageServices, model: Model, cells: Mapping[str, Given]
 ) -> tuple[Build | None, dict[str, str]]:
-    """The build with its files, or what is wrong; while it is being built, neither its files nor measures."""
+    """Return the build with its files, or what is wrong.
+
+    While it is being built, neither its files nor measures.
+    """
     try:
         key = await _begun(services, model, cells)
     except Refused as refused:

@@ -31,7 +31,7 @@ class Part:
 
     @property
     def text(self) -> str:
-        """The content of a field."""
+        """Return the content of a field."""
         return self.content.decode(errors="replace")
 
 
@@ -45,12 +45,12 @@ async def forms_with_files(request: Request) -> None:
 
 
 async def parts_of(request: Request) -> dict[str, Part]:
-    """The parts of a form that was sent with a file; of one without files none."""
+    """Return the parts of a form that was sent with a file; of one without files none."""
     return read_parts(await request.body(), request.headers.get("content-type", ""))
 
 
 def read_parts(body: bytes, content_type: str) -> dict[str, Part]:
-    """The parts of a form by name; linear in the length of the body. What is not part is left out."""
+    """Return the parts of a form by name; linear in the length of the body. What is not part is left out."""
     boundary = _BOUNDARY.search(content_type)
     if boundary is None:
         return {}

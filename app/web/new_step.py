@@ -40,11 +40,11 @@ class NewStep:
 
     @property
     def is_filled(self) -> bool:
-        """Whether anything was typed into its fields."""
+        """Return whether anything was typed into its fields."""
         return any([*self._tails(".").values(), *self._limits().values()])
 
     def plain(self) -> dict[str, JsonValue]:
-        """The step as the interface takes it."""
+        """Return the step as the interface takes it."""
         step: dict[str, JsonValue] = {"template": self.template.id, "version": self.template.version}
         step["inputs"] = {tail: value_of(text) for tail, text in self._tails(".").items() if text}
         if limits := {tail: value_of(text) for tail, text in self._limits().items() if text}:
@@ -53,24 +53,24 @@ class NewStep:
         return step | {option: option_of(option, text) for option, text in options.items() if text}
 
     def fields(self, faults: Mapping[str, str]) -> list[sheet.Field]:
-        """The fields of its inputs, empty or as typed."""
+        """Return the fields of its inputs, empty or as typed."""
         fields = sheet.of_block(self.template.inputs, self.name, {}, {}, self.typed, faults)
         return with_rows(fields, self.tables)
 
     def limits(self, faults: Mapping[str, str]) -> list[sheet.Field]:
-        """The fields of the limits of its criteria."""
+        """Return the fields of the limits of its criteria."""
         return limit_fields(self.template, self.name, {}, self.typed, faults, self.tables)
 
     def options(self, faults: Mapping[str, str]) -> list[sheet.Field]:
-        """The fields that choose how exact it is."""
+        """Return the fields that choose how exact it is."""
         return sheet.of_options(self.template, self.name, {}, self.typed, faults)
 
     def _limits(self) -> dict[str, str]:
-        """The typed texts, by the name of the limit."""
+        """Return the typed texts, by the name of the limit."""
         return self._tails(f"@{LIMITS}")
 
     def _tails(self, sign: str) -> dict[str, str]:
-        """The typed texts, by the rest of the control's name behind a sign."""
+        """Return the typed texts, by the rest of the control's name behind a sign."""
         begins = f"{self.name}{sign}"
         return {
             key.removeprefix(begins): text.strip()
@@ -80,7 +80,7 @@ class NewStep:
 
 
 async def new_step(services: PageServices, typed: Mapping[str, str]) -> NewStep:
-    """The step that a form asks for; named as its template, if it has no name."""
+    """Return the step that a form asks for; named as its template, if it has no name."""
     id, version = versioned(typed.get("template", ""))
     number = services.read(Number, version)
     template = await services.run(show_template, id, number, services.catalogues)
@@ -88,18 +88,18 @@ async def new_step(services: PageServices, typed: Mapping[str, str]) -> NewStep:
 
 
 def versioned(chosen: str) -> tuple[str, int | str]:
-    """`oil_film/2` as the id and version that the interface takes."""
+    """Return `oil_film/2` as the id and version that the interface takes."""
     id, _, version = chosen.partition("/")
     return id, int(version) if _NUMBER.fullmatch(version) else "latest"
 
 
 def beside(typed: Mapping[str, str]) -> dict[str, str]:
-    """The texts of a form beside the values of the step."""
+    """Return the texts of a form beside the values of the step."""
     return {name: typed[name] for name in FIELDS if typed.get(name)}
 
 
 def address(base: str, typed: Mapping[str, str]) -> str:
-    """The address of the form."""
+    """Return the address of the form."""
     return f"{base}?{urlencode(beside(typed))}"
 
 
@@ -111,7 +111,7 @@ def step_page(
     refusal: Refusal | None = None,
     notice: str | None = None,
 ) -> Response:
-    """The form, empty; or refused, with what was typed and what is wrong."""
+    """Return the form, empty; or refused, with what was typed and what is wrong."""
     faults = refusal.faults if refusal else {}
     fields, options, limits = step.fields(faults), step.options(faults), step.limits(faults)
     return show(

@@ -27,7 +27,7 @@ class PlaceOption:
 
 
 def varied(design: Design, network: DesignNetwork) -> list[PlaceOption]:
-    """Parameters and inputs that hold one quantity of their own; a relation follows from elsewhere."""
+    """Return parameters and inputs that hold one quantity of their own; a relation follows from elsewhere."""
     typed = dict(_typed(design))
     return [
         PlaceOption(name.name, name.words, name.unit, typed[name.name])
@@ -39,7 +39,10 @@ def varied(design: Design, network: DesignNetwork) -> list[PlaceOption]:
 def set_aside(
     design: Design, network: DesignNetwork, own: list[PlaceOption], values: Mapping[str, object]
 ) -> list[PlaceOption]:
-    """Parameters and inputs that a relation sets, which a study may set aside; `own` are the others."""
+    """Return parameters and inputs that a relation sets, which a study may set aside.
+
+    `own` are the others.
+    """
     typed, single = dict(_typed(design)), {place.name for place in own}
     return [
         PlaceOption(
@@ -53,7 +56,7 @@ def set_aside(
 
 
 def _instead(network: DesignNetwork, target: str, single: set[str]) -> tuple[str, ...]:
-    """The values on which a relation depends, also through other relations."""
+    """Return the values on which a relation depends, also through other relations."""
     seen, left = dict[str, None](), [target]
     while left:
         name = left.pop(0)
@@ -64,7 +67,7 @@ def _instead(network: DesignNetwork, target: str, single: set[str]) -> tuple[str
 
 
 def present(revision: RevisionWorksheet, preview: Preview) -> dict[str, object]:
-    """The values of parameters, of inputs of steps and of parameters of models, as calculated."""
+    """Return the values of parameters, of inputs of steps and of parameters of models, as calculated."""
     values: dict[str, object] = {name: _plain(value) for name, value in (preview.parameters or {}).items()}
     for block, step in revision.steps.items():
         values |= {f"{block}.{name}": _plain(value) for name, value in step.inputs.items()}
@@ -74,13 +77,13 @@ def present(revision: RevisionWorksheet, preview: Preview) -> dict[str, object]:
 
 
 def _plain(value: object) -> object:
-    """A quantity as it is typed: with its number and unit only."""
+    """Return a quantity as it is typed: with its number and unit only."""
     number, unit = getattr(value, "value", value), getattr(value, "unit", None)
     return {"value": number, "unit": unit} if unit else number
 
 
 def related(design: Design) -> list[str]:
-    """Parameters and inputs of steps that a relation sets, each with its relation."""
+    """Return parameters and inputs of steps that a relation sets, each with its relation."""
     return [
         f"{name} {text}"
         for name, text in _typed(design)
@@ -89,18 +92,18 @@ def related(design: Design) -> list[str]:
 
 
 def outputs(network: DesignNetwork) -> list[NetworkName]:
-    """The outputs of all steps."""
+    """Return the outputs of all steps."""
     return [name for name in network.names if name.role == "output"]
 
 
 def suggested(place: PlaceOption) -> tuple[str, str]:
-    """Bounds for a place: half and twice its value; nothing where that says little."""
+    """Return bounds for a place: half and twice its value; nothing where that says little."""
     low, high = (times(place.value, factor) for factor in (0.5, 2.0))
     return low, high
 
 
 def times(text: str, factor: float) -> str:
-    """A quantity above zero as typed, multiplied; nothing of another text, and of a temperature."""
+    """Return a quantity above zero as typed, multiplied; nothing of another text, and of a temperature."""
     number, _, symbol = text.partition(" ")
     try:
         value = float(number)
@@ -111,7 +114,7 @@ def times(text: str, factor: float) -> str:
 
 
 def _typed(design: Design) -> Iterator[tuple[str, str]]:
-    """Every value as a text, by the name that relations use."""
+    """Yield every value as a text, by the name that relations use."""
     yield from ((name, text_of(value)) for name, value in design.parameters.items())
     blocks: dict[str, Mapping[str, object]] = {name: step.inputs for name, step in design.steps.items()}
     blocks |= {name: model.parameters for name, model in design.models.items()}
@@ -126,14 +129,17 @@ def _is_single(text: str) -> bool:
 
 
 def names_json(network: DesignNetwork, values: Mapping[str, str]) -> str:
-    """Every name with its role, words, unit, dimension and value, for `static/names.js`."""
+    """Return every name with its role, words, unit, dimension and value, for `static/names.js`."""
     return json.dumps([{**name.plain(), "value": values.get(name.name, "")} for name in network.names])
 
 
 def values_of(
     revision: RevisionWorksheet, preview: Preview | None, measured: Mapping[str, ModelMeasurements]
 ) -> dict[str, str]:
-    """The values of parameters, inputs, outputs and measures as texts; no text where none is calculated."""
+    """Return the values of parameters, inputs, outputs and measures as texts.
+
+    No text where none is calculated.
+    """
     quantities: dict[str, object] = dict((preview.parameters if preview else None) or {})
     for block, step in revision.steps.items():
         quantities |= {f"{block}.{name}": value for name, value in {**step.inputs, **step.outputs}.items()}
@@ -145,7 +151,7 @@ def values_of(
 
 
 def _measures(part: ModelMeasurements) -> dict[str, object]:
-    """The measures of a solid, by their names in relations, as far as the page has them."""
+    """Return the measures of a solid, by their names in relations, as far as the page has them."""
     kinds = {
         f"{kind}.{name}": output
         for kind, analysis in part.analyses.items()

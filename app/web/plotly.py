@@ -20,19 +20,19 @@ ROOM_OF_MAPS = re.compile(rb'getElementById\("([0-9a-f]{64})"\)')
 
 @cache
 def script() -> bytes:
-    """The browser file, compressed by gzip; equal bytes for equal versions."""
+    """Return the browser file, compressed by gzip; equal bytes for equal versions."""
     return gzip.compress(_plain(), 9, mtime=0)
 
 
 @cache
 def tag() -> str:
-    """A text that differs between versions of the file."""
+    """Return a text that differs between versions of the file."""
     return f'"plotly-{version("plotly")}"'
 
 
 @cache
 def ids_of_styles() -> tuple[str, ...]:
-    """The ids under which the file looks for styles of maps before it adds them."""
+    """Return the ids under which the file looks for styles of maps before it adds them."""
     return tuple(sorted({id.decode() for id in ROOM_OF_MAPS.findall(_plain())}))
 
 

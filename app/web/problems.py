@@ -31,7 +31,7 @@ def install(app: FastAPI) -> None:
 
 
 def _page_or(others: Handler) -> Handler:
-    """A handler that answers browsers with a page, and leaves the rest to another."""
+    """Return a handler that answers browsers with a page, and leaves the rest to another."""
 
     async def handle(request: Request, error: Exception) -> Response:
         if not _is_page(request):
@@ -55,7 +55,10 @@ def _is_page(request: Request) -> bool:
 
 
 def _place(request: Request) -> str:
-    """The page to continue with after signing in: the one requested, or the one whose form was sent."""
+    """Return the page to continue with after signing in.
+
+    The one requested, or the one whose form was sent.
+    """
     place = request.url
     if request.method not in ("GET", "HEAD"):
         place = URL(request.headers.get("referer", "/")[:_LONGEST])
@@ -63,7 +66,7 @@ def _place(request: Request) -> str:
 
 
 async def _refused(request: Request, error: Exception) -> Response:
-    """The page of what a service refused."""
+    """Return the page of what a service refused."""
     assert isinstance(error, Refused)
     if not _is_page(request):
         return JSONResponse(

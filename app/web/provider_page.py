@@ -67,5 +67,5 @@ async def come_back(
 
 
 def _address(request: Request) -> str:
-    """The address of the way back, under the name by which the browser knows the service."""
+    """Return the address of the way back, under the name by which the browser knows the service."""
     return f"{request.url.scheme}://{request.url.netloc}{PLACE}/back"

@@ -33,13 +33,13 @@ jinja.globals["axis_of"] = axis_of
 
 
 def units_of(request: Request) -> System:
-    """The system of units asked for: by the address, else as last time, else SI."""
+    """Return the system of units asked for: by the address, else as last time, else SI."""
     asked = request.query_params.get("units") or request.cookies.get("units")
     return next((system for system in get_args(System) if system == asked), "si")
 
 
 def show(request: Request, name: str, status: int = 200, **context: object) -> Response:
-    """A page."""
+    """Return a page."""
     units = units_of(request)
     page = jinja.get_template(name)
     html = page.render(
@@ -59,17 +59,17 @@ def show(request: Request, name: str, status: int = 200, **context: object) -> R
 
 
 def _scheme(request: Request) -> str:
-    """The colours that were chosen; empty for those of the system."""
+    """Return the colours that were chosen; empty for those of the system."""
     kept = request.cookies.get("scheme")
     return next((scheme for scheme in SCHEMES if scheme == kept), "")
 
 
 def _beside_units(request: Request) -> str:
-    """The query without the units, to be followed by them."""
+    """Return the query without the units, to be followed by them."""
     rest = [(name, text) for name, text in request.query_params.multi_items() if name != "units"]
     return f"{urlencode(rest)}&" if rest else ""
 
 
 def go(path: str) -> Response:
-    """To another page, after a form did its work."""
+    """Redirect to another page, after a form did its work."""
     return RedirectResponse(path, 303)

@@ -59,7 +59,7 @@ async def revision_page(
 
 
 def _steps_of_revision(revision: RevisionWorksheet) -> dict[str, tuple[str, int]]:
-    """Id and version of the template of every step."""
+    """Return the id and version of the template of every step."""
     return {name: (step.template.id, step.template.version) for name, step in revision.steps.items()}
 
 
@@ -72,7 +72,7 @@ class Difference(NamedTuple):
 
 
 def differences(old: Revision, new: Revision) -> list[Difference]:
-    """Every parameter, input, output and model parameter that differs, in the order of the newer revision."""
+    """Return all differing parameters, inputs, outputs and model parameters, ordered as in the newer."""
     before, after = dict(_values(old)), dict(_values(new))
     names = dict.fromkeys([*after, *before])
     return [
@@ -93,7 +93,7 @@ def _values(revision: Revision) -> Iterator[tuple[str, object]]:
 
 
 def _comparable(value: object) -> object:
-    """A quantity as plain data, without where it came from; a value as typed as it is."""
+    """Return a quantity as plain data, without where it came from; a value as typed as it is."""
     if not isinstance(value, Answer):
         return value
     return {name: part for name, part in value.plain().items() if name != "from"}
@@ -110,7 +110,7 @@ def is_unusable(refused: Refused) -> bool:
 async def stored_page(
     request: Request, services: PageServices, id: str, number: int | None, reason: str
 ) -> Response:
-    """One revision, the newest if none is named, as it is stored."""
+    """Return one revision, the newest if none is named, as it is stored."""
     design = await services.run(services.designs.show, id)
     shown = number or design.revision
     revision = await services.run(show_revision, id, shown, services.database)

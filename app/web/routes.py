@@ -279,7 +279,7 @@ async def plotly_script(request: Request) -> Response:
 async def _or_stored(
     request: Request, services: PageServices, id: str, number: int | None, page: Awaitable[Response]
 ) -> Response:
-    """A page of a design; what is stored of it, if one of its templates is quarantined."""
+    """Return a page of a design; what is stored of it, if one of its templates is quarantined."""
     try:
         return await page
     except Refused as refused:
@@ -289,7 +289,7 @@ async def _or_stored(
 
 
 async def _picture(services: PageServices, id: str) -> tuple[str, str | None]:
-    """A design's id, and the picture of the first of its parts, if it has one by now."""
+    """Return a design's id, and the picture of the first of its parts, if it has one by now."""
     parts = await services.run(show_measurements, id, services.database)
     return id, next((f"/api/v1/designs/{id}/models/{name}/model.png" for name in parts), None)
 

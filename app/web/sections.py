@@ -29,13 +29,13 @@ MOST_IN_FULL = 12
 
 
 def asked_step(request: Request, steps: Collection[str]) -> str | None:
-    """The step that the address names, if the design has it."""
+    """Return the step that the address names, if the design has it."""
     name = request.query_params.get("step", "")
     return name if name in steps else None
 
 
 def steps_in_full(request: Request, steps: Collection[str], refusal: Refusal, verdict: Banner) -> set[str]:
-    """The steps that a long design's page has in full: the one asked for, those of a refused form."""
+    """Return the steps that a long design's page has in full: the one asked for, those of a refused form."""
     first = asked_step(request, steps) or opened(list(steps), verdict)
     typed = {name.partition("@" if "@" in name else ".")[0] for name in (*refusal.typed, *refusal.faults)}
     return {name for name in steps if name == first or name in typed}
@@ -49,7 +49,10 @@ def sections(
     in_full: Collection[str] | None = None,
     folded: Mapping[str, Markup] = MappingProxyType({}),
 ) -> Iterator[Markup]:
-    """The section of every step; that of `opened` is unfolded. With `in_full` all others are `folded`."""
+    """Yield the section of every step.
+
+    That of `opened` is unfolded. With `in_full` all others are `folded`.
+    """
     worst = verdict.worst_by_step()
     for step in steps:
         if in_full is not None and step.name not in in_full:
@@ -60,18 +63,18 @@ def sections(
 
 
 def fold_lines(steps: Sequence[StepBlock], verdict: Banner, base: str) -> dict[str, Markup]:
-    """The fold line of every step, with the address of the rest below that of the design, `base`."""
+    """Return the fold line of every step, with the address of the rest below that of the design, `base`."""
     worst = verdict.worst_by_step()
     return {step.name: _fold_line(step, worst.get(step.name), base) for step in steps}
 
 
 def banner_of(verdict: Banner, design: str) -> Markup:
-    """The verdict on top of the page of a design: a long one has hundreds of criteria."""
+    """Return the verdict on top of the page of a design: a long one has hundreds of criteria."""
     return _macro("verdict.html", "banner", verdict, design)
 
 
 def variants_start(design: Design, variants: VariantsTable) -> Markup:
-    """The table in which the first variants of a design are typed: it has a column for each input."""
+    """Return the table in which the first variants of a design are typed: it has a column for each input."""
     return _macro("variants.html", "start", design, variants)
 
 
@@ -88,7 +91,7 @@ def _section(step: StepBlock, worst: Line | None, is_open: bool, is_only: bool) 
 
 
 def _written(macro: str, shown: object, *arguments: object) -> Markup:
-    """The output of a macro of steps, kept by its name and all that it shows."""
+    """Return the output of a macro of steps, kept by its name and all that it shows."""
     key = sha256(repr((macro, shown)).encode("utf-8", "surrogatepass")).digest()
     html = _kept.get(key)
     if html is None:
@@ -103,7 +106,7 @@ def _macro(page: str, name: str, *arguments: object) -> Markup:
 
 
 def _shown(step: StepBlock, worst: Line | None, is_open: bool, is_only: bool) -> tuple[object, ...]:
-    """All that a section shows; the code of the template stands for what it declares."""
+    """Return all that a section shows; the code of the template stands for what it declares."""
     template = step.template
     return (
         step.name,

@@ -34,7 +34,7 @@ class SensitivityLine:
 
 
 def sensitivity_lines(items: Sequence[Sensitivity]) -> list[SensitivityLine]:
-    """All lines; the longest bar is that of the largest elasticity."""
+    """Return all lines; the longest bar is that of the largest elasticity."""
     largest = max((abs(item.elasticity or 0.0) for item in items), default=0.0)
     return [_line(item, largest) for item in items]
 
@@ -58,5 +58,5 @@ def _bar(elasticity: float, largest: float) -> Bar:
 
 
 def _digits(value: float) -> float:
-    """Four digits: differences give no more."""
+    """Return four digits: differences give no more."""
     return float(f"{value:.4g}")

@@ -43,7 +43,7 @@ ERRORS = tuple(TABLE)
 
 
 def with_related(detail: str, also: list[str]) -> str:
-    """A fault's sentence and the other inputs that it concerns; `static/api.js` writes the same."""
+    """Return a fault's sentence and the other inputs that it concerns; `static/api.js` writes the same."""
     return f"{detail}. See also {', '.join(also)}" if also else detail
 
 
@@ -56,18 +56,18 @@ class Refused(Exception):
 
     @classmethod
     def by(cls, error: Exception) -> Refused:
-        """The refusal that an error of a service is."""
+        """Return the refusal that an error of a service is."""
         return cls(Problem.model_validate_json(bytes(refusal(error).body)))
 
     @classmethod
     def because(cls, status: int, detail: str) -> Refused:
-        """A refusal of the pages themselves."""
+        """Return a refusal of the pages themselves."""
         title = HTTPStatus(status).phrase.capitalize()
         return cls(Problem(type="about:blank", title=title, status=status, detail=detail))
 
     @property
     def faults(self) -> dict[str, str]:
-        """The faults by the name of the input, with the other inputs that they concern."""
+        """Return the faults by the name of the input, with the other inputs that they concern."""
         return {fault.name: with_related(fault.detail, fault.also) for fault in self.problem.errors}
 
 
@@ -100,7 +100,7 @@ class PageServices(Services):
 
     @property
     def once(self) -> Once:
-        """A change by a form, which names no key: every form is a new one."""
+        """Return a change by a form, which names no key: every form is a new one."""
         return Once(None, "", "", self.client)
 
     async def run(
@@ -228,7 +228,10 @@ class PageServices(Services):
 
 
 async def get_services(request: Request, client: TheClient) -> PageServices:
-    """The services for this request; files of a team's catalogue are read first if they have changed."""
+    """Return the services for this request.
+
+    Files of a team's catalogue are read first if they have changed.
+    """
     services = services_of(request)
     await services.catalogues.refresh()
     return PageServices(**vars(services), request=request, client=client)

@@ -37,13 +37,13 @@ def keep_session(request: Request, response: Response) -> None:
 
 
 def who_signed_in(request: Request) -> str:
-    """The name of whoever has signed in, or whose key a request carries; empty if nobody has."""
+    """Return the name of whoever has signed in or sent a key; empty if nobody has."""
     who = request.scope.get(PRINCIPAL, ANONYMOUS)
     return "" if who is ANONYMOUS else str(who.name)
 
 
 def with_form_token(html: str, request: Request) -> str:
-    """A page of which every form that changes something carries the token of the session, if there is one."""
+    """Return a page whose forms carry the token of the session, if there is one."""
     token = request.scope.get(FORM_TOKEN)
     return _FORM.sub(rf'\g<0><input type="hidden" name="{FIELD}" value="{token}">', html) if token else html
 

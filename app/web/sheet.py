@@ -36,13 +36,16 @@ class Field:
 
     @property
     def id(self) -> str:
-        """The control's name as an id of HTML, unlike those of the page's parts: `-length`, `film-length`."""
+        """Return the control's name as an id of HTML, unlike those of the page's parts.
+
+        `-length`, `film-length`.
+        """
         bare = not {".", "@"} & set(self.control)
         return "-" * bare + self.control.replace(".", "-")
 
     @property
     def main(self) -> bool:
-        """Whether it is shown at once: it is needed, or was set, or is wrong."""
+        """Return whether it is shown at once: it is needed, or was set, or is wrong."""
         return self.needed or bool(self.text) or self.error is not None
 
 
@@ -54,7 +57,7 @@ def of_block(
     typed: Mapping[str, str],
     faults: Mapping[str, str],
 ) -> list[Field]:
-    """The fields of a step's inputs, or a model's parameters, in the order they are declared.
+    """Return the fields of a step's inputs, or a model's parameters, in the order they are declared.
 
     `values` are the quantities used; `typed` what a form that was refused holds instead of the cells.
     """
@@ -74,7 +77,7 @@ def of_parameters(
     typed: Mapping[str, str],
     faults: Mapping[str, str],
 ) -> list[Field]:
-    """The fields of a design's own parameters."""
+    """Return the fields of a design's own parameters."""
     return [
         Field(
             name=name,
@@ -96,7 +99,7 @@ def of_options(
     typed: Mapping[str, str],
     faults: Mapping[str, str],
 ) -> list[Field]:
-    """The fields that choose how exact a step is; none where its template has one level only."""
+    """Return the fields that choose how exact a step is; none where its template has one level only."""
     if not template.levels or template.default_level is None:
         return []
     level, tolerance = OPTIONS
@@ -117,7 +120,7 @@ def of_options(
 
 
 def _name_of_fault(option: str, faults: Mapping[str, str]) -> str:
-    """The name of an option's fault: of its place, `steps.film.tolerance`, or of its value."""
+    """Return the name of an option's fault: of its place, `steps.film.tolerance`, or of its value."""
     names = (n for n in faults if n in (option, f"steps.{option}") or n.startswith(f"{option}."))
     return next(names, option)
 
@@ -140,7 +143,7 @@ def _field(name: str, declared: Declared, text: str, value: object, error: str |
 
 
 def _hint(declared: Declared) -> str:
-    """The hint of a field: what an empty one stands for, or how a value is written."""
+    """Return the hint of a field: what an empty one stands for, or how a value is written."""
     if declared.has_default:
         return numbers.in_line(declared.default)
     if declared.default_formula is not None:
@@ -150,6 +153,6 @@ def _hint(declared: Declared) -> str:
 
 
 def loose_faults(fields: list[Field], faults: Mapping[str, str]) -> dict[str, str]:
-    """The faults that belong to no field; these messages stand above the form."""
+    """Return the faults that belong to no field; these messages stand above the form."""
     shown = {field.name for field in fields}
     return {name: detail for name, detail in faults.items() if name not in shown}

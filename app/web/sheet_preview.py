@@ -40,14 +40,14 @@ class Tried:
 
 
 async def offered(services: PageServices, sheet: Sheet) -> list[DesignSummary]:
-    """Designs in which a draft may be tried: those that use the worksheet before all others."""
+    """Return designs in which a draft may be tried: those that use the worksheet before all others."""
     using = await services.run(list_designs, services.database, limit=OFFERED, template=sheet.id)
     rest = await services.run(list_designs, services.database, limit=OFFERED)
     return list({item.id: item for item in (*using.items, *rest.items)}.values())[:OFFERED]
 
 
 async def tried_in(services: PageServices, id: str, sheet: Sheet, checked: SheetCheck) -> Tried:
-    """The draft in place of the version that a design uses; as one more step, where it uses none."""
+    """Return the draft in place of the version that a design uses; as one more step, where it uses none."""
     name, is_added, step = sheet.id, True, dict[str, JsonValue]()
     try:
         design = await services.run(services.designs.show, id)
@@ -64,7 +64,7 @@ async def tried_in(services: PageServices, id: str, sheet: Sheet, checked: Sheet
 
 
 def _place(design: Design, sheet: Sheet) -> tuple[str, bool]:
-    """The step that holds the worksheet, or a new name for one; and whether it is new."""
+    """Return the step that holds the worksheet, or a new name for one; and whether it is new."""
     using = next((name for name, step in design.steps.items() if step.template == sheet.id), None)
     if using is not None:
         return using, False
@@ -88,7 +88,7 @@ def _step(sheet: Sheet, checked: SheetCheck, *, is_added: bool) -> dict[str, Jso
 
 
 def _changes(preview: Preview) -> Iterator[Changed]:
-    """Outputs and model parameters that differ."""
+    """Yield outputs and model parameters that differ."""
     sides: dict[str, tuple[object, object]] = {n: (c.old, c.new) for n, c in preview.outputs.items()}
     sides |= {name: (change.old, change.new) for name, change in preview.model_parameters.items()}
     for name, (old, new) in sides.items():

@@ -52,7 +52,7 @@ async def sign_in(request: Request, identity: TheIdentity) -> Response:
 
 
 def begun(request: Request, token: str, back: str) -> Response:
-    """On to a page, signed in."""
+    """Redirect to a page, signed in."""
     response = go(own(back))
     keep_signed_in(request, response, token, services_of(request).settings.session_hours)
     return response
@@ -106,10 +106,10 @@ def _page(request: Request, back: str, *, status: int = 200, wrong: str = "") ->
 
 
 def sent(request: Request) -> str:
-    """The cookie of the session that a browser has sent, whether or not there is such a session."""
+    """Return the cookie of the session that a browser has sent, whether or not there is such a session."""
     return request.cookies.get(SIGN_IN, "")[:LONGEST]
 
 
 def own(back: str) -> str:
-    """An address of this service; the start in place of any other."""
+    """Return an address of this service; the start in place of any other."""
     return back if len(back) <= 2000 and _BACK.fullmatch(back) else "/"

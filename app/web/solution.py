@@ -32,7 +32,7 @@ class ShownRoot:
 
     @classmethod
     def of(cls, root: Root) -> ShownRoot:
-        """A crossing of the target, or an extremum that touches it."""
+        """Return a crossing of the target, or an extremum that touches it."""
         return cls(
             text=f"{root.value!r} {root.unit}" if root.unit != "1" else repr(root.value),
             shown=numbers.in_line(root),
@@ -55,11 +55,11 @@ class Drawing:
 
     @property
     def level(self) -> str:
-        """The level of all points, in words."""
+        """Return the level of all points, in words."""
         return (self.curve.level or "").replace("_", " ")
 
     def svg(self) -> str:
-        """The drawing as SVG."""
+        """Return the drawing as SVG."""
         curve = self.curve
         x = [float(value) for value in curve.x.value]
         y = [None if value is None else float(value) for value in _list(curve.y.value)]
@@ -75,7 +75,7 @@ class Drawing:
 
 
 def _jumps(jumps: Sequence[Jump]) -> list[Series]:
-    """The places where the output jumps across the target, as a dashed line from one side to the other."""
+    """Return the places where the output jumps across the target, as dashed lines."""
     if not jumps:
         return []
     across: list[float | None] = []
@@ -101,7 +101,7 @@ class Reply(Generic[Kind]):
 
     @property
     def is_out_of_reach(self) -> bool:
-        """Whether no value between the bounds gives the target."""
+        """Return whether no value between the bounds gives the target."""
         return self.refusal is not None and (self.refusal.problem.type or "").endswith("/unreachable")
 
 

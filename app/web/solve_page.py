@@ -46,17 +46,17 @@ class Asked:
 
     @classmethod
     def of(cls, request: Request) -> Asked:
-        """The question in the address."""
+        """Return the question in the address."""
         return cls({name: request.query_params.get(name, "").strip()[:200] for name in FIELDS})
 
     @property
     def is_whole(self) -> bool:
-        """Whether everything is given that an answer needs."""
+        """Return whether everything is given that an answer needs."""
         is_paired = bool(self.typed["other"]) == bool(self.typed["other_value"])
         return is_paired and all(self.typed[name] for name in FIELDS if name not in OPTIONAL)
 
     def body(self) -> dict[str, object]:
-        """The question as the interface takes it."""
+        """Return the question as the interface takes it."""
         typed = self.typed
         body: dict[str, object] = {
             "unknown": typed["unknown"],
@@ -68,18 +68,18 @@ class Asked:
         return body | ({"tolerance": _number(typed["tolerance"])} if typed["tolerance"] else {})
 
     def wider(self) -> Wider | None:
-        """The same question between bounds farther apart, if they can be multiplied."""
+        """Return the same question between bounds farther apart, if they can be multiplied."""
         low, high = times(self.typed["low"], 1 / WIDER), times(self.typed["high"], WIDER)
         query = urlencode({**self.typed, "low": low, "high": high})
         return Wider(low, high, query) if low and high else None
 
     def saved_beside(self) -> tuple[str, str] | None:
-        """The field of the design's form that takes the other value, and what it takes."""
+        """Return the field of the design's form that takes the other value, and what it takes."""
         return (_control(self.typed["other"]), self.typed["other_value"]) if self.typed["other"] else None
 
 
 async def solve_page(request: Request, services: PageServices, id: str) -> Response:
-    """The form, and the answer once the form is filled in."""
+    """Return the form, and the answer once the form is filled in."""
     design = await services.run(services.designs.show, id)
     network = await services.run(services.designs.network, id)
     places = varied(design, network)
@@ -113,7 +113,7 @@ async def solve_page(request: Request, services: PageServices, id: str) -> Respo
 async def _solved(
     request: Request, services: PageServices, id: str, question: Asked
 ) -> Answered[DesignSolution]:
-    """The solution, or the job that calculates it where the page does not wait so long."""
+    """Return the solution, or the job that calculates it where the page does not wait so long."""
     body = services.read(SolveDesignIn, question.body())
     wanted = questions.Asked(
         id, body.model_dump_json(exclude_unset=True, by_alias=True), units=units_of(request)
@@ -123,14 +123,14 @@ async def _solved(
 
 
 def _drawing(solution: DesignSolution) -> Drawing:
-    """The curve of an answer, with what gives the target."""
+    """Return the curve of an answer, with what gives the target."""
     target = solution.target
     roots = [*solution.roots, *solution.touching]
     return Drawing(solution.unknown, target.name, target.value, solution.curve, roots, solution.jumps)
 
 
 def _with_bounds(asked: Asked, places: list[PlaceOption]) -> Asked:
-    """Half and twice the present value as bounds, where a value was chosen and no bound is given."""
+    """Return half and twice the present value as bounds, where a value was chosen and no bound is given."""
     chosen = next((place for place in places if place.name == asked.typed["unknown"]), None)
     if chosen is None or asked.typed["low"] or asked.typed["high"]:
         return asked
@@ -139,7 +139,7 @@ def _with_bounds(asked: Asked, places: list[PlaceOption]) -> Asked:
 
 
 def _number(text: str) -> float | str:
-    """A number as typed; the interface says what is wrong with a text that is none."""
+    """Return a number as typed; the interface says what is wrong with a text that is none."""
     try:
         return float(text)
     except ValueError:
@@ -151,7 +151,7 @@ COUNTED = {"met": "met", "not_checked": "not checked"}
 
 
 def _counted(root: DesignRoot) -> str:
-    """A sentence on how many of the other criteria are met, and how many not checked."""
+    """Return a sentence on how many of the other criteria are met, and how many not checked."""
     counts = Counter[str](root.verdicts.values())
     return ", ".join(f"{counts[word]} {words}" for word, words in COUNTED.items() if counts[word])
 
@@ -167,12 +167,12 @@ class SavedRoot(ShownRoot):
 
 
 def _control(name: str) -> str:
-    """The field of the design's form for a place."""
+    """Return the field of the design's form for a place."""
     return name if "." in name else f".{name}"
 
 
 def _saved(design: Design, solution: DesignSolution) -> list[SavedRoot]:
-    """Every solution, with what saves it as a revision; none of several is preferred."""
+    """Return every solution, with what saves it as a revision; none of several is preferred."""
     control = _control(solution.unknown)
     target = f"{solution.target.name} = {numbers.plain(solution.target.value)} {solution.target.unit}"
     return [

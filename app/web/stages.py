@@ -22,7 +22,7 @@ class Stage:
 
     @property
     def is_next(self) -> bool:
-        """Whether it can be done now."""
+        """Return whether it can be done now."""
         return not self.is_done and not self.missing
 
 
@@ -56,7 +56,7 @@ def stages(sheet: Sheet) -> list[Stage]:
 
 
 def _faults(sheet: Sheet) -> str:
-    """A sentence on the faults to correct before a test."""
+    """Return a sentence on the faults to correct before a test."""
     count = len(sheet.faults)
     if not count:
         return ""
@@ -64,7 +64,7 @@ def _faults(sheet: Sheet) -> str:
 
 
 def newest_released(sheet: Sheet) -> SheetVersion | None:
-    """The newest version that designs can use."""
+    """Return the newest version that designs can use."""
     usable = (item for item in sheet.versions if item.state == "released")
     return max(usable, key=lambda item: item.version, default=None)
 

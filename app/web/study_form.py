@@ -43,16 +43,16 @@ class Typed:
     notice: str | None = None
 
     def text(self, name: str, default: str = "") -> str:
-        """The text of a field."""
+        """Return the text of a field."""
         return self.fields.get(name, default)
 
     def wrong(self, *names: str) -> list[str]:
-        """The faults of these members of a study, or of parts of them."""
+        """Return the faults of these members of a study, or of parts of them."""
         heads = tuple(f"{name}." for name in names if name)
         return [detail for name, detail in self.faults.items() if name in names or name.startswith(heads)]
 
     def wrong_in(self, line: int) -> list[str]:
-        """The faults of the place that a line varies."""
+        """Return the faults of the place that a line varies."""
         place = self.text(f"place.{line}")
         return self.wrong(place, f"vary.{place}") if place else self.wrong("vary") if line == 0 else []
 
@@ -61,12 +61,12 @@ class Typed:
         return self.fields.get(name) == ON
 
     def ticked(self, group: str) -> list[str]:
-        """The names of the boxes of a group that are ticked."""
+        """Return the names of the boxes of a group that are ticked."""
         head = f"{group}."
         return [name.removeprefix(head) for name in self.fields if name.startswith(head) and self.is_on(name)]
 
     def body(self, design: str) -> dict[str, JsonValue]:
-        """The study as the interface takes it; fields that are empty are left out."""
+        """Return the study as the interface takes it; fields that are empty are left out."""
         method = self.text("method", "grid")
         vary = self._vary()
         body: dict[str, JsonValue] = {"design": design, "method": method, "vary": vary}
@@ -82,7 +82,7 @@ class Typed:
         return body | self._of_method(method)
 
     def _vary(self) -> dict[str, JsonValue]:
-        """The values of each place: a list, or two bounds."""
+        """Return the values of each place: a list, or two bounds."""
         vary: dict[str, JsonValue] = {}
         for line in range(LINES):
             place, values = self.text(f"place.{line}"), self.text(f"values.{line}").strip()
@@ -115,7 +115,7 @@ class Typed:
         return {}
 
     def with_bounds(self, bounds: Mapping[str, tuple[str, str]]) -> Typed:
-        """With half and twice the present value where a place was chosen, and nothing else typed."""
+        """Return half and twice the present value as bounds where only a place was chosen."""
         filled = dict(self.fields)
         for line in range(LINES):
             ends = (f"low.{line}", f"high.{line}")
@@ -130,7 +130,7 @@ class Typed:
         ]
 
     def _share(self, name: str) -> JsonValue:
-        """A tolerance typed in per cent, as a share; a text that is not a number as it is."""
+        """Return a tolerance typed in per cent, as a share; a text that is not a number as it is."""
         text = self.text(name).strip().removesuffix("%").strip()
         try:
             return float(text) / 100 if text else None
@@ -139,7 +139,7 @@ class Typed:
 
 
 def _whole(text: str) -> JsonValue:
-    """A whole number; the interface says what is wrong with a text that is none."""
+    """Return a whole number; the interface says what is wrong with a text that is none."""
     return int(text) if text.isascii() and text.strip().isdecimal() and len(text) < 12 else text
 
 
@@ -151,7 +151,7 @@ async def study_form(
     status: int = 200,
     estimate: StudyEstimate | None = None,
 ) -> Response:
-    """The form, with what was typed, and with what it would take, if that was asked for."""
+    """Return the form, with what was typed, and with what it would take, if that was asked for."""
     design = await services.run(services.designs.show, id)
     governing = await _governing(services, design)
     network = await services.run(services.designs.network, id)
@@ -187,7 +187,10 @@ async def study_form(
 
 
 async def _governing(services: PageServices, design: Design) -> str:
-    """The variant that governs a design, which a study of the design does not calculate; empty for itself."""
+    """Return the variant that governs a design, which a study of the design does not calculate.
+
+    Empty for itself.
+    """
     if not design.variants:
         return ""
     worst = (
@@ -197,19 +200,22 @@ async def _governing(services: PageServices, design: Design) -> str:
 
 
 def has_limit(criterion: Criterion) -> bool:
-    """True if a criterion is checked against a number: one that was given, or one that its rule holds."""
+    """Return whether a criterion is checked against a number.
+
+    One that was given, or one that its rule holds.
+    """
     return criterion.verdict != "not_checked" and criterion.limit is not None
 
 
 def _judged(revision: RevisionWorksheet, named: list[NetworkName]) -> set[str]:
-    """The outputs that criteria with limits name, which a study keeps if nothing else is chosen."""
+    """Return the outputs that criteria with limits name, which a study keeps if nothing else is chosen."""
     limited = filter(has_limit, revision.criteria or ())
     words = {word for one in limited for word in _words(one.name, one.require)}
     return {name.name for name in named if name.name in words}
 
 
 def _by_step(named: list[NetworkName]) -> dict[str, list[NetworkName]]:
-    """Outputs by their steps, in the order of the design."""
+    """Return outputs by their steps, in the order of the design."""
     groups: dict[str, list[NetworkName]] = {}
     for name in named:
         groups.setdefault(Reference.parse(name.name).block, []).append(name)
@@ -217,12 +223,12 @@ def _by_step(named: list[NetworkName]) -> dict[str, list[NetworkName]]:
 
 
 def _words(criterion: str, require: str) -> set[str]:
-    """The names in a criterion, with the step in front where it belongs to a template."""
+    """Return the names in a criterion, with the step in front where it belongs to a template."""
     name = Reference.parse(criterion)
     bare = require.replace(">=", " ").replace("<=", " ").split()
     return {f"{name.block}.{word}" if name.output else word for word in bare}
 
 
 def again(typed: Mapping[str, str], refused: Refused) -> Typed:
-    """The same texts, with the faults for which they were refused."""
+    """Return the same texts, with the faults for which they were refused."""
     return Typed(typed, refused.faults, None if refused.faults else refused.problem.detail)

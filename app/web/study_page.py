@@ -32,7 +32,7 @@ class Rows(BaseModel):
 async def study_page(
     request: Request, services: PageServices, id: str, notice: str | None = None
 ) -> Response:
-    """A study, and the first of its rows."""
+    """Return a study, and the first of its rows."""
     units = units_of(request)
     study = await services.run(show_study, id, services.studies, units)
     design = await services.run(services.designs.show, study.design)
@@ -62,7 +62,7 @@ async def study_page(
 
 
 async def _criteria(services: PageServices, study: Study, units: System) -> list[Criterion]:
-    """The criteria of a study as its revision states them; none where that is not kept."""
+    """Return the criteria of a study as its revision states them; none where that is not kept."""
     if not study.criteria:
         return []
     try:
@@ -77,7 +77,7 @@ async def _criteria(services: PageServices, study: Study, units: System) -> list
 
 
 def _limits(study: Study, criteria: list[Criterion]) -> dict[str, list[float]]:
-    """Limits of criteria by output; a limit that itself follows from a row is not a line."""
+    """Return limits of criteria by output; a limit that itself follows from a row is not a line."""
     limits: dict[str, list[float]] = {}
     for one in criteria:
         if line := _limit_of(study, one):
@@ -86,14 +86,14 @@ def _limits(study: Study, criteria: list[Criterion]) -> dict[str, list[float]]:
 
 
 def _sides(one: Criterion) -> tuple[str, str]:
-    """The output that a criterion judges, with its step in front, and the text of its limit."""
+    """Return the output that a criterion judges, with its step in front, and the text of its limit."""
     left, _, right = (side.strip() for side in one.require.replace(">=", "<=").partition("<="))
     name = Reference.parse(one.name)
     return f"{name.block}.{left}" if name.output and left.isidentifier() else left, right
 
 
 def _limit_of(study: Study, one: Criterion) -> tuple[str, float] | None:
-    """The output that a criterion holds against a number written in it, and this number."""
+    """Return the output that a criterion holds against a number written in it, and this number."""
     name, right = _sides(one)
     limit = one.limit.value if one.limit else None
     if name not in study.outputs or not right[:1].isdigit() or not isinstance(limit, float | int):
@@ -103,7 +103,7 @@ def _limit_of(study: Study, one: Criterion) -> tuple[str, float] | None:
 
 
 async def studies_of(services: PageServices, design: str) -> list[Study]:
-    """The newest studies of a design."""
+    """Return the newest studies of a design."""
     return (await services.run(list_studies, services.studies, design=design, limit=10)).items
 
 
@@ -128,7 +128,7 @@ class IndexTable:
     lines: list[IndexLine]
 
     def parts(self) -> list[dict[str, object]]:
-        """The bars of its tornado."""
+        """Return the bars of its tornado."""
         return [
             {"name": line.place, "value": line.value}
             | ({} if line.low is None else {"low": line.low, "high": line.high})
@@ -176,5 +176,5 @@ def _plain(value: float | None) -> str:
 
 
 def values_of(best: Best) -> list[tuple[str, str]]:
-    """The places and outputs of a row, as texts."""
+    """Return the places and outputs of a row, as texts."""
     return [(name, numbers.in_line(quantity)) for name, quantity in {**best.at, **best.outputs}.items()]

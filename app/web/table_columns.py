@@ -63,13 +63,16 @@ def paste(pasted: PastedTable) -> ReadTable:
 
 
 def text_of(column: TableColumn) -> str:
-    """A column as it stands in a field: `[0, 15, 30] deg`."""
+    """Return a column as it stands in a field: `[0, 15, 30] deg`."""
     numbers = json.dumps([int(v) if v.is_integer() and abs(v) < 1e15 else v for v in column.values])
     return numbers if column.unit == "1" else f"{numbers} {column.unit}"
 
 
 def _chosen(columns: Sequence[TableColumn], pasted: PastedTable) -> list[ChosenColumn]:
-    """The user's choice of columns; without one, or with that of another table, the proposal by names."""
+    """Return the user's choice of columns.
+
+    Without one, or with that of another table, the proposal by names.
+    """
     if pasted.columns is not None and len(pasted.columns) == len(columns):
         return pasted.columns
     fields = _proposed(columns, pasted.fields)
@@ -81,7 +84,7 @@ def _chosen(columns: Sequence[TableColumn], pasted: PastedTable) -> list[ChosenC
 
 
 def _proposed(columns: Sequence[TableColumn], fields: Sequence[TableField]) -> list[str]:
-    """A field for each column, the best match first, none twice; empty where no name fits."""
+    """Return a field for each column, the best match first, none twice; empty where no name fits."""
     scores = [
         (_likeness(column, field), -place, field.name)
         for place, column in enumerate(columns)
@@ -95,7 +98,7 @@ def _proposed(columns: Sequence[TableColumn], fields: Sequence[TableField]) -> l
 
 
 def _likeness(column: TableColumn, field: TableField) -> float:
-    """From 0, nothing in common or another kind of quantity, to 1: the same name."""
+    """Return a likeness from 0, nothing in common or another kind of quantity, to 1, the same name."""
     if column.unit and not compatible(unit(column.unit).base, unit(field.unit).base):
         return 0.0
     own, name = _words(column.name), Reference.parse(field.name).own_name
@@ -110,7 +113,10 @@ def _words(text: str) -> set[str]:
 
 
 def _plain(text: str) -> str:
-    """Letters and figures alone: `F_{x}` and `Fx` are the same; a text without any is like no other."""
+    """Return letters and figures alone: `F_{x}` and `Fx` are the same.
+
+    A text without any is like no other.
+    """
     return re.sub(r"[^a-z0-9]", "", text.lower()) or text
 
 
@@ -148,7 +154,7 @@ def _said(name: str) -> str:
 def _adjusted(
     columns: list[TableColumn], chosen: Sequence[ChosenColumn], pasted: PastedTable
 ) -> tuple[list[TableColumn], list[str]]:
-    """The columns with the offset added to the angles, and without a last point that repeats the first."""
+    """Return the columns with the offset added to the angles, without a last point equal to the first."""
     fields: Mapping[str, TableField] = {field.name: field for field in pasted.fields}
     taken = [c for o, c in zip(chosen, columns, strict=True) if o.field]
     place = next((n for n, o in enumerate(chosen) if o.field and _is_angle(fields[o.field])), None)
@@ -171,7 +177,7 @@ def _is_angle(field: TableField) -> bool:
 
 
 def _cycle(axis: TableColumn, taken: Sequence[TableColumn]) -> tuple[list[str], bool]:
-    """A remark on the last point, and whether it is the first one again."""
+    """Return a remark on the last point, and whether it is the first one again."""
     degrees = unit(axis.unit).factor / unit("deg").factor
     span = abs(axis.values[-1] - axis.values[0]) * degrees
     cycle = next((c for c in CYCLES if abs(span - c) <= SAME_ANGLE), None)
@@ -191,7 +197,7 @@ def _jump(values: Sequence[float]) -> float:
 
 
 def _shifted(axis: TableColumn, offset: str) -> TableColumn:
-    """The angles with an offset such as `10 deg` added.
+    """Return the angles with an offset such as `10 deg` added.
 
     Raises
     ------
@@ -211,7 +217,7 @@ def _shifted(axis: TableColumn, offset: str) -> TableColumn:
 
 
 def refused(error: InvalidInputs) -> ReadTable:
-    """The faults of a text that is not a table, as a page shows them."""
+    """Return the faults of a text that is not a table, as a page shows them."""
     faults = [f"{fault.name}: {fault.detail}" for fault in error.faults]
     return ReadTable(columns=[], first=[], rows=0, faults=faults)
 

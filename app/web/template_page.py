@@ -31,7 +31,7 @@ PATIENCE = 2.0  # time that the page waits for an answer [s]; it shows how the r
 
 
 async def template_page(request: Request, services: PageServices, id: str, version: int) -> Response:
-    """The page, with the answer to what the address asks; to the example, where it asks nothing."""
+    """Return the page, with the answer to what the address asks; to the example, where it asks nothing."""
     template = await services.run(show_template, id, version, services.catalogues)
     typed = typed_in(request)
     inputs, chosen, limits = inputs_of(template, typed)
@@ -69,12 +69,12 @@ Values = dict[str, JsonValue]
 
 
 def typed_in(request: Request) -> dict[str, str]:
-    """The typed texts, by control."""
+    """Return the typed texts, by control."""
     return {name: text for name, text in request.query_params.items() if name not in ABOUT}
 
 
 def inputs_of(template: Template, typed: Mapping[str, str]) -> tuple[Values, Values, Values]:
-    """The inputs, the options and the limits of a calculation for what was typed."""
+    """Return the inputs, the options and the limits of a calculation for what was typed."""
     filled = {name: text.strip() for name, text in typed.items() if text.strip()}
     chosen = {f"@{option}": option for option in OPTIONS}
     limits = limits_of(filled)
@@ -87,7 +87,7 @@ def inputs_of(template: Template, typed: Mapping[str, str]) -> tuple[Values, Val
 async def _tried(
     services: PageServices, template: Template, body: Mapping[str, JsonValue], units: System
 ) -> tuple[Worksheet | None, str, dict[str, str]]:
-    """The answer, or the address of the job that calculates it, or what is wrong."""
+    """Return the answer, or the address of the job that calculates it, or what is wrong."""
     try:
         given = services.read(EvaluateIn, body)
         asked = TemplateQuestion(template.id, template.version, "worksheet", given, units)
@@ -100,13 +100,13 @@ async def _tried(
 
 
 def _seconds(cls: type[language.Template], body: EvaluateIn) -> float:
-    """The estimated time of a worksheet [s]."""
+    """Return the estimated time of a worksheet [s]."""
     seconds = estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs)
     return seconds + writing_seconds(cls, body.outputs)
 
 
 def _empty(template: Template) -> Worksheet:
-    """An empty worksheet, shown while results are calculated; the page's script fills it in."""
+    """Return an empty worksheet, shown while results are calculated; the page's script fills it in."""
     names = properties(template.outputs)
     return Worksheet(
         template=CalculatedBy(id=template.id, version=template.version),

@@ -41,18 +41,18 @@ class Question:
 
     @classmethod
     def of(cls, request: Request) -> Question:
-        """The question in the address."""
+        """Return the question in the address."""
         query = typed_in(request)
         inputs = {name: text for name, text in query.items() if not name.startswith(MARK)}
         return cls({name: query.get(f"{MARK}{name}", "").strip()[:200] for name in FIELDS}, inputs)
 
     @property
     def is_whole(self) -> bool:
-        """Whether everything is given that an answer needs."""
+        """Return whether everything is given that an answer needs."""
         return all(self.typed.values())
 
     def body(self, template: Template) -> dict[str, object]:
-        """The question as the interface takes it."""
+        """Return the question as the interface takes it."""
         typed, (inputs, options) = self.typed, self._given(template)
         return {
             "inputs": {name: value for name, value in inputs.items() if name != typed["unknown"]},
@@ -64,7 +64,7 @@ class Question:
         }
 
     def present(self, template: Template) -> dict[str, str]:
-        """The inputs as texts."""
+        """Return the inputs as texts."""
         return {name: text_of(value) for name, value in self._given(template)[0].items()}
 
     def _given(self, template: Template) -> tuple[dict[str, JsonValue], dict[str, JsonValue]]:
@@ -72,7 +72,7 @@ class Question:
         return inputs, options
 
     def with_bounds(self, places: list[PlaceOption]) -> Question:
-        """With half and twice the present value as bounds, where an input is chosen and no bound given."""
+        """Return half and twice the present value as bounds, where an input is chosen without bounds."""
         chosen = next((place for place in places if place.name == self.typed["unknown"]), None)
         if chosen is None or self.typed["low"] or self.typed["high"]:
             return self
@@ -80,18 +80,18 @@ class Question:
         return Question({**self.typed, "low": low, "high": high}, self.inputs)
 
     def address(self, **more: str) -> str:
-        """The query of this page that asks the same."""
+        """Return the query of this page that asks the same."""
         marked = {f"{MARK}{name}": text for name, text in self.typed.items()}
         return urlencode({**self.inputs, **marked, **more})
 
     def tried_with(self, template: Template, value: str) -> str:
-        """The query of the template's page with a value of the unknown."""
+        """Return the query of the template's page with a value of the unknown."""
         inputs = self.inputs or self.present(template)
         return urlencode({**inputs, self.typed["unknown"]: value})
 
 
 async def template_solve_page(request: Request, services: PageServices, id: str, version: int) -> Response:
-    """The form, and the answer once the form is filled in."""
+    """Return the form, and the answer once the form is filled in."""
     template = await services.run(show_template, id, version, services.catalogues)
     question, job = Question.of(request), request.query_params.get(JOB, "")
     places = list(_varied(template, question.present(template)))
@@ -122,26 +122,26 @@ async def template_solve_page(request: Request, services: PageServices, id: str,
 
 
 async def _solved(services: PageServices, template: Template, question: Question) -> Answered[Solution]:
-    """The solution, or the job that calculates it where the page does not wait so long."""
+    """Return the solution, or the job that calculates it where the page does not wait so long."""
     body = services.read(SolveIn, question.body(template))
     asked = TemplateQuestion(template.id, template.version, "solve", body)
     return await calculated(services, asked, _seconds, Solution, PATIENCE)
 
 
 def _seconds(cls: type[language.Template], body: SolveIn) -> float:
-    """The estimated time of a solution [s]."""
+    """Return the estimated time of a solution [s]."""
     return solving_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs, body.target)
 
 
 def _varied(template: Template, present: Mapping[str, str]) -> Iterator[PlaceOption]:
-    """The inputs that hold one quantity."""
+    """Yield the inputs that hold one quantity."""
     for name, declared in properties(template.inputs).items():
         if _is_single(declared):
             yield PlaceOption(name, declared.title, declared.unit or "", present.get(name, ""))
 
 
 def _outputs(template: Template) -> Iterator[PlaceOption]:
-    """The outputs that are one quantity."""
+    """Yield the outputs that are one quantity."""
     for name, declared in properties(template.outputs).items():
         if _is_single(declared):
             yield PlaceOption(name, declared.title, declared.unit or "")
@@ -152,7 +152,7 @@ def _is_single(declared: Declared) -> bool:
 
 
 def _drawing(question: Question, solution: Solution) -> Drawing | None:
-    """The curve of an answer; answers of earlier program versions have none."""
+    """Return the curve of an answer; answers of earlier program versions have none."""
     curve = solution.curve
     if curve is None or curve.y.unit is None:
         return None

@@ -32,17 +32,17 @@ class Line:
     histogram: str
 
     def quantity(self, value: float | None) -> Quantity | None:
-        """A number of the output with its unit."""
+        """Return a number of the output with its unit."""
         return None if value is None else Quantity(value=value, unit=self.output.unit)
 
     @property
     def low(self) -> Quantity | None:
-        """The least value of all but 0.135 % of the products."""
+        """Return the least value of all but 0.135 % of the products."""
         return self.quantity(self.output.quantiles.get(LOW))
 
     @property
     def high(self) -> Quantity | None:
-        """The largest value of all but 0.135 % of the products."""
+        """Return the largest value of all but 0.135 % of the products."""
         return self.quantity(self.output.quantiles.get(HIGH))
 
 
@@ -56,7 +56,10 @@ def toleranced(design: Design) -> bool:
 async def tolerances_page(
     request: Request, services: PageServices, id: str, job: str | None, *, is_part: bool
 ) -> Response:
-    """The analysis of the newest revision, or that of a finished job; alone, or as a part of the page."""
+    """Return the analysis of the newest revision, or that of a finished job.
+
+    Alone, or as a part of the page.
+    """
     design = await services.run(services.designs.show, id)
     template = "tolerances_part.html" if is_part else "tolerances_page.html"
     try:
@@ -71,7 +74,7 @@ async def tolerances_page(
 async def _analysis(
     request: Request, services: PageServices, id: str, job: str | None
 ) -> tuple[ToleranceAnalysis | None, str | None]:
-    """The analysis, or the job that still makes it."""
+    """Return the analysis, or the job that still makes it."""
     if job is not None:
         reply = await stored(services, job, ToleranceAnalysis)
         return reply.answer, reply.job or None

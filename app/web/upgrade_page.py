@@ -64,7 +64,7 @@ async def upgrade(id: Id, request: Request, services: ThePageServices) -> Respon
 
 
 def _number(template: str, version: str) -> int:
-    """The version that a form or an address names.
+    """Return the version that a form or an address names.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def _number(template: str, version: str) -> int:
 
 
 def _patch(design: Design, template: str, version: int) -> Patch:
-    """The merge patch that gives every step of a template the version; its inputs stay as they are."""
+    """Return the merge patch that gives every step of a template the version; its inputs stay as they are."""
     steps = design.steps.items()
     return {"steps": {name: {"version": version} for name, step in steps if step.template == template}}
 
@@ -131,21 +131,21 @@ async def _page(
 
 
 def _moved(preview: Preview) -> list[Moved]:
-    """The outputs of both versions that are not the same."""
+    """Return the outputs of both versions that are not the same."""
     both = {name: (one.old, one.new) for name, one in preview.outputs.items() if one.old and one.new}
     rows = [Moved(name, _in_unit_of(old, new), numbers.in_line(new)) for name, (old, new) in both.items()]
     return [one for one in rows if one.old != one.new]
 
 
 def _of_one_version(preview: Preview) -> list[Moved]:
-    """The outputs that only one of the versions has."""
+    """Return the outputs that only one of the versions has."""
     outputs = preview.outputs.items()
     rows = [Moved(name, numbers.in_line(one.old), numbers.in_line(one.new)) for name, one in outputs]
     return [one for one in rows if not (one.old and one.new)]
 
 
 def _in_unit_of(old: Output | AnalysisOutput, new: Output | AnalysisOutput) -> str:
-    """A value as text, in the unit of another one where that measures the same."""
+    """Return a value as text, in the unit of another one where that measures the same."""
     value, given, wanted = old.value, old.unit, new.unit
     if not isinstance(value, float) or not given or not wanted or given == wanted:
         return numbers.in_line(old)
@@ -155,7 +155,7 @@ def _in_unit_of(old: Output | AnalysisOutput, new: Output | AnalysisOutput) -> s
 
 
 def _parameters(preview: Preview) -> list[Moved]:
-    """The parameters of models that change."""
+    """Return the parameters of models that change."""
     changes = preview.model_parameters.items()
     rows = [
         Moved(n, numbers.in_line(one.old), numbers.in_line(one.new))

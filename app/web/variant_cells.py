@@ -30,7 +30,7 @@ class CsvFile:
     columns: Mapping[int, int]  # of the page, by those of the file that it does not have
 
     def on_page(self, fault: Fault) -> Fault:
-        """A fault, named by the cell of the page."""
+        """Return a fault, named by the cell of the page."""
         match = _ADDRESS.fullmatch(fault.name)
         if match is None or (column := column_of(match[1])) not in self.columns:
             return fault
@@ -38,7 +38,7 @@ class CsvFile:
 
 
 def grid_of_form(typed: Mapping[str, str]) -> Grid:
-    """The cells that a form holds; the row named by its field `drop` is emptied."""
+    """Return the cells that a form holds; the row named by its field `drop` is emptied."""
     cells: dict[tuple[int, int], str] = {}
     for name, text in typed.items():
         match = _ADDRESS.fullmatch(name.removeprefix(CONTROL)) if name.startswith(CONTROL) else None
@@ -57,7 +57,7 @@ def grid_of_form(typed: Mapping[str, str]) -> Grid:
 
 
 def with_units(grid: Grid, units: Mapping[str, str]) -> Grid:
-    """The grid with the declared unit of each place whose column says none."""
+    """Return the grid with the declared unit of each place whose column says none."""
     if len(grid.rows) < FIRST_VARIANT:
         return grid
     below = [grid.cell(1, at) or ("" if at == 0 else _declared(grid, at, units)) for at in range(grid.width)]
@@ -65,12 +65,12 @@ def with_units(grid: Grid, units: Mapping[str, str]) -> Grid:
 
 
 def _declared(grid: Grid, at: int, units: Mapping[str, str]) -> str:
-    """The declared unit of the place that a column names."""
+    """Return the declared unit of the place that a column names."""
     return units.get(place_named(grid.cell(0, at), units), "")
 
 
 def csv_of(grid: Grid) -> CsvFile:
-    """The file of a page's cells: relations without their sign, in columns of their own."""
+    """Return the file of a page's cells: relations without their sign, in columns of their own."""
     related = [at for at in range(1, grid.width) if _has_relation(grid, at)]
     rows = [
         [_own(grid, row, at, related) for at in range(grid.width)]
@@ -91,12 +91,12 @@ def _is_relation(grid: Grid, row: int, at: int) -> bool:
 
 
 def _own(grid: Grid, row: int, at: int, related: Collection[int]) -> str:
-    """A cell of the page's own column, empty for a relation."""
+    """Return a cell of the page's own column, empty for a relation."""
     return "" if at in related and _is_relation(grid, row, at) else grid.cell(row, at)
 
 
 def _relation(grid: Grid, row: int, at: int) -> str:
-    """A cell of the column of relations that follows from column `at` of the page."""
+    """Return a cell of the column of relations that follows from column `at` of the page."""
     if row == 0:
         return f"{grid.cell(0, at)} {RELATION}"
     return grid.cell(row, at).removeprefix("=").strip() if _is_relation(grid, row, at) else ""

@@ -43,7 +43,7 @@ ChosenVariant.NONE = ChosenVariant("")
 async def chosen_variant(
     request: Request, services: PageServices, design: Design, steps: list[StepBlock]
 ) -> ChosenVariant:
-    """The variant that the address names; none if it names none."""
+    """Return the variant that the address names; none if it names none."""
     name, job = (request.query_params.get(key, "")[:64] for key in ("variant", "job"))
     if not name:
         return ChosenVariant.NONE
@@ -63,7 +63,7 @@ async def chosen_variant(
 async def _calculated(
     request: Request, services: PageServices, design: Design, name: str
 ) -> Answered[VariantDetail]:
-    """The variant, or the job that calculates it where the page does not wait so long."""
+    """Return the variant, or the job that calculates it where the page does not wait so long."""
     wanted = WantedVariant(design.id, name, system=units_of(request))
     answer, job = await services.calculate(PATIENCE, services.variant_details.answer, wanted, services.client)
     return Answered(answer, job or "")
@@ -76,7 +76,7 @@ def _shown(detail: VariantDetail, steps: list[StepBlock]) -> ChosenVariant:
 
 
 def _plots(detail: VariantDetail, step: StepBlock) -> list[Plot]:
-    """The pictures of a step with the outputs of the variant in the place of the design's own."""
+    """Return the pictures of a step with the outputs of the variant in the place of the design's own."""
     outputs = {
         name: detail.outputs.get(f"{step.name}.{name}", output)
         for name, output in step.result.outputs.items()

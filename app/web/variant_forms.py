@@ -77,7 +77,7 @@ async def _saved(
     grid: Grid | None = None,
     file: CsvFile | None = None,
 ) -> Response:
-    """The design's page after a save, or with the table that was refused."""
+    """Return the design's page after a save, or with the table that was refused."""
     try:
         await services.save(
             save_sheet, services.designs, id, upload.content, upload.kind, upload.tag, services.once
@@ -96,7 +96,7 @@ def _by_name(errors: list[Fault]) -> dict[str, str]:
 
 
 def _cells(upload: _Upload) -> Grid:
-    """The cells of a refused file, as far as they can be shown."""
+    """Return the cells of a refused file, as far as they can be shown."""
     try:
         return read_sheet(upload.content, upload.kind)
     except InvalidInputs:

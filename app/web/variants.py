@@ -44,7 +44,7 @@ class Cell:
 
     @property
     def control(self) -> str:
-        """The name of the field."""
+        """Return the name of the field."""
         return f"{CONTROL}{self.address}"
 
 
@@ -93,7 +93,7 @@ class Row:
 
     @property
     def is_empty(self) -> bool:
-        """Whether nothing is typed in it."""
+        """Return whether nothing is typed in it."""
         return not self.name.text and not any(cell.text for cell in self.cells)
 
 
@@ -116,14 +116,14 @@ class VariantsTable:
 
     @property
     def has_files(self) -> bool:
-        """Whether any variant has a model."""
+        """Return whether any variant has a model."""
         return any(row.outcome and row.outcome.files for row in self.rows)
 
 
 def variants_table(
     design: Design, out: VariantsOut, places: Mapping[str, str], refused: RefusedTable | None = None
 ) -> VariantsTable:
-    """The section of a design's variants; of a table that was refused, with its faults in place.
+    """Return the section of a design's variants; of a table that was refused, with its faults in place.
 
     `places` are those that a variant may override, with their units.
     """
@@ -157,13 +157,13 @@ def variants_table(
 
 
 def places_of(network: DesignNetwork, design: Design) -> dict[str, str]:
-    """The places that a variant may override, with the unit of the design's value or of the declaration."""
+    """Return the places that a variant may override, with the unit of the design or the declaration."""
     names = [name for name in network.names if name.role in ("parameter", "input")]
     return {name.name: _typed_unit(_own(design, name.name)) or name.unit for name in names}
 
 
 def _typed_unit(text: str) -> str:
-    """The unit of a quantity as typed; empty where it has none, or is a relation."""
+    """Return the unit of a quantity as typed; empty where it has none, or is a relation."""
     try:
         own = "" if is_relation(text) or not text else read_any(text).unit
     except FaultyText:
@@ -207,7 +207,7 @@ def _cell(grid: Grid, row: int, at: int, title: str, hint: str, faults: Mapping[
 
 
 def _own(design: Design, place: str) -> str:
-    """The design's own value of a place, as typed; empty where it sets none."""
+    """Return the design's own value of a place, as typed; empty where it sets none."""
     reference = Reference.parse(place)
     block, member = reference.block, reference.member
     if not member:
@@ -218,7 +218,10 @@ def _own(design: Design, place: str) -> str:
 
 
 def _criteria(out: VariantsOut) -> tuple[list[str], list[str]]:
-    """The criteria that were checked in at least one variant, worst first; and those that were in none."""
+    """Return the criteria that were checked in at least one variant, worst first.
+
+    And those that were in none.
+    """
     worst = sorted(
         out.by_criterion.values(), key=lambda one: (WORST_FIRST.index(one.verdict), -(one.utilisation or 0))
     )
@@ -229,7 +232,7 @@ def _criteria(out: VariantsOut) -> tuple[list[str], list[str]]:
 
 
 def _titles(out: VariantsOut, names: Sequence[str]) -> list[str]:
-    """Headings of criteria; those that judge the same value are distinguished by their names."""
+    """Return headings of criteria; those that judge the same value are distinguished by their names."""
     titles = [_title(out, name) for name in names]
     return [
         f"{title} ({Reference.parse(name).own_name.replace('_', ' ')})" if titles.count(title) > 1 else title
@@ -273,7 +276,7 @@ def _files(design: Design, row: VariantResult) -> list[Files]:
 
 
 def _governing(out: VariantsOut) -> str:
-    """A sentence that names the worst variant, and its criterion."""
+    """Return a sentence that names the worst variant, and its criterion."""
     first = out.governing
     if first is None or not out.variants:
         return ""

@@ -29,21 +29,21 @@ class Banner:
 
     @property
     def unchecked(self) -> list[Line]:
-        """The criteria that were not checked, each with the input to give."""
+        """Return the criteria that were not checked, each with the input to give."""
         return [line for line in self.lines if line.verdict == "not_checked"]
 
     @property
     def undecided(self) -> bool:
-        """Whether an exacter calculation might decide."""
+        """Return whether an exacter calculation might decide."""
         return any(line.verdict == "undecided" for line in self.lines)
 
     def worst_by_step(self) -> dict[str, Line]:
-        """The worst criterion of each step that has any."""
+        """Return the worst criterion of each step that has any."""
         return {line.step: line for line in reversed(self.lines)}
 
 
 def banner(revision: RevisionWorksheet, *, has_criteria: bool = True) -> Banner:
-    """The verdict of a revision; of one that has none, the reason: perhaps nothing declares any."""
+    """Return the verdict of a revision; of one that has none, the reason: perhaps nothing declares any."""
     verdict = revision.verdict
     if verdict is None or not revision.criteria:
         is_judged = revision.criteria is not None or (revision.state == "current" and not has_criteria)
@@ -56,7 +56,9 @@ def banner(revision: RevisionWorksheet, *, has_criteria: bool = True) -> Banner:
 def key_outputs(
     step: str, outputs: Mapping[str, Output], criteria: Iterable[Criterion], driving: Iterable[str]
 ) -> list[str]:
-    """Outputs for the fold line of a step: those judged, those that drive other parts, else the last ones.
+    """Return outputs for the fold line of a step.
+
+    Those judged, those that drive other parts, else the last ones.
 
     `driving` are the outputs that relations name. What was not checked comes last, and what has no value is
     left out where anything else has one.
@@ -71,14 +73,14 @@ def key_outputs(
 
 
 def _judged(step: str, criterion: Criterion) -> list[str]:
-    """The outputs of a step that a criterion judges; bare names too, in one of the step's template."""
+    """Return the outputs of a step that a criterion judges; bare names too, in one of the step's template."""
     own = criterion.name.startswith(f"{step}.")
     names = _NAMES.findall(sides(criterion.require)[0])
     return [n.removeprefix(f"{step}.") for n in names if n.startswith(f"{step}.") or (own and "." not in n)]
 
 
 def driving_outputs(design: Design) -> dict[str, list[str]]:
-    """The outputs that relations of a design name, by step."""
+    """Return the outputs that relations of a design name, by step."""
     driving: dict[str, list[str]] = {}
     for text in texts(design).values():
         for name in _NAMES.findall(text):
@@ -89,7 +91,7 @@ def driving_outputs(design: Design) -> dict[str, list[str]]:
 
 
 def with_keys(steps: Iterable[StepBlock], revision: RevisionWorksheet, design: Design) -> list[StepBlock]:
-    """The steps, each with the outputs of its fold line."""
+    """Return the steps, each with the outputs of its fold line."""
     driving, judged = driving_outputs(design), _by_step(revision.criteria or [])
     return [
         replace(
@@ -103,7 +105,7 @@ def with_keys(steps: Iterable[StepBlock], revision: RevisionWorksheet, design: D
 
 
 def _by_step(criteria: Iterable[Criterion]) -> dict[str, list[Criterion]]:
-    """The criteria that name a step, by step: in their own name or in what they compare."""
+    """Return the criteria that name a step, by step: in their own name or in what they compare."""
     judged: dict[str, list[Criterion]] = {}
     for criterion in criteria:
         names = [criterion.name, *_NAMES.findall(sides(criterion.require)[0])]
@@ -113,6 +115,6 @@ def _by_step(criteria: Iterable[Criterion]) -> dict[str, list[Criterion]]:
 
 
 def opened(names: Sequence[str], verdict: Banner) -> str | None:
-    """The one step that is unfolded at first: that of the governing criterion, else the first."""
+    """Return the one step that is unfolded at first: that of the governing criterion, else the first."""
     governing = verdict.governing.step if verdict.governing else ""
     return governing if governing in names else next(iter(names), None)

@@ -33,14 +33,14 @@ class Unsaved:
 
 
 async def list_page(request: Request, services: PageServices, wanted: str) -> Response:
-    """All worksheets, or those whose id or title holds a text."""
+    """Return all worksheets, or those whose id or title holds a text."""
     sought = wanted.casefold()
     sheets = [item for item in await _all(services) if sought in f"{item.id} {item.title}".casefold()]
     return show(request, "worksheets.html", sheets=sheets, wanted=wanted)
 
 
 async def _all(services: PageServices) -> list[SheetSummary]:
-    """Every worksheet, as far as the pages show them."""
+    """Return every worksheet, as far as the pages show them."""
     page = await services.run(list_worksheets, services.worksheets, PAGE)
     sheets = page.items
     for _ in range(MOST_PAGES - 1):
@@ -54,7 +54,7 @@ async def _all(services: PageServices) -> list[SheetSummary]:
 async def start_page(
     request: Request, services: PageServices, typed: Mapping[str, str], notice: str = "", status: int = 200
 ) -> Response:
-    """The form of a new worksheet: empty, from an example, or from a copy."""
+    """Return the form of a new worksheet: empty, from an example, or from a copy."""
     return show(
         request,
         "new_worksheet.html",
@@ -75,7 +75,7 @@ async def editor_page(
     status: int = 200,
     design: str = "",
 ) -> Response:
-    """The newest version of a worksheet, to be edited; or what was typed and could not be saved.
+    """Return the newest version of a worksheet, to be edited; or what was typed and could not be saved.
 
     A version that is not released is previewed in `design`, if one is named.
     """
@@ -109,7 +109,7 @@ async def editor_page(
 
 
 async def _checked(services: PageServices, text: str, id: str) -> SheetCheck:
-    """Every fault of a text under its line, or every line on paper with the numbers of the example."""
+    """Return every fault of a text under its line, or every line on paper with the numbers of the example."""
     asked = services.read(SheetCheckIn, {"text": text, "id": id})
     calculated = services.threads.run(
         services.worksheets.calculated, services.client, check.checked, asked.text, asked.id
@@ -128,13 +128,13 @@ class Row:
 
     @property
     def says_its_value(self) -> bool:
-        """Whether it is given with a constant as its default: `T = 20 °C` needs no value beside it."""
+        """Return whether it is given with a constant as its default: `T = 20 °C` needs no value beside it."""
         _, is_equal, behind = (self.line.mathml if self.line else "").partition(EQUALS)
         return bool(self.line and self.line.kind == "given" and is_equal and "<mi>" not in behind)
 
 
 def rows(checked: SheetCheck) -> list[Row]:
-    """One row per statement, in the order of the text."""
+    """Return one row per statement, in the order of the text."""
     tests = {test.line: test for test in checked.tests}
     at = {line.line: line for line in checked.lines}
     starts = {number: line.line for line in checked.lines for number in range(line.line, line.last_line + 1)}
@@ -157,13 +157,13 @@ class TextLine:
     faults: list[SheetFault]
 
     def mark(self, fault: SheetFault) -> str:
-        """Blanks up to the column of a fault, then a mark under what is wrong."""
+        """Return blanks up to the column of a fault, then a mark under what is wrong."""
         end = fault.end_column or fault.column + 1
         return " " * (fault.column - 1) + "^" * max(1, min(end, len(self.text) + 1) - fault.column)
 
 
 def listing(text: str, faults: list[SheetFault]) -> list[TextLine]:
-    """The text line by line with its faults, for browsers without scripts; nothing without a fault."""
+    """Return the text line by line with its faults, for browsers without scripts; nothing without a fault."""
     by_line: dict[int, list[SheetFault]] = {}
     for fault in faults:
         by_line.setdefault(fault.line, []).append(fault)

@@ -80,7 +80,10 @@ async def create(request: Request, services: ThePageServices) -> Response:
 
 
 async def _start(services: PageServices, start: str, typed: dict[str, str]) -> str:
-    """The text with which a worksheet begins: of an example, of another worksheet, or its title alone."""
+    """Return the text with which a worksheet begins.
+
+    Of an example, of another worksheet, or its title alone.
+    """
     group, _, name = start.partition(":")
     if group == "example" and (text := next((one.text for one in examples() if one.id == name), "")):
         return text

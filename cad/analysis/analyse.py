@@ -129,7 +129,10 @@ def _at_level(
 
 
 def _judged(values: Sequence[float], level: Level, *, is_sharp: bool) -> dict[str, Any]:
-    """The value of the higher order with its error; none where orders differ as if elements are folded."""
+    """Return the value of the higher order with its error.
+
+    None where orders differ as if elements are folded.
+    """
     low, high = values
     if min(low, high) > 0 and (likely := level.error(low, high, is_sharp=is_sharp)) < WORST:
         return {"value": high, "error": likely}
@@ -179,12 +182,12 @@ def _mesh(solid: Solid, elements: int, degrees_of_freedom: int, order: int) -> d
 
 
 def _per_newton_metre(stress: float) -> float:
-    """Stress [MPa] under 1 N·m from that under 1 N·mm."""
+    """Return the stress [MPa] under 1 N·m from that under 1 N·mm."""
     return stress * 1e3
 
 
 def _stiffness(response: Response) -> float:
-    """Torque or moment for a rotation [N·m/rad]."""
+    """Return the torque or moment for a rotation [N·m/rad]."""
     return 1e-3 / response.compliance
 
 

@@ -94,7 +94,10 @@ def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
 
 
 def _upper_half(joined: list[Any]) -> Any:
-    """The part of a solid at z > 0; None if there are several, or if volume, centre or inertia differ."""
+    """Return the part of a solid at z > 0.
+
+    None if there are several, or if volume, centre or inertia differ.
+    """
     if len(joined) != 1:
         return None
     sides = [list((joined[0] * HalfSpace(Pnt(0, 0, 0), Vec(0, 0, side))).solids) for side in (1, -1)]
@@ -107,14 +110,14 @@ def _upper_half(joined: list[Any]) -> Any:
 
 
 def _look(half: Any, flip: int) -> tuple[Array, Array, Array]:
-    """Volume, centre and moments of a solid, or of its image in z = 0."""
+    """Return the volume, centre and moments of a solid, or of its image in z = 0."""
     signs = np.array([1.0, 1.0, flip])
     moments = np.array([[half.inertia[i, j] for j in range(3)] for i in range(3)])
     return np.array([half.mass]), signs * np.array([*half.center]), moments * np.outer(signs, signs)
 
 
 def _name(face: Any, place: BorePlace) -> str:
-    """What a face is, by the points of its edges."""
+    """Return what a face is, by the points of its edges."""
     x, y, z = np.array([point for edge in face.edges for point in _points(edge)]).T
     if np.all(np.abs(z) < _NEAR):
         return MIRROR
@@ -133,7 +136,7 @@ def _points(edge: Any) -> Iterator[tuple[float, float, float]]:
 
 
 def bore_mesh(solid: BoredSolid, fineness: BoreFineness) -> Any:
-    """Tetrahedra, still straight.
+    """Return the tetrahedra, still straight.
 
     Raises
     ------
@@ -158,7 +161,7 @@ def bore_mesh(solid: BoredSolid, fineness: BoreFineness) -> Any:
 
 
 def mode_functions(place: BorePlace) -> list[Any]:
-    """The modes as functions in space, in the order of `mode_names`."""
+    """Return the modes as functions in space, in the order of `mode_names`."""
     angle, zeta = ng.atan2(-ng.x, ng.y), ng.z / place.half_width
     around = [ng.CF(1.0)]
     for n in range(1, HARMONICS + 1):
@@ -175,7 +178,7 @@ def compliance_on(
     report: Callable[[float], None] = lambda done: None,
     functions: Sequence[Any] = (),
 ) -> tuple[Array, int]:
-    """The matrix C [mm/MPa] of a half solid in elements of an order, and how many unknowns there were.
+    """Return the matrix C [mm/MPa] of a half solid in elements of an order, and how many unknowns there were.
 
     A solid that nothing holds rests on a soft spring [N/mm⁴] at each of its points, which bears the load as
     the inertia of a free body does. Other functions in space than the modes may be given, scaled alike.
@@ -204,7 +207,7 @@ def compliance_on(
 
 
 def _solved(form: Any, inverse: Any, force: Any) -> Any:
-    """The displacement under a force; the unknowns inside elements are eliminated."""
+    """Return the displacement under a force; the unknowns inside elements are eliminated."""
     outer, u = force.CreateVector(), force.CreateVector()
     outer.data = force + form.harmonic_extension_trans * force
     u.data = inverse * outer

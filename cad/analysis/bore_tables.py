@@ -29,7 +29,10 @@ _PER_GPA = 1e6  # mm/MPa in um/GPa
 def bore_tables(
     step: bytes, place: BorePlace, level: Level, report: Callable[[float, str], None]
 ) -> dict[str, dict[str, Any]]:
-    """All outputs of the kind `bore_compliance`; the error is the change from elements of one order less."""
+    """Return all outputs of the kind `bore_compliance`.
+
+    The error is the change from elements of one order less.
+    """
     started = time.perf_counter()
     report(0.0, "reading and meshing the solid")
     fineness, order = LEVELS[level]

@@ -26,11 +26,11 @@ class Chain:
 
     @property
     def size(self) -> int:
-        """Freedoms: six of each main, then two of each pin."""
+        """Return the freedoms: six of each main, then two of each pin."""
         return END * (len(self.throws) + 1) + PIN * len(self.throws)
 
     def assembled(self, name: str) -> Array:
-        """The `stiffness` or the `mass` of the chain, in axes that are those of the first section."""
+        """Return the `stiffness` or the `mass` of the chain, in axes that are those of the first section."""
         whole = np.zeros((self.size, self.size))
         pins = END * (len(self.throws) + 1)
         for k, (throw, angle) in enumerate(zip(self.throws, self.angles, strict=True)):
@@ -40,18 +40,18 @@ class Chain:
         return whole
 
     def free_to_move(self, *, guided: bool) -> Array:
-        """The numbers of the freedoms that are not held."""
+        """Return the numbers of the freedoms that are not held."""
         held = [*range(END)]
         if guided:
             held += [END * k + d for k in range(1, len(self.throws) + 1) for d in (0, 1)]
         return np.setdiff1d(np.arange(self.size), held)
 
     def stiffness(self, *, guided: bool) -> float:
-        """Torque at the last section for its rotation [N m/rad], the first one held."""
+        """Return the torque at the last section for its rotation [N m/rad], the first one held."""
         return float(1e-3 / self._rotations(guided=guided)[-1])
 
     def throw_stiffnesses(self, *, guided: bool) -> Array:
-        """Of each throw in its place: torque through the chain for the rotation between its mains [N m/rad].
+        """Return stiffness of each throw in its place [N m/rad]: torque for the rotation between its mains.
 
         In series they are the stiffness of the chain. Of guided mains they hold what the guides and the
         neighbours do to a throw; a free one is alone.
@@ -77,12 +77,12 @@ class Chain:
         return sqrt(float(squares[np.argmax(moved**2)])) / (2 * pi)
 
     def inertia(self) -> float:
-        """About z, of the whole as a rigid body [kg m²]."""
+        """Return the inertia of the whole about z as a rigid body [kg m²]."""
         r = self._rotation()
         return float(r @ self.assembled("mass") @ r) * 1e-3
 
     def _rotation(self) -> Array:
-        """The freedoms when the whole turns by 1 rad about z."""
+        """Return the freedoms when the whole turns by 1 rad about z."""
         mains = np.tile([0.0, 0, 0, 0, 0, 1], len(self.throws) + 1)
         pins = [
             throw.throw * way
@@ -93,13 +93,13 @@ class Chain:
 
 
 def turned(angle: float) -> Array:
-    """Freedoms of a throw from those in axes that do not turn with its pin, (14, 14)."""
+    """Return the freedoms of a throw from those in axes that do not turn with its pin, (14, 14)."""
     plane = np.array([[cos(angle), sin(angle)], [-sin(angle), cos(angle)]])
     space = block_diag(plane, np.eye(1))
     return np.asarray(block_diag(space, space, space, space, plane))
 
 
 def in_series(throws: Sequence[ThrowMatrix], *, guided: bool) -> float:
-    """Stiffness [N m/rad] of throws whose own stiffnesses, each alone, are put in series."""
+    """Return the stiffness [N m/rad] of throws whose own stiffnesses, each alone, are put in series."""
     alone = (Chain([throw], [0.0]).stiffness(guided=guided) for throw in throws)
     return 1 / sum(1 / stiffness for stiffness in alone)

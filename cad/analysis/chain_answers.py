@@ -46,7 +46,10 @@ class SolvedThrows:
 def chain_answers(
     apart: ThrowsApart, boundary: Boundary, level: str | None, tolerance: float | None, report: Report
 ) -> dict[str, dict[str, Any]]:
-    """All outputs of the kind `chain`, which cost the same together; level after level to a tolerance."""
+    """Return all outputs of the kind `chain`, which cost the same together.
+
+    Level after level to a tolerance.
+    """
     answers: dict[str, dict[str, Any]] = {}
     rungs = ladder(level, tolerance)
     for number, rung in enumerate(rungs):
@@ -64,7 +67,7 @@ def chain_answers(
 
 
 def solve(apart: ThrowsApart, level: Level, report: Report) -> SolvedThrows:
-    """The matrices of each solid on its mesh of a level."""
+    """Return the matrices of each solid on its mesh of a level."""
     orders = (level.order - 1, level.order)
     matrices: tuple[list[ThrowMatrix], list[ThrowMatrix]] = ([], [])
     elements, freedoms, is_sharp = 0, 0, False
@@ -85,7 +88,7 @@ def solve(apart: ThrowsApart, level: Level, report: Report) -> SolvedThrows:
 def judged(
     solved: SolvedThrows, places: Sequence[PlacedThrow], boundary: Boundary, level: Level, seconds: float
 ) -> dict[str, dict[str, Any]]:
-    """The outputs of the higher order with their errors; no value where orders differ too much."""
+    """Return the outputs of the higher order with their errors; no value where orders differ too much."""
     guided = boundary == "guided_end"
     low, high = (values_of(chain_of(each, places), guided=guided) for each in (solved.low, solved.high))
     common = {
@@ -114,12 +117,12 @@ def judged(
 
 
 def chain_of(matrices: Sequence[ThrowMatrix], places: Sequence[PlacedThrow]) -> Chain:
-    """The throws of a shaft in their places."""
+    """Return the throws of a shaft in their places."""
     return Chain([matrices[place.solid] for place in places], [place.angle for place in places])
 
 
 def values_of(chain: Chain, *, guided: bool) -> dict[str, float | list[float]]:
-    """The outputs of a chain in their units."""
+    """Return the outputs of a chain in their units."""
     return {
         "stiffness": chain.stiffness(guided=guided),
         "throw_stiffnesses": chain.throw_stiffnesses(guided=guided).tolist(),

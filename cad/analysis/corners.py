@@ -33,7 +33,7 @@ class Edges:
 
 
 def sharp_inner_edges(shape: Any, scale: float) -> Edges:
-    """All sharp inner edges of a shape, seen on triangles of this scale [mm]."""
+    """Return all sharp inner edges of a shape, seen on triangles of this scale [mm]."""
     parameters = MeshingParameters(
         maxh=_SIZE * scale,
         curvaturesafety=_CURVATURE,

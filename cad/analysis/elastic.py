@@ -68,14 +68,14 @@ class System:
         self.inverse = self._inverse_of_form(few_forces)
 
     def _inverse_of_form(self, few_forces: bool) -> Any:
-        """What solves the assembled form for a force, on its unknowns outside elements."""
+        """Return what solves the assembled form for a force, on its unknowns outside elements."""
         if few_forces and self.order > 2:
             by_order = _by_order(self.form, self.space)
             return CGSolver(self.form.mat, by_order, tol=_RESIDUAL, maxiter=_MOST_STEPS)
         return self.form.mat.Inverse(self.space.FreeDofs(True), inverse="sparsecholesky")
 
     def solve(self, force: Any) -> Any:
-        """The displacement under a force, both as vectors; the dofs inside elements are eliminated.
+        """Return the displacement under a force, both as vectors; the dofs inside elements are eliminated.
 
         Raises
         ------
@@ -95,7 +95,7 @@ class System:
         return u
 
     def traction(self, field: Any) -> Any:
-        """The force of a traction on the loaded end, as a vector."""
+        """Return the force of a traction on the loaded end, as a vector."""
         v = self.space.TestFunction()
         force = ng.LinearForm(self.space)
         force += field * v.Trace() * ng.ds(LOADED)
@@ -103,7 +103,7 @@ class System:
         return force.vec
 
     def loads(self) -> tuple[Any, list[Any]]:
-        """The unit load, and the unit forces of a guide that the symmetry does not already balance."""
+        """Return the unit load, and the unit forces of a guide that the symmetry does not already balance."""
         mesh, parts = self.grid.mesh, self.grid.solid.parts
         shape = ng.CF((-ng.y, ng.x, 0)) if self.load == "torsion" else ng.CF((0, 0, -ng.x))
         unit = shape / (parts * ng.Integrate(shape * shape * ng.ds(LOADED), mesh))
@@ -154,7 +154,7 @@ class Response:
 
 
 def respond(system: System, boundary: Boundary) -> Response:
-    """The response to a torque or a bending moment of 1 N·mm on the loaded end."""
+    """Return the response to a torque or a bending moment of 1 N·mm on the loaded end."""
     force, sideways = system.loads()
     guides = tuple(sideways) if boundary == "guided_end" else ()
     u = system.solve(force)
@@ -178,6 +178,6 @@ def is_antisymmetric(mirror: str, load: Kind) -> bool:
 
 
 def _locked(mirror: str, load: Kind) -> str:
-    """The directions in which nothing moves on a mirror plane of this normal."""
+    """Return the directions in which nothing moves on a mirror plane of this normal."""
     tangential = "".join(axis for axis in "xyz" if axis != mirror)
     return (tangential if is_antisymmetric(mirror, load) else mirror) if mirror else ""

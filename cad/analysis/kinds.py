@@ -30,7 +30,7 @@ HARMONICS = 9
 
 
 def mode_names() -> tuple[str, ...]:
-    """The modes: harmonics even along the bore, then times the second polynomial of Legendre along it.
+    """Return the modes: harmonics even along the bore, then times the second polynomial of Legendre along it.
 
     `m` is the mean, `c2` and `s2` are cos and sin of twice the angle from +y towards -x; `z` is Legendre's.
     """

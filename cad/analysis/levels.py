@@ -36,7 +36,7 @@ class Level:
     typical: float  # the error that is usually reported, relative
 
     def error(self, low: float, high: float, *, is_sharp: bool = False) -> float:
-        """The relative error to tell of a value, from that of one order less."""
+        """Return the relative error to tell of a value, from that of one order less."""
         change = abs(low - high) / high
         if is_sharp:
             return self.sharp_factor * change + self.sharp_floor
@@ -61,7 +61,7 @@ NAMES = tuple(level.name for level in LEVELS)
 
 
 def ladder(level: str | None, tolerance: float | None) -> tuple[Level, ...]:
-    """The levels to try in turn: the one named, or those from the cheapest that is likely to do."""
+    """Return the levels to try in turn: the one named, or those from the cheapest that is likely to do."""
     if tolerance is None:
         return tuple(rung for rung in LEVELS if rung.name == (level or DEFAULT_LEVEL))
     return tuple(rung for rung in LEVELS if rung.typical <= tolerance) or LEVELS[-1:]

@@ -95,7 +95,7 @@ def make_grid(
 
 
 def sharp_edges(solid: Solid, fineness: Fineness) -> Edges:
-    """The sharp inner edges of a solid, in pieces as its elements of a fineness divide them.
+    """Return the sharp inner edges of a solid, in pieces as its elements of a fineness divide them.
 
     Raises
     ------
@@ -151,7 +151,7 @@ def _straight_coordinates(mesh: Any, space: Any) -> list[Any]:
 
 
 def _coordinates(mesh: Any, order: int) -> list[Any]:
-    """The coordinates of the points of curved elements as functions on them."""
+    """Return the coordinates of the points of curved elements as functions on them."""
     mesh.Curve(order)
     together = ng.GridFunction(ng.H1(mesh, order=order, dim=3))
     together.Set(ng.CF((ng.x, ng.y, ng.z)))  # at once: a quarter of the time
@@ -188,7 +188,7 @@ def _limits(edge: Any, most: float) -> tuple[float, float]:
 
 
 def _turning(edge: Any) -> float:
-    """By what angle [rad] an edge turns from its start to its end."""
+    """Return the angle [rad] by which an edge turns from its start to its end."""
     start, end = edge.parameter_interval
     points = np.array([[*edge.Value(t)] for t in np.linspace(start, end, _SAMPLES + 1)])
     steps = np.diff(points, axis=0)
@@ -198,7 +198,7 @@ def _turning(edge: Any) -> float:
 
 
 def _ball(near: Near) -> Iterable[tuple[float, float, float]]:
-    """Points that fill a ball, so close that the size holds between them."""
+    """Yield the points that fill a ball, so close that the size holds between them."""
     count = max(1, ceil(near.reach / near.size))
     line = np.linspace(-near.reach, near.reach, 2 * count + 1)
     grid = np.stack(np.meshgrid(line, line, line), axis=-1).reshape(-1, 3)

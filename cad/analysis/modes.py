@@ -32,7 +32,9 @@ class Mode:
 
 
 def torsional_mode(response: Response) -> Mode:
-    """The mode with the largest effective inertia about z; as many are computed as it takes to be sure.
+    """Return the mode with the largest effective inertia about z.
+
+    As many are computed as it takes to be sure.
 
     Raises
     ------
@@ -52,7 +54,7 @@ def torsional_mode(response: Response) -> Mode:
 
 
 def natural_modes(response: Response, count: int) -> list[Mode]:
-    """The lowest modes, by Lanczos' method on the inverse that the static response has left."""
+    """Return the lowest modes, by Lanczos' method on the inverse that the static response has left."""
     system = response.system
     mass = _mass(response)
     free = np.flatnonzero(np.array(list(system.space.FreeDofs())))
@@ -101,7 +103,7 @@ def _mass(response: Response) -> Any:
 
 
 def _guided(response: Response, u: Any) -> Any:
-    """A displacement with the forces of the guide added that keep the end in its place."""
+    """Return a displacement with the forces of the guide added that keep the end in its place."""
     if response.guides:
         off = np.array([ng.InnerProduct(guide, u) for guide in response.guides])
         for reaction, w in zip(np.linalg.solve(response.gram, off), response.guided, strict=True):

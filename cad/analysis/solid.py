@@ -46,7 +46,7 @@ class Solid:
 
     @property
     def parts(self) -> int:
-        """Number of these that make the whole."""
+        """Return the number of these that make the whole."""
         return 2 if self.mirror else 1
 
 
@@ -86,7 +86,7 @@ def _only_solid(step: bytes) -> Any:
 
 
 def _halves(whole: Any, mirrors: Iterable[str]) -> Any:
-    """The planes in which a solid mirrors itself, each with its half on the positive side."""
+    """Return the planes in which a solid mirrors itself, each with its half on the positive side."""
     for axis in mirrors:
         unit = [float(other == axis) for other in _AXES]
         sides = [whole * HalfSpace(Pnt(0, 0, 0), Vec(*(sign * u for u in unit))) for sign in (-1, 1)]
@@ -98,7 +98,7 @@ def _halves(whole: Any, mirrors: Iterable[str]) -> Any:
 
 
 def _middle(shape: Any) -> NDArray[np.float64]:
-    """The middle of the box around a shape [mm]."""
+    """Return the middle of the box around a shape [mm]."""
     return np.asarray(sum(np.array([*corner]) for corner in shape.bounding_box) / 2)
 
 
@@ -119,7 +119,7 @@ def _images(one: Any, other: Any, axis: str, volume: float) -> bool:
 
 
 def _look(shapes: Iterable[Any]) -> NDArray[np.float64]:
-    """Shapes as rows of area or volume, centre and moments."""
+    """Return the shapes as rows of area or volume, centre and moments."""
     rows = []
     for shape in shapes:
         size, centre = shape.Properties()
@@ -128,7 +128,7 @@ def _look(shapes: Iterable[Any]) -> NDArray[np.float64]:
 
 
 def _mirrored(axis: str) -> NDArray[np.float64]:
-    """The factors of the columns of a look if it is seen in a mirror across an axis."""
+    """Return the factors of the columns of a look if it is seen in a mirror across an axis."""
     flip = np.array([-1.0 if other == axis else 1.0 for other in _AXES])
     return np.concatenate([[1.0], flip, np.outer(flip, flip)[np.triu_indices(3)]])
 

@@ -59,31 +59,31 @@ class Peaks:
 
     @property
     def error(self) -> float:
-        """The estimated relative error of the last value: the last change and `FLOOR`."""
+        """Return the estimated relative error of the last value: the last change and `FLOOR`."""
         return self.changes[-1] + FLOOR
 
     @property
     def changes(self) -> list[float]:
-        """By how much each step changed the value, relative."""
+        """Return by how much each step changed the value, relative."""
         values = [peak.value for peak in self.steps]
         return [abs(new - old) / new for old, new in pairwise(values)]
 
     @property
     def converged(self) -> bool:
-        """Whether the last step but one changed little, and the last one less."""
+        """Return whether the last step but one changed little, and the last one less."""
         *_, before, last = (1.0, 1.0, *self.changes)
         return before <= SMALL and last <= CONVERGED
 
 
 def von_mises(components: Components) -> Any:
-    """The equivalent stress of von Mises (1913)."""
+    """Return the equivalent stress of von Mises (1913)."""
     xx, yy, zz, xy, yz, xz = components
     apart = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
     return ng.sqrt(apart / 2 + 3 * (xy**2 + yz**2 + xz**2))
 
 
 def first_principal(components: Components) -> Any:
-    """The largest principal stress, by Cardano's formula; factors of bending are of it."""
+    """Return the largest principal stress, by Cardano's formula; factors of bending are of it."""
     xx, yy, zz, xy, yz, xz = components
     mean = (xx + yy + zz) / 3
     a, b, c = xx - mean, yy - mean, zz - mean
@@ -108,7 +108,7 @@ def greatest_stress(
     edges = sharp_edges(solid, START)
 
     def places_on_mesh() -> Places:
-        """Those of the next mesh, which is given up on return, so that two are never held at once."""
+        """Return those of the next mesh, which is given up on return, so that two are never held at once."""
         grid = make_grid(solid, START, near, edges)
         system = System(grid, ORDER, material, load, few_forces=True)
         return _places_on(respond(system, boundary), measure)
@@ -132,12 +132,12 @@ class Places:
     values: Array  # (elements,) the greatest stress in each [MPa] under 1 N·mm
 
     def high(self, share: float) -> tuple[Near, ...]:
-        """Elements to be halved: those with more than a share of the greatest stress."""
+        """Return the elements to be halved: those with more than a share of the greatest stress."""
         return tuple(_halved(one) for one in self.corners[self.values > share * self.peak.value])
 
 
 def _places_on(response: Response, measure: Measure) -> Places:
-    """Recovered stress away from the ends.
+    """Return the recovered stress away from the ends.
 
     Raises
     ------
@@ -184,7 +184,7 @@ def _extent(face: Any) -> tuple[float, float]:
 
 
 def _on_surface(system: System, field: Any) -> tuple[Array, Array]:
-    """Points (elements, places, 3) [mm] on the free surface, and a field there."""
+    """Return the points (elements, places, 3) [mm] on the free surface, and a field there."""
     mesh = system.grid.mesh
     where = mesh.MapToAllElements(ng.IntegrationRule(ng.TRIG, 2 * system.order), mesh.Boundaries(FREE))
     count = len(_corners(mesh))
@@ -193,7 +193,7 @@ def _on_surface(system: System, field: Any) -> tuple[Array, Array]:
 
 
 def _corners(mesh: Any) -> Array:
-    """The corners (elements, 3, 3) [mm] of the free surface's elements."""
+    """Return the corners (elements, 3, 3) [mm] of the free surface's elements."""
     elements = mesh.Boundaries(FREE).Elements()
     return np.array([[mesh[v].point for v in element.vertices] for element in elements])
 
@@ -205,7 +205,7 @@ def _halved(corners: Array) -> Near:
 
 
 def recover(response: Response) -> Components:
-    """The six components xx, yy, zz, xy, yz, xz of the stress [MPa], continuous across elements."""
+    """Return the six components xx, yy, zz, xy, yz, xz of the stress [MPa], continuous across elements."""
     system = response.system
     raw = stress(response.displacement, system.material)
     places = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))

@@ -48,7 +48,7 @@ class Surface:
     load: str
 
     def as_json(self) -> dict[str, Any]:
-        """As it is written in JSON: six significant digits, a unit beside every field."""
+        """Return it as it is written in JSON: six significant digits, a unit beside every field."""
         fields = {"points": (self.points, "mm"), "displacement": (self.displacement, "mm")}
         if self.twist is not None:
             fields["twist"] = (self.twist, "deg")
@@ -58,7 +58,7 @@ class Surface:
 
 
 def surface(response: Response) -> Surface:
-    """The surface of the whole solid, the ends by which it is held and loaded included."""
+    """Return the surface of the whole solid, the ends by which it is held and loaded included."""
     system = response.system
     mesh, mirror = system.grid.mesh, system.grid.solid.mirror
     region = mesh.Boundaries(f"{FREE}|{HELD}|{LOADED}")
@@ -81,7 +81,7 @@ def surface(response: Response) -> Surface:
 
 
 def _fields(response: Response, where: Any) -> dict[str, Array]:
-    """Everything at mapped points (n), under 1 N·m."""
+    """Return everything at mapped points (n), under 1 N·m."""
     u = response.displacement
     gradient = ng.Grad(u)
     turned = ng.GridFunction(ng.H1(response.system.grid.mesh, order=response.system.order - 1))
@@ -100,24 +100,24 @@ def _at(where: Any, *functions: Any) -> Array:
 
 
 def _division(elements: int) -> int:
-    """Into how many parts the side of an element is divided."""
+    """Return the into how many parts the side of an element is divided."""
     return max(n for n in range(1, _FINEST + 1) if n == 1 or elements * n**2 <= MOST_TRIANGLES)
 
 
 def _lattice(division: int) -> Integers:
-    """The points of a divided triangle, as whole weights of its three corners."""
+    """Return the points of a divided triangle, as whole weights of its three corners."""
     steps = range(division + 1)
     return np.array([(i, j, division - i - j) for i, j in product(steps, steps) if i + j <= division])
 
 
 def _rule(lattice: Integers, division: int) -> Any:
-    """The points of a lattice where NGSolve wants them: the weights of the first two corners."""
+    """Return the points of a lattice where NGSolve wants them: the weights of the first two corners."""
     points = [(i / division, j / division) for i, j, _ in lattice.tolist()]
     return ng.IntegrationRule(points, [0.0] * len(points))
 
 
 def _pieces(lattice: Integers) -> Integers:
-    """The triangles (m, 3) between the points of a lattice, turned as the element is, outward."""
+    """Return the triangles (m, 3) between the points of a lattice, turned as the element is, outward."""
     place = {(i, j): n for n, (i, j, _) in enumerate(lattice.tolist())}
     up = [[(i, j), (i + 1, j), (i, j + 1)] for i, j in place]
     down = [[(i + 1, j), (i + 1, j + 1), (i, j + 1)] for i, j in place]
@@ -141,7 +141,7 @@ def _shared(corners: Integers, lattice: Integers) -> tuple[Integers, Integers]:
 
 
 def _whole(half: Surface, normal: int, antisymmetric: bool) -> Surface:
-    """Both halves: the image of the one is the other; points within the mirror plane are shared."""
+    """Return both halves: the image of the one is the other; points within the mirror plane are shared."""
     image = np.where(np.arange(3) == normal, -1.0, 1.0)
     moved = -image if antisymmetric else image
     apart = np.abs(half.points[:, normal]) > _NEAR

@@ -53,7 +53,7 @@ def throw_matrix(step: bytes, shaft: Shaft, pin: PinPlace, level: Level = LEVELS
 
 
 def matrix_on(grid: Grid, order: int, shaft: Shaft, pin: PinPlace) -> ThrowMatrix:
-    """Stiffness and mass of a throw on its mesh, in elements of an order."""
+    """Return the stiffness and mass of a throw on its mesh, in elements of an order."""
     system = System(grid, order, shaft.material, "torsion")
     pitch = shaft.loaded - shaft.held
     loads = [*(system.traction(field) for field in section_loads(system, LOADED)), *_on_the_pin(system, pin)]
@@ -72,7 +72,7 @@ def matrix_on(grid: Grid, order: int, shaft: Shaft, pin: PinPlace) -> ThrowMatri
 
 
 def section_loads(system: System, name: str) -> list[Any]:
-    """Tractions of unit forces and moments on a flat section across z, whose centre is on the axis."""
+    """Return tractions of unit forces and moments on a flat section across z, whose centre is on the axis."""
     mesh = system.grid.mesh
     area, about_x, about_y = (
         ng.Integrate(weight * ng.ds(name), mesh) for weight in (ng.CF(1), ng.y * ng.y, ng.x * ng.x)
@@ -86,7 +86,7 @@ def section_loads(system: System, name: str) -> list[Any]:
 
 
 def relative_motion(pitch: float, throw: float, middle: float = 0.0) -> Array:
-    """What freedoms displace relative to the first end as a rigid body, (8, 14)."""
+    """Return what freedoms displace relative to the first end as a rigid body, (8, 14)."""
     lever = pitch / 2 + middle
     relative = np.zeros((END + PIN, FREEDOMS))
     relative[:, END:] = np.eye(END + PIN)
@@ -98,7 +98,7 @@ def relative_motion(pitch: float, throw: float, middle: float = 0.0) -> Array:
 
 
 def _on_the_pin(system: System, pin: PinPlace) -> list[Any]:
-    """The vectors of unit forces along x and y, spread evenly over the pin's surface."""
+    """Return the vectors of unit forces along x and y, spread evenly over the pin's surface."""
     off = (ng.x - pin.throw) ** 2 + ng.y**2
     on_it = ng.IfPos((1 + _INSIDE) ** 2 * pin.radius**2 - off, 1.0, 0.0)
     outside = ng.IfPos(off - (1 - _INSIDE) ** 2 * pin.radius**2, 1.0, 0.0)
@@ -116,7 +116,7 @@ def _on_the_pin(system: System, pin: PinPlace) -> list[Any]:
 
 
 def _mass(system: System, held: float, moved: list[Any]) -> Array:
-    """Mass products [14, 14] of the rigid motions of the held end and of the responses to loads."""
+    """Return mass products [14, 14] of the rigid motions of the held end and of the responses to loads."""
     u, v = system.space.TnT()
     form = ng.BilinearForm(system.space, symmetric=False)
     form += system.material.density * 1e-12 * ng.InnerProduct(u, v) * ng.dx

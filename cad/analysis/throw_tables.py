@@ -30,7 +30,7 @@ _PER_UNIT = {"force": 1e3, "moment": 1e6}  # N in a kN, N·mm in a kN·m
 def unit_load_tables(
     step: bytes, shaft: Shaft, crank: Crank, level: Level, report: Callable[[float, str], None]
 ) -> dict[str, dict[str, Any]]:
-    """All outputs of the kind `unit_loads`, which one set of solutions gives together.
+    """Return all outputs of the kind `unit_loads`, which one set of solutions gives together.
 
     Where the throw has no fillet, or no plain cylinder on its pin, their value is None with the reason.
     """
@@ -74,7 +74,7 @@ def unit_load_tables(
 
 
 def as_tables(stresses: UnitStresses) -> dict[str, list[list[float]]]:
-    """Tensors under 1 N or 1 N·mm, and their points, in the units of the outputs."""
+    """Return the tensors under 1 N or 1 N·mm, and their points, in the units of the outputs."""
     tables: dict[str, Array] = {"points": stresses.points}
     for load, tensors in stresses.tensors.items():
         tables[f"stress_of_{load}"] = _PER_UNIT[load.split("_")[0]] * tensors

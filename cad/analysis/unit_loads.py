@@ -65,11 +65,11 @@ class LoadedThrow:
         self.system = System(grid, order, shaft.material, "torsion")
 
     def _lever(self) -> float:
-        """What of a force at mid-pin the support of the loaded end bears."""
+        """Return what of a force at mid-pin the support of the loaded end bears."""
         return -self.shaft.held / (self.shaft.loaded - self.shaft.held)
 
     def _on_pin(self) -> ng.CF:
-        """Distribution of a force on the pin: over its plain cylinder, most at its middle."""
+        """Return the distribution of a force on the pin: over its plain cylinder, most at its middle."""
         crank = self.crank
         away = (ng.x - crank.throw) ** 2 + ng.y**2
         low, high = ((crank.pin_radius * (1 + side * _ON_PIN)) ** 2 for side in (-1, 1))
@@ -78,7 +78,7 @@ class LoadedThrow:
         return beside * along
 
     def _pin_force(self, direction: int) -> Any:
-        """The force vector of 1 N on the pin in x (0) or y (1).
+        """Return the force vector of 1 N on the pin in x (0) or y (1).
 
         Raises
         ------
@@ -99,7 +99,7 @@ class LoadedThrow:
         return form.vec
 
     def force(self, loads: Mapping[str, float]) -> Any:
-        """The force vector of loads [N, N·mm] that act together."""
+        """Return the force vector of loads [N, N·mm] that act together."""
         mesh = self.system.grid.mesh
         area = ng.Integrate(ng.CF(1) * ng.ds(LOADED), mesh)
         across, up = (ng.Integrate(axis**2 * ng.ds(LOADED), mesh) for axis in (ng.x, ng.y))
@@ -115,7 +115,7 @@ class LoadedThrow:
         return total
 
     def response(self, loads: Mapping[str, float]) -> Response:
-        """The displacement under loads [N, N·mm] that act together."""
+        """Return the displacement under loads [N, N·mm] that act together."""
         displacement = ng.GridFunction(self.system.space)
         displacement.vec.data = self.system.solve(self.force(loads))
         return Response(self.system, 0.0, displacement, (), (), np.zeros((0, 0)))
@@ -131,7 +131,7 @@ class LoadedThrow:
 
 
 def fillet_stresses(throw: LoadedThrow, before: Callable[[str], None] | None = None) -> UnitStresses:
-    """The tensors of all unit loads at the fillets: in each sector of each, at the point stressed most.
+    """Return tensors of all unit loads at the fillets: in each sector of each, at the point stressed most.
 
     "Most" is the largest von Mises stress under any of the loads, each as a share of its own largest one.
     `before` is called with the name of each load before it is solved.

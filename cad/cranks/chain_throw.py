@@ -27,7 +27,7 @@ def has_throws(cls: type[CadModel]) -> bool:
 
 
 def shaft_of_throws(shape: CadModel) -> WholeShaft | None:
-    """The throws of a shaft; None if the model is none."""
+    """Return the throws of a shaft; None if the model is none."""
     if not has_throws(type(shape)):
         return None
     drawn = getattr(shape, "drawn")()  # noqa: B009 - the base of models does not declare it
@@ -35,7 +35,10 @@ def shaft_of_throws(shape: CadModel) -> WholeShaft | None:
 
 
 def sizes_of_throw(whole: WholeShaft) -> Crank | None:
-    """The plain sizes of a shaft's throws, which differ in their counterweights alone; None of split pins."""
+    """Return the plain sizes of a shaft's throws, which differ in their counterweights alone.
+
+    None of split pins.
+    """
     if whole.split:
         return None
     like = whole.like
@@ -43,7 +46,7 @@ def sizes_of_throw(whole: WholeShaft) -> Crank | None:
 
 
 def first_throw_apart(whole: WholeShaft) -> ThrowsApart:
-    """The first throw of a shaft alone."""
+    """Return the first throw of a shaft alone."""
     return throws_apart(replace(whole, throws=whole.throws[:1]))
 
 
@@ -71,7 +74,7 @@ def throws_apart(whole: WholeShaft) -> ThrowsApart:
 
 
 def throw_step(whole: WholeShaft, number: int) -> tuple[bytes, Shaft, PinPlace]:
-    """A throw of a shaft, counted from 0: its STEP file, its ends, and where its pin is.
+    """Return a throw of a shaft, counted from 0: its STEP file, its ends, and where its pin is.
 
     z = 0 is half way between the mains; x points to the pin, of split pins to the front one.
     """
@@ -103,7 +106,7 @@ def throw_step(whole: WholeShaft, number: int) -> tuple[bytes, Shaft, PinPlace]:
 
 
 def _standing(part: Shape, half: Half) -> Shape:
-    """A part where its half of the throw stands; as it is drawn if that is there."""
+    """Return a part where its half of the throw stands; as it is drawn if that is there."""
     return part if half == Half(0.0, 0.0) else placed(part, half)
 
 

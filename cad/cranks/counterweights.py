@@ -35,6 +35,6 @@ def stand_out(radii: Array, least: Array) -> Truth:
 
 @units("m", "rad", "1", returns="m**2", latex=r"R_w^2\,\varphi_w / 2")
 def sectors(radii: Array, angle: Array, throws: Array) -> Array:
-    """Area of the sector of each web's counterweight, from the journal's axis on [m²]."""
+    """Return the area of the sector of each web's counterweight, from the journal's axis on [m²]."""
     each = np.atleast_1d(radii) ** 2 * np.expand_dims(angle, -1) / 2
     return np.broadcast_to(each, (*each.shape[:-1], round(float(2 * throws))))

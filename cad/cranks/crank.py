@@ -29,7 +29,7 @@ class CrankModel(CrankRules):
     """A crank of one solid."""
 
     def drawn(self) -> Throw:
-        """The parameters as radii, lengths and angles of what is drawn."""
+        """Return the parameters as radii, lengths and angles of what is drawn."""
         front, rear = self.ends()
         return Throw(
             outline=Outline(
@@ -55,16 +55,16 @@ class CrankModel(CrankRules):
         )
 
     def ends(self) -> tuple[End | None, End | None]:
-        """What lies beyond the main journals, at -z and at +z."""
+        """Return what lies beyond the main journals, at -z and at +z."""
         return None, None
 
     def build(self) -> tuple[Part, ...]:
-        """One solid."""
+        """Return one solid."""
         throw = self.drawn()
         return (Part(self.id, throw.solid(), volume(throw)),)
 
     def bounding_box(self) -> Box:
-        """Webs, counterweights and ends together."""
+        """Return the webs, counterweights and ends together."""
         throw = self.drawn()
         web, ends = throw.outline, [end for end in (throw.front, throw.rear) if end]
         around = max([0.0, *(end.radius for end in ends)])
@@ -74,7 +74,7 @@ class CrankModel(CrankRules):
         return Box((-left, -wide, -low), (max(web.tip, around), wide, high))
 
     def shaft(self) -> Shaft:
-        """Held by its end face at -z, loaded at +z."""
+        """Return where it is held and loaded: by its end faces at -z and at +z."""
         box = self.bounding_box()
         return Shaft(box.low[2], box.high[2])
 
@@ -84,7 +84,7 @@ class CrankModel(CrankRules):
         return cls.ends is CrankModel.ends
 
     def throw_sizes(self) -> Crank | None:
-        """The plain sizes of the throw, if it is one from mid-journal to mid-journal."""
+        """Return the plain sizes of the throw, if it is one from mid-journal to mid-journal."""
         drawn = self.drawn()
         if not self.is_throw():
             return None
@@ -98,7 +98,7 @@ class CrankModel(CrankRules):
         )
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
-        """Every parameter; the angle of a counterweight only if there is one."""
+        """Return every parameter; the angle of a counterweight only if there is one."""
         surfaces, webs = seen[self.id], Webs.of(seen[self.id])
         front, rear = (stub[0] for stub in stubs(surfaces, webs))
         length = (front.reach[1] + webs.faces[0] + rear.reach[1] - webs.faces[3]) / 2

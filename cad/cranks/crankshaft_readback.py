@@ -21,7 +21,7 @@ _ANGLE = 1e-8  # [rad]
 
 
 def alike(values: Iterable[float], what: str) -> float:
-    """The one value of a dimension that several features share.
+    """Return the one value of a dimension that several features share.
 
     Raises
     ------
@@ -46,18 +46,18 @@ class ThrowSeen:
 
     @property
     def angles(self) -> tuple[float, float]:
-        """Of the pins beside its front and its rear web, from x towards y [rad]."""
+        """Return the angles of the pins beside its front and its rear web, from x towards y [rad]."""
         first, last = (atan2(pin.point.y, pin.point.x) for pin in (self.pins[0], self.pins[-1]))
         return first, last
 
     @property
     def pin_spans(self) -> list[tuple[float, float]]:
-        """From where to where its pins reach, with their fillets."""
+        """Return from where to where its pins reach, with their fillets."""
         return [(self.faces[at], self.faces[at + 1]) for at in range(1, len(self.faces) - 1, 2)]
 
     @property
     def webs(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """From where to where its webs reach, the middle one left out."""
+        """Return from where to where its webs reach, the middle one left out."""
         return self.faces[:2], self.faces[-2:]
 
 
@@ -70,12 +70,12 @@ class ShaftSeen:
 
     @cached_property
     def beside(self) -> list[Surface]:
-        """Cylinders along the shaft that do not turn about its axis."""
+        """Return the cylinders along the shaft that do not turn about its axis."""
         return [c.turned(Z) for c in self.seen.cylinders if c.along(Z) and not c.about(Z)]
 
     @cached_property
     def throws(self) -> list[ThrowSeen]:
-        """The throws, from front to rear.
+        """Return the throws, from front to rear.
 
         Each has four planes across the shaft, six with split pins. Before them lie the end of the nose and
         its shoulder, if it has one; behind them at most three: shoulder of the flange, bottom of its holes,
@@ -105,17 +105,17 @@ class ShaftSeen:
         return max(pins, key=lambda c: c.diameter)
 
     def _beside_within(self, low: float, high: float) -> list[Surface]:
-        """Cylinders along the shaft, not about it, within a stretch of it."""
+        """Return the cylinders along the shaft, not about it, within a stretch of it."""
         return [c for c in self.beside if low - _CLEAR < c.reach[0] and c.reach[1] < high + _CLEAR]
 
     @property
     def ends(self) -> tuple[list[Surface], list[Surface]]:
-        """The cylinders about the shaft before the first web and behind the last, from the web on."""
+        """Return the cylinders about the shaft before the first web and behind the last, from the web on."""
         first, last = self.throws[0].faces, self.throws[-1].faces
         return stubs(self.seen, Webs((first[0], first[1], last[-2], last[-1])))
 
     def common(self) -> dict[str, float]:
-        """The dimensions that all throws share."""
+        """Return the dimensions that all throws share."""
         throws = self.throws
         return {
             **self._journals(),
@@ -145,7 +145,7 @@ class ShaftSeen:
         }
 
     def _about(self, low: float, high: float) -> list[Surface]:
-        """Cylinders about the shaft within a stretch of it."""
+        """Return the cylinders about the shaft within a stretch of it."""
         cylinders = self.seen.about(Z)
         return [c for c in cylinders if low - _CLEAR < c.reach[0] and c.reach[1] < high + _CLEAR]
 
@@ -198,7 +198,7 @@ class ShaftSeen:
                 yield normal, first.dot(normal) + side
 
     def middle_web(self) -> dict[str, float]:
-        """Thickness of the middle webs, and their width, which is that of their round ends."""
+        """Return the thickness of the middle webs, and their width, which is that of their round ends."""
         spans = [throw.faces[2:4] for throw in self.throws]
         ends = (c.diameter for low, high in spans for c in self._beside_within(low, high))
         return {
@@ -225,7 +225,7 @@ class ShaftSeen:
         return alike(askew, "oil drillings") if askew else 0.0
 
     def _inclination(self) -> float:
-        """Angle [deg] of the planes that are inclined to the shaft."""
+        """Return the angle [deg] of the planes that are inclined to the shaft."""
         normals = [p.direction for p in self.seen.planes]
         leaning = [n for n in normals if min(hypot(n.x, n.y), abs(n.z)) > _CLEAR]
         return (
@@ -233,7 +233,7 @@ class ShaftSeen:
         )
 
     def pin_angles(self, near: Sequence[float]) -> list[float]:
-        """Where the pins stand [deg], in that turn which is nearest to the angles wanted [deg]."""
+        """Return where the pins stand [deg], in that turn which is nearest to the angles wanted [deg]."""
         seen = [degrees(throw.angles[0]) for throw in self.throws]
         if len(seen) != len(near):
             raise LookupError(f"{len(near)} throws; there are {len(seen)}")
@@ -246,7 +246,7 @@ class ShaftSeen:
         return [max((d for d in rim if d > 1.01 * width), default=0.0) / 2 for rim in rims]
 
     def counterweight_angle(self, radii: Sequence[float], near: float) -> float:
-        """The angle of all counterweights [deg]; flanks of several throws may lie on one plane.
+        """Return the angle of all counterweights [deg]; flanks of several throws may lie on one plane.
 
         A flank is a plane through the axis. The half angle is one at which each throw with a counterweight
         has both flanks; of several such, which is rare, the one nearest to that wanted [deg].
@@ -272,11 +272,11 @@ class ShaftSeen:
 
     @staticmethod
     def _fold(angle: float) -> float:
-        """The angle between two lines, at most a right one [rad]."""
+        """Return the angle between two lines, at most a right one [rad]."""
         return abs(remainder(angle, pi))
 
     def bolts(self) -> dict[str, float]:
-        """The holes in the flange: how many, their diameter, circle and depth; none if there are none."""
+        """Return holes in the flange: how many, their diameter, circle and depth; none if there are none."""
         end = self.seen.levels(Z)[-1]
         behind = self.throws[-1].faces[-1] - _CLEAR
         holes = [c for c in self.beside if c.reach[0] > behind and abs(c.reach[1] - end) < _CLEAR]

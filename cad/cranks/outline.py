@@ -32,18 +32,21 @@ class Outline:
 
     @property
     def tip(self) -> float:
-        """Where the web ends beyond the pin."""
+        """Return where the web ends beyond the pin."""
         return self.throw + self.half_width
 
     @property
     def area(self) -> float:
-        """Area of the whole outline [mm²]."""
+        """Return the area of the whole outline [mm²]."""
         h, R = self.half_width, self.throw
         body = 2 * h * (R + 2 * h) if self.rectangular else 2 * h * R + pi * h**2
         return body + self._sector
 
     def moment_beyond(self, start: float) -> float:
-        """First moment, about x = start, of the area beyond it [mm³]; starts above the journal's axis."""
+        """Return the first moment, about x = start, of the area beyond it [mm³].
+
+        Starts above the journal's axis.
+        """
         h, R = self.half_width, self.throw
         if self.rectangular:
             return h * (self.tip - start) ** 2
@@ -53,11 +56,14 @@ class Outline:
         return h * straight**2 + 2 / 3 * chord**3 + (R - start) * cap
 
     def wire(self, z: float) -> Wire:
-        """The outline at a height."""
+        """Return the outline at a height."""
         return wire(*(edge(run, z) for run in self.runs()))
 
     def runs(self) -> list[Run]:
-        """Lines and arcs, counter-clockwise from the end beyond the pin; the lower side mirrors the upper."""
+        """Return the lines and arcs, counter-clockwise from the end beyond the pin.
+
+        The lower side mirrors the upper.
+        """
         first, upper, last = self._square() if self.rectangular else self._round()
         if self.counterweight > 0:
             flank, last = self._flank(upper[-1][-1])
@@ -79,7 +85,7 @@ class Outline:
         return first, [side, arc], last
 
     def _square(self) -> tuple[Run, list[Run], Run]:
-        """A rectangular web, likewise."""
+        """Return a rectangular web, likewise."""
         h, a = self.half_width, self.half_angle
         first, last = ((self.tip, -h), (self.tip, h)), ((-h, h), (-h, -h))
         if self.counterweight > 0 and a > pi / 4:
@@ -96,7 +102,7 @@ class Outline:
 
     @property
     def _sector(self) -> float:
-        """What the counterweight adds to the body [mm²]."""
+        """Return what the counterweight adds to the body [mm²]."""
         h, a = self.half_width, self.half_angle
         if self.counterweight == 0:
             return 0.0
@@ -107,16 +113,16 @@ class Outline:
 
 
 def edge(run: Run, z: float) -> Edge:
-    """A line or an arc at a height."""
+    """Return a line or an arc at a height."""
     return draw(run, lambda x, y: Vector(x, y, z))
 
 
 def draw(run: Run, place: Callable[[float, float], Vector]) -> Edge:
-    """A line or an arc; `place` puts its points into space."""
+    """Return a line or an arc; `place` puts its points into space."""
     points = [place(*point) for point in run]
     return segment(*points) if len(points) == 2 else Edge.makeThreePointArc(*points)
 
 
 def _on_circle(radius: float, angle: float) -> Point:
-    """The point at an angle from -x, towards +y."""
+    """Return the point at an angle from -x, towards +y."""
     return -radius * cos(angle), radius * sin(angle)

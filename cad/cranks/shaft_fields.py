@@ -24,7 +24,9 @@ def at_fillets(
     points: Array,
     values: Array,
 ) -> Array:
-    """Values at the corners [n, 3] of a shaft, from those at points of one throw's fillets; NaN elsewhere.
+    """Return the values at the corners [n, 3] of a shaft, from those at points of one throw's fillets.
+
+    NaN elsewhere.
 
     Points [p, 3] are in the axes of the throw: z = 0 is mid-pin, x points to the pin. `places` are the angle
     of the pin [rad] and the z of mid-pin [mm] of each throw; every throw gets the same. Round a fillet a
@@ -44,19 +46,19 @@ def at_fillets(
 
 
 def places_of(whole: WholeShaft) -> list[tuple[float, float]]:
-    """Angle [rad] and mid-pin [mm] of each throw of a shaft."""
+    """Return the angle [rad] and mid-pin [mm] of each throw of a shaft."""
     return [(throw.angle, whole.pitch * (number + 0.5)) for number, throw in enumerate(whole.throws)]
 
 
 def in_throw(corners: Array, angle: float, middle: float) -> Array:
-    """Corners in the axes of a throw whose pin is at an angle [rad] and whose middle is at z [mm]."""
+    """Return corners in the axes of a throw whose pin is at an angle [rad] and whose middle is at z [mm]."""
     x, y, z = corners.T
     along, across = x * cos(angle) + y * sin(angle), y * cos(angle) - x * sin(angle)
     return np.column_stack([along, across, z - middle])
 
 
 def _round(ring: Ring, corners: Array, points: Array, values: Array) -> Array:
-    """Values at corners by their angle round the axis of a ring, linear between the points on it."""
+    """Return values at corners by their angle round the axis of a ring, linear between the points on it."""
     angle, known = (np.arctan2(at[:, 1], at[:, 0] - ring.axis) for at in (corners, points))
     return np.asarray(np.interp(angle, known, values, period=2 * pi))
 
@@ -64,7 +66,7 @@ def _round(ring: Ring, corners: Array, points: Array, values: Array) -> Array:
 def along_shaft(
     whole: WholeShaft, corners: Array, angles: Sequence[float], ends: tuple[float, float]
 ) -> Array:
-    """Angles of a mode at the corners: of each throw's pin, of the nose's end and the flange's end.
+    """Return angles of a mode at the corners: of each throw's pin, of the nose's end and the flange's end.
 
     Linear in z between them.
     """

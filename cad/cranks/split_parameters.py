@@ -15,7 +15,7 @@ _ROUNDING = 1e-9  # [rad]
 
 @units("rad", returns="rad", latex=r"{0} \bmod 2\pi")
 def shortest(angle: Array) -> Array:
-    """The same angle [rad] in the turn from -180° to 180°."""
+    """Return the same angle [rad] in the turn from -180° to 180°."""
     return (angle + np.pi) % (2 * np.pi) - np.pi
 
 
@@ -33,13 +33,15 @@ def undivided(split: Array) -> Truth:
 
 @units("rad", "m", returns="m", latex=r"{1}\ \text{{if split}}")
 def where_split(split: Array, length: Array) -> Array:
-    """A length [m] where pins are split; 0 where they are not."""
+    """Return a length [m] where pins are split; 0 where they are not."""
     return np.where(are_split(split), length, 0 * length)[()]
 
 
 @units("rad", "rad", "m", "m", "m", returns="m")
 def least_gap(pins: Array, split: Array, far: Array, journal: Array, rise: Array) -> Array:
-    """The least distance [m] between the axes of the two drillings that end in one journal; inf if none do.
+    """Return the least distance [m] between the axes of the two drillings that end in one journal.
+
+    Inf if none do.
 
     One comes from the rear pin before it, one from the front pin behind it. Both run from `far` across to
     the journal's other side, `rise` along the shaft, to the same section. They are mirror images, so they are

@@ -24,11 +24,11 @@ class SplitPins:
     half_width: float  # of the middle web
 
     def apart(self, throw: float) -> float:
-        """The distance between the axes of the two pins."""
+        """Return the distance between the axes of the two pins."""
         return 2 * throw * abs(sin(self.angle / 2))
 
     def volume(self, throw: float) -> float:
-        """Of the middle web."""
+        """Return the volume of the middle web [mm³]."""
         return (pi * self.half_width**2 + 2 * self.half_width * self.apart(throw)) * self.thickness
 
     def web(self, front: float, low: float, throw: float) -> Shape:

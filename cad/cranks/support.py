@@ -8,7 +8,7 @@ from cad.cranks.outline import Outline
 
 
 def reach(outline: Outline, direction: float) -> float:
-    """The farthest point of a web in a direction [rad] from x, counted from the journal's axis."""
+    """Return the farthest point of a web in a direction [rad] from x, counted from the journal's axis."""
     across = abs(sin(direction)) * outline.half_width
     along = cos(direction)
     if outline.rectangular:

@@ -51,27 +51,27 @@ class Throw:
 
     @property
     def inner(self) -> float:
-        """The z of the inner face of the web on +z."""
+        """Return the z of the inner face of the web on +z."""
         return self.pin_length / 2
 
     @property
     def outer(self) -> float:
-        """The z of its outer face."""
+        """Return the z of its outer face."""
         return self.inner + self.web_thickness
 
     @property
     def journal_end(self) -> float:
-        """The z of the end of the journal on +z."""
+        """Return the z of the end of the journal on +z."""
         return self.outer + self.journal_length
 
     @property
     def drilled(self) -> tuple[Vector, Vector]:
-        """The points where the drilling's axis leaves the pin, and where it leaves the journal on +z."""
+        """Return points where the drilling's axis leaves the pin, and where it leaves the journal on +z."""
         top = Vector(self.outline.throw + self.pin, 0, 0)
         return top, Vector(-self.journal, 0, self.outer + self.journal_length / 2)
 
     def solid(self) -> Shape:
-        """Pin, webs and journals joined, then bored and drilled at once."""
+        """Return the pin, webs and journals joined, then bored and drilled at once."""
         web, front, rear = self.web(), self.journal_solid(self.front), self.journal_solid(self.rear)
         parts = web, web.mirror("XY"), self.pin_solid(), front.mirror("XY"), rear
         whole = fuse(*parts, glue="partial")  # they touch and do not cross: half the time
@@ -79,7 +79,7 @@ class Throw:
         return whole.cut(*tools) if tools else whole
 
     def web(self) -> Shape:
-        """The web on +z."""
+        """Return the web on +z."""
         plate = Solid.extrudeLinear(self.outline.wire(self.inner), [], Vector(0, 0, self.web_thickness))
         return cut(plate, self._wedge()) if self.inclination > 0 else plate
 
@@ -98,7 +98,10 @@ class Throw:
             yield self.drill()
 
     def _wedge(self) -> Solid:
-        """The wedge that the inclination takes off the web on +z; it stands out into the air elsewhere."""
+        """Return the wedge that the inclination takes off the web on +z.
+
+        It stands out into the air elsewhere.
+        """
         room, slope, start = self.outline.half_width / 4, tan(self.inclination), self.incline_start
         left, right = start - room, self.outline.tip + room
         above = self.outer + room * (1 + slope)
@@ -112,7 +115,7 @@ class Throw:
         return Solid.extrudeLinear(section, [], Vector(0, 16 * room, 0))
 
     def pin_solid(self) -> Shape:
-        """The pin with a fillet at either end."""
+        """Return the pin with a fillet at either end."""
         z, edge = self.inner, self.pin + self.fillet
         lower = fillet_run(self.pin, self.fillet, -z, 1)
         upper = tuple(reversed(fillet_run(self.pin, self.fillet, z, -1)))
@@ -122,7 +125,7 @@ class Throw:
         )
 
     def journal_solid(self, end: End | None) -> Shape:
-        """The journal on +z, with what lies beyond it."""
+        """Return the journal on +z, with what lies beyond it."""
         z, top, radius = self.outer, self.journal_end, self.journal
         root = fillet_run(radius, self.fillet, z, 1)
         beyond = (
@@ -134,14 +137,14 @@ class Throw:
         return turned([((0, z), root[0]), root, *pairwise(corners)], 0.0, 1)
 
     def blind_bore(self) -> Solid:
-        """The bore of a split pin: from its end at -z through the web on +z, and beyond."""
+        """Return the bore of a split pin: from its end at -z through the web on +z, and beyond."""
         length = self.inner + self.outer + self.journal_length / 2
         return Solid.makeCylinder(
             self.pin_bore, length, Vector(self.outline.throw, 0, -self.inner), Vector(0, 0, 1)
         )
 
     def drill(self) -> Solid:
-        """The solid that the oil drilling takes away, from beyond the pin to beyond the journal."""
+        """Return the solid that the oil drilling takes away, from beyond the pin to beyond the journal."""
         top, bottom = self.drilled
         way = bottom - top
         lean = way.z / -way.x
@@ -151,18 +154,18 @@ class Throw:
 
 
 def fillet_run(radius: float, size: float, z: float, up: int) -> Run:
-    """The fillet between a face at z and a cylinder up (1) or down (-1) from it; a point if none."""
+    """Return the fillet between a face at z and a cylinder up (1) or down (-1) from it; a point if none."""
     middle = radius + size * _MIDDLE, z + up * size * _MIDDLE
     return (radius + size, z), middle, (radius, z + up * size)
 
 
 def bore(radius: float, reach: float, x: float) -> Solid:
-    """A cylinder along z through x, as far up as down."""
+    """Return a cylinder along z through x, as far up as down."""
     return Solid.makeCylinder(radius, 2 * reach, Vector(x, 0, -reach), Vector(0, 0, 1))
 
 
 def turned(runs: Sequence[Run], x: float, side: int) -> Solid:
-    """A closed outline of (distance from the axis, z) turned about the axis through x along z.
+    """Return a closed outline of (distance from the axis, z) turned about the axis through x along z.
 
     Its seam lies on that side of the axis, towards x or against it: away from the mouth of the drilling.
     """

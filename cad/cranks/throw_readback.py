@@ -24,20 +24,20 @@ class Webs:
 
     @staticmethod
     def of(seen: Seen) -> Webs:
-        """The two planes across the shaft next to mid-pin, on either side."""
+        """Return the two planes across the shaft next to mid-pin, on either side."""
         levels = seen.levels(Z)
         front, rear = [z for z in levels if z < 0], [z for z in levels if z > 0]
         return Webs((front[-2], front[-1], rear[0], rear[1]))
 
     @property
     def thickness(self) -> float:
-        """Of a web [mm]."""
+        """Return the thickness of a web [mm]."""
         outer, inner, other_inner, other_outer = self.faces
         return (inner - outer + other_outer - other_inner) / 2
 
     @property
     def apart(self) -> float:
-        """Between the webs [mm]."""
+        """Return the distance between the webs [mm]."""
         return self.faces[2] - self.faces[1]
 
 
@@ -52,7 +52,7 @@ def pin(seen: Seen, webs: Webs) -> dict[str, float]:
 
 
 def stubs(seen: Seen, webs: Webs) -> tuple[list[Surface], list[Surface]]:
-    """The cylinders about the shaft on the webs at the front and at the rear, from the web on."""
+    """Return the cylinders about the shaft on the webs at the front and at the rear, from the web on."""
     behind = [c for c in seen.about(Z) if c.reach[0] > webs.faces[3] - _CLEAR]
     before = [c.turned(-Z) for c in seen.about(Z) if c.reach[1] < webs.faces[0] + _CLEAR]
     return sorted(before, key=_start), sorted(behind, key=_start)
@@ -66,7 +66,7 @@ def journal_bore(seen: Seen, webs: Webs) -> float:
 
 
 def counterweight(seen: Seen, webs: Webs) -> dict[str, float]:
-    """Its radius, and its angle [deg] if there is one: as thick as the web, and wider than it is."""
+    """Return its radius, and its angle [deg] if there is one: as thick as the web, and wider than it is."""
     _, _, inner, outer = webs.faces
     within = (c for c in seen.about(Z) if inner - _CLEAR < c.reach[0] and c.reach[1] < outer + _CLEAR)
     standing_out = [c.diameter for c in within if c.diameter > 1.01 * seen.length(Y)]
@@ -78,7 +78,7 @@ def counterweight(seen: Seen, webs: Webs) -> dict[str, float]:
 
 
 def fillet(seen: Seen) -> float:
-    """Radius of the fillets, all of which are alike; 0 if there are none.
+    """Return the radius of the fillets, all of which are alike; 0 if there are none.
 
     Raises
     ------
@@ -94,12 +94,12 @@ def fillet(seen: Seen) -> float:
 
 
 def drilling(seen: Seen) -> float:
-    """Diameter of the cylinder that runs askew; 0 if there is none."""
+    """Return the diameter of the cylinder that runs askew; 0 if there is none."""
     return max((c.diameter for c in seen.cylinders if not c.along(Z)), default=0.0)
 
 
 def inclination(seen: Seen) -> float:
-    """Angle [deg] of the planes that are inclined to the shaft; 0 if there are none."""
+    """Return the angle [deg] of the planes that are inclined to the shaft; 0 if there are none."""
     slopes = (
         degrees(atan2(abs(p.direction.x), abs(p.direction.z))) for p in seen.planes if _askew(p.direction)
     )

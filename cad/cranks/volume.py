@@ -16,13 +16,13 @@ from cad.cranks.throw import End, Throw
 
 
 def volume(throw: Throw) -> float:
-    """Webs, pin, journals and ends, less bores and drilling."""
+    """Return the webs, pin, journals and ends, less bores and drilling."""
     ends = sum(end_volume(end, throw.journal_bore) for end in (throw.front, throw.rear) if end)
     return 2 * web(throw) + pin(throw) + 2 * journal(throw) + ends - drilling(throw)
 
 
 def web(t: Throw) -> float:
-    """A plate with two holes, less what its inclined face takes off."""
+    """Return a plate with two holes, less what its inclined face takes off."""
     slope = tan(t.inclination)
     at_pin = t.web_thickness - slope * max(t.outline.throw - t.incline_start, 0.0)
     bores = pi * (t.journal_bore**2 * t.web_thickness + t.pin_bore**2 * at_pin)
@@ -30,27 +30,27 @@ def web(t: Throw) -> float:
 
 
 def pin(t: Throw) -> float:
-    """A pin with a fillet at either end."""
+    """Return a pin with a fillet at either end."""
     return pi * (t.pin**2 - t.pin_bore**2) * t.pin_length + 2 * fillet(t.pin, t.fillet)
 
 
 def journal(t: Throw) -> float:
-    """A journal with a fillet at one end."""
+    """Return a journal with a fillet at one end."""
     return pi * (t.journal**2 - t.journal_bore**2) * t.journal_length + fillet(t.journal, t.fillet)
 
 
 def end_volume(end: End, bore: float) -> float:
-    """A plain cylinder with a bore."""
+    """Return a plain cylinder with a bore."""
     return pi * (end.radius**2 - bore**2) * end.length
 
 
 def fillet(radius: float, size: float) -> float:
-    """A fillet around a cylinder: the square of its size less a quarter circle, turned (Pappus)."""
+    """Return a fillet around a cylinder: the square of its size less a quarter circle, turned (Pappus)."""
     return 2 * pi * ((1 - pi / 4) * size**2 * radius + (5 / 6 - pi / 4) * size**3)
 
 
 def drilling(t: Throw) -> float:
-    """The volume that the oil drilling takes out of pin, web and journal."""
+    """Return the volume that the oil drilling takes out of pin, web and journal."""
     if t.drilling == 0:
         return 0.0
     top, bottom = t.drilled
@@ -59,7 +59,7 @@ def drilling(t: Throw) -> float:
 
 
 def _slice(angle: float, t: Throw) -> float:
-    """Both sides' section of the drilling at y = a sin(angle), along x, times dy/d(angle) [mm³].
+    """Return both sides' section of the drilling at y = a sin(angle), along x, times dy/d(angle) [mm³].
 
     The sine takes the square root's end out of the integrand.
     """

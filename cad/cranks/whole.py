@@ -72,19 +72,22 @@ class WholeShaft:
 
     @property
     def like(self) -> Throw:
-        """A throw: all are alike but for their counterweights."""
+        """Return a throw: all are alike but for their counterweights."""
         return self.throws[0].front
 
     @property
     def pitch(self) -> float:
-        """From the middle of a main journal to that of the next one."""
+        """Return the distance from the middle of a main journal to that of the next one."""
         t = self.like
         if self.split:
             return 2 * (t.pin_length + t.web_thickness) + self.split.thickness + t.journal_length
         return t.pin_length + 2 * t.web_thickness + t.journal_length
 
     def halves(self, number: int) -> tuple[Half, Half]:
-        """Where the front and the rear half of a throw stand, counted from 0; alike with an undivided pin."""
+        """Return where the front and the rear half of a throw stand, counted from 0.
+
+        Alike with an undivided pin.
+        """
         angle, middle = self.throws[number].angle, self.pitch * (number + 0.5)
         if self.split is None:
             return Half(angle, middle), Half(angle, middle)
@@ -93,27 +96,30 @@ class WholeShaft:
 
     @cached_property
     def mains(self) -> tuple[float, ...]:
-        """The z of the middles of the main journals."""
+        """Return the z of the middles of the main journals."""
         return tuple(self.pitch * k for k in range(len(self.throws) + 1))
 
     @property
     def low(self) -> float:
-        """The z of the nose's end."""
+        """Return the z of the nose's end."""
         return -self.like.journal_length / 2 - self.nose.length
 
     @property
     def high(self) -> float:
-        """The z of the flange's end."""
+        """Return the z of the flange's end."""
         return self.mains[-1] + self.like.journal_length / 2 + self.flange.length
 
     def solid(self) -> Shape:
-        """All parts joined, then bored and drilled at once."""
+        """Return all parts joined, then bored and drilled at once."""
         whole = fuse(*self._parts(), glue="partial")
         tools = [*self._tools()]
         return whole.cut(*tools) if tools else whole
 
     def volume(self) -> float:
-        """In closed form; two fillets on each journal but the first and the last, which have one."""
+        """Compute the volume [mm³] in closed form.
+
+        The first and the last journal have one fillet, all others two.
+        """
         t, count = self.like, len(self.throws)
         webs = sum(web(one) for throw in self.throws for one in (throw.front, throw.rear))
         inner = (count - 1) * (journal(t) + fillet(t.journal, t.fillet))
@@ -124,7 +130,7 @@ class WholeShaft:
         return webs + pins * (pin(t) - drilling(t)) + inner + 2 * journal(t) + ends - holes + middle
 
     def box(self) -> Box:
-        """Webs, counterweights, nose and flange together."""
+        """Return the webs, counterweights, nose and flange together."""
         ends = max(self.nose.radius, self.flange.radius)
         webs = [
             (one.outline, half.angle)
@@ -143,7 +149,7 @@ class WholeShaft:
         return Box(low, (far(0.0), far(pi / 2), self.high))
 
     def _parts(self) -> Iterator[Shape]:
-        """Nose with the first journal; throw after throw, each with the journal behind it."""
+        """Yield the nose with the first journal; throw after throw, each with the journal behind it."""
         first = self.throws[0].front
         nose = first.journal_solid(self.nose).mirror("XY")
         front, _ = self.halves(0)
@@ -195,7 +201,7 @@ class WholeShaft:
 
 
 def placed(part: Shape, half: Half) -> Shape:
-    """A part of a throw, drawn about the middle of its pin, where that half of it stands."""
+    """Return a part of a throw, drawn about the middle of its pin, where that half of it stands."""
     return part.rotate(*_AXIS, degrees(half.angle)).translate(Vector(0, 0, half.middle))
 
 

@@ -31,13 +31,13 @@ class Break:
     depth: float
 
     def solid(self, plane: Plane, reach: float) -> Solid:
-        """The box that is taken off."""
+        """Return the box that is taken off."""
         corner = plane.toWorldCoords((*self.low, self.depth))
         placed = Location(Plane(corner, plane.xDir, plane.zDir))
         return Solid.makeBox(self.high[0] - self.low[0], self.high[1] - self.low[1], reach).moved(placed)
 
     def faces(self, plane: Plane, shape: Shape) -> list[Face]:
-        """The faces in which the bottom of the box cuts a shape."""
+        """Return the faces in which the bottom of the box cuts a shape."""
         (x, y), (u, v) = self.low, self.high
         middle = plane.toWorldCoords(((x + u) / 2, (y + v) / 2, self.depth))
         bottom = Face.makePlane(v - y, u - x, Vector(), Vector(0, 0, 1))  # length is along y
@@ -57,7 +57,7 @@ class Break:
 
 
 def breaks(shapes: Sequence[Shape], plane: Plane, shown: Sequence[float]) -> list[Break]:
-    """Where a view in a plane opens shapes; not for holes of diameters that are `shown` elsewhere."""
+    """Return where a view in a plane opens shapes; not for holes of diameters that are `shown` elsewhere."""
     holes: dict[tuple[float, ...], list[tuple[Point, Point, Surface, float]]] = {}
     for hole in (c for shape in shapes for c in look(shape).cylinders if _is_across(c, plane)):
         if any(abs(hole.diameter - diameter) < _ON for diameter in shown):
@@ -123,7 +123,7 @@ def _region(
     plane: Plane,
     box: tuple[Point, Point],
 ) -> Break:
-    """The box about a hole: its sides in the material where they can be, or beyond the part."""
+    """Return the box about a hole: its sides in the material where they can be, or beyond the part."""
     low = [min(point[n] for point in corners) for n in (0, 1)]
     high = [max(point[n] for point in corners) for n in (0, 1)]
     along = 0 if high[0] - low[0] > high[1] - low[1] else 1
@@ -160,21 +160,21 @@ def _is_within(
 
 
 def _box(shapes: Sequence[Shape], plane: Plane) -> tuple[Point, Point]:
-    """What shapes take of the view."""
+    """Return what shapes take of the view."""
     flat = Compound.makeCompound([shape.moved(Location(plane).inverse) for shape in shapes])
     box = BoundBox._fromTopoDS(flat.wrapped)
     return (box.xmin, box.ymin), (box.xmax, box.ymax)
 
 
 def opened(shape: Shape, cuts: Sequence[Break], plane: Plane, reach: float) -> Shape:
-    """A shape without what broken-out sections take off it."""
+    """Return a shape without what broken-out sections take off it."""
     for cut in cuts:
         shape = shape.cut(cut.solid(plane, reach))
     return shape
 
 
 def zigzag(line: Polyline, scale: float) -> Polyline:
-    """A straight line with zigzags, one for each 60 mm on paper; a short one stays as it is."""
+    """Return a straight line with zigzags, one for each 60 mm on paper; a short one stays as it is."""
     (x, y), (u, v) = line[0], line[-1]
     size = ((u - x) ** 2 + (v - y) ** 2) ** 0.5
     count = int(size * scale // 60) or int(size * scale > 8)

@@ -34,7 +34,7 @@ class Controls:
         self.page, self.plan, self.room, self.is_last = page, page.plan, room, is_last
 
     def draw(self, declared: Declared, placed: Sequence[Placed]) -> str:
-        """Everything that belongs to a dimension that is drawn; returns the letter of the first datum.
+        """Return everything that belongs to a dimension that is drawn; returns the letter of the first datum.
 
         Raises
         ------
@@ -67,7 +67,7 @@ class Controls:
         self.page.write(letter, middle - width_of(letter, TEXT) / 2, box[1] + TEXT / 2, TEXT)
 
     def _stems(self, placed: Placed) -> Iterator[tuple[Rectangle, Symbol]]:
-        """Places of a datum's letter: in line with a dimension line, or about what is measured."""
+        """Yield the places of a datum's letter: in line with a dimension line, or about what is measured."""
         if placed.ends is None:
             tip, turns = self._target(placed), [radians(turn) for turn in range(0, 360, 30)]
             starts = [(tip, turn) for turn in turns]
@@ -103,13 +103,13 @@ class Controls:
         self.room.add_line([target, (x, y)])
 
     def _target(self, placed: Placed) -> Point:
-        """A point of a face that carries a dimension, on the paper; within an edge, off its corner."""
+        """Return a point of a face that carries a dimension, on the paper; within an edge, off its corner."""
         measure = placed.dimension.measure
         x, y = self.plan.paper(measure.points[1], placed.right)
         return (x, y + _INTO) if measure.sort == "length" else (x, y)
 
     def _place(self, target: Point, box_at: BoxAt, width: float) -> Point:
-        """The nearest free place about a target, which is taken."""
+        """Return the nearest free place about a target, which is taken."""
         tries = (
             _beside(target, away, radians(turn), width)
             for away in range(8, round(150 * self.plan.format.width / FORMATS[0].width), 4)

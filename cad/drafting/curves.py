@@ -45,16 +45,16 @@ class Round:
 
     @property
     def is_whole(self) -> bool:
-        """Whether it is a circle."""
+        """Return whether it is a circle."""
         return self.turn >= 360 - 1e-6
 
     def at(self, angle: float) -> Point:
-        """The point of the circle at an angle [degrees]."""
+        """Return the point of the circle at an angle [degrees]."""
         turned = radians(angle)
         return self.centre[0] + self.radius * cos(turned), self.centre[1] + self.radius * sin(turned)
 
     def points(self) -> Polyline:
-        """Points along it, its ends and its outermost ones among them."""
+        """Return the points along it, its ends and its outermost ones among them."""
         count = max(2, ceil(self.turn / _STEP))
         angles = {self.start + self.turn * i / count for i in range(count + 1)}
         quarters = range(ceil(self.start / 90), int((self.start + self.turn) // 90) + 1)
@@ -69,7 +69,7 @@ class Curve:
     arc: Round | None = None
 
     def moved(self, shift: Point) -> Curve:
-        """The line at another place."""
+        """Return the line at another place."""
         points = [(x + shift[0], y + shift[1]) for x, y in self.points]
         if self.arc is None:
             return Curve(points)
@@ -77,7 +77,7 @@ class Curve:
         return Curve(points, replace(self.arc, centre=centre))
 
     def vertices(self) -> list[Vertex]:
-        """The curve as corners with bulges, as DXF writes outlines."""
+        """Return the curve as corners with bulges, as DXF writes outlines."""
         if self.arc is None:
             return [(x, y, 0.0) for x, y in self.points]
         halves = 2 if self.arc.turn > 180 else 1
@@ -88,7 +88,7 @@ class Curve:
 
 
 def curves_of(compounds: Iterable[Any], scale: float) -> list[Curve]:
-    """The edges of projections, their sizes multiplied by a scale."""
+    """Return the edges of projections, their sizes multiplied by a scale."""
     curves = []
     for compound in compounds:
         if compound is None or compound.IsNull():
@@ -102,7 +102,7 @@ def curves_of(compounds: Iterable[Any], scale: float) -> list[Curve]:
 
 
 def curve_of(adaptor: Any, size: float) -> Curve:
-    """A curve of the kernel in the plane of x and y, or seen along z."""
+    """Return a curve of the kernel in the plane of x and y, or seen along z."""
     kind = adaptor.GetType().name.rpartition("_")[2]
     first, last = adaptor.FirstParameter(), adaptor.LastParameter()
     if kind == "Line":
@@ -121,12 +121,12 @@ def curve_of(adaptor: Any, size: float) -> Curve:
 
 
 def rounded(arc: Round) -> Curve:
-    """An arc with its points."""
+    """Return an arc with its points."""
     return Curve(arc.points(), arc)
 
 
 def recognised(points: Polyline) -> Curve:
-    """A line of points, as a straight line or an arc if it is one."""
+    """Return a line of points, as a straight line or an arc if it is one."""
     one, other = points[0], points[-1]
     span = hypot(other[0] - one[0], other[1] - one[1])
     if span > _POINT and all(abs(_cross(one, other, p)) < 1e-5 * span * span for p in points[1:-1]):
@@ -142,7 +142,7 @@ def recognised(points: Polyline) -> Curve:
 
 
 def smoothed(points: Polyline) -> Polyline:
-    """More points on a smooth curve through these, where it has no corner."""
+    """Return more points on a smooth curve through these, where it has no corner."""
     places = np.asarray(points)
     away = np.diff(places, axis=0)
     sizes = np.hypot(away[:, 0], away[:, 1])
@@ -158,7 +158,7 @@ def smoothed(points: Polyline) -> Polyline:
 
 
 def joined(curves: Iterable[Curve], without: Sequence[Curve] = ()) -> list[Curve]:
-    """Pieces of one line or circle as one, each once; without what others show already."""
+    """Return the pieces of one line or circle as one, each once; without what others show already."""
     lines, arcs, rest = _Spans(), _Spans(), []
     for curve, is_kept in [*((c, True) for c in curves), *((c, False) for c in without)]:
         if curve.arc is not None:
@@ -225,7 +225,7 @@ class _Spans:
 def _left(
     kept: list[tuple[float, float]], taken: list[tuple[float, float]], near: float
 ) -> list[tuple[float, float]]:
-    """The union of spans, without others."""
+    """Return the union of spans, without others."""
     spans = _union(kept, near)
     for low, high in _union(taken, near):
         parts = [part for a, b in spans for part in ((a, min(b, low)), (max(a, high), b))]
@@ -244,7 +244,7 @@ def _union(spans: list[tuple[float, float]], near: float) -> list[tuple[float, f
 
 
 def outline(pieces: Sequence[Curve]) -> list[Vertex]:
-    """The pieces of a closed line as one, in any order and direction, as corners with bulges."""
+    """Return the pieces of a closed line as one, in any order and direction, as corners with bulges."""
     left = [piece.vertices() for piece in pieces]
     line = left.pop(0)
     while left:
@@ -281,7 +281,7 @@ def _cross(a: Point, b: Point, p: Point) -> float:
 
 
 def _circle_through(a: Point, b: Point, c: Point) -> tuple[Point, float] | None:
-    """Centre and radius; None if the points lie on a line."""
+    """Return the centre and radius; None if the points lie on a line."""
     double = 2 * _cross(a, b, c)
     if abs(double) < 1e-12:
         return None

@@ -59,7 +59,7 @@ class Declared:
     carriers: Mapping[str, Carried] = field(default_factory=dict)
 
     def repeated(self, parameters: Mapping[str, str], bodies: Sequence[Body]) -> dict[str, list[Point]]:
-        """Where the lengths begin and end that repeat along the shaft, by parameter [mm]."""
+        """Return where the lengths begin and end that repeat along the shaft, by parameter [mm]."""
         sizes = {name: length_of(parameters[name]) for name in self.carriers}
         carriers = Carriers({body.name: body.shape for body in bodies}, self.carriers, sizes)
         along = (
@@ -71,7 +71,7 @@ class Declared:
 
     @staticmethod
     def of(header: Header | None, *, is_assembly: bool = False) -> Declared:
-        """What the model of a STEP file declares."""
+        """Return what the model of a STEP file declares."""
         if header is None:
             return Declared()
         limits = limits_in(header)

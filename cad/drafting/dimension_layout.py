@@ -70,7 +70,7 @@ class Placing:
         self.plan, self.room, self.is_last = plan, room, is_last
 
     def all(self) -> list[Placed]:
-        """Every dimension; those in lanes first.
+        """Return every dimension; those in lanes first.
 
         Raises
         ------
@@ -84,7 +84,7 @@ class Placing:
         return placed + [self._local(one) for one in ordered]
 
     def lane(self, lane: Lane) -> list[Placed]:
-        """The dimensions of one side of a view."""
+        """Return the dimensions of one side of a view."""
         placed = list(self._in_lanes(lane))
         for one in placed:
             self._take_lines(one)
@@ -143,7 +143,7 @@ class Placing:
         middle: float,
         right: float,
     ) -> Placed:
-        """A dimension whose line runs at a place across its lane."""
+        """Return a dimension whose line runs at a place across its lane."""
         line = tuple((place, end) if along else (end, place) for end in ends)
         words = None
         if label.upper or not ends[0] <= middle <= ends[1]:
@@ -154,7 +154,7 @@ class Placing:
     def _box_in_lane(
         self, label: Label, along: int, place: float, ends: tuple[float, float], middle: float
     ) -> Rectangle:
-        """What a dimension line and its words take on the paper."""
+        """Return what a dimension line and its words take on the paper."""
         half = label.width(TEXT) / 2 + 0.5
         is_narrow = ends[1] - ends[0] < _ARROWS
         tail = _TAIL if is_narrow else 0.0
@@ -196,7 +196,7 @@ class Placing:
         return placed
 
     def _beyond_arc(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
-        """Words at the end of a leader along a radius, of any arc that shows the parameter."""
+        """Yield the words at the end of a leader along a radius, of any arc that shows the parameter."""
         whole = one.measure.form == "circle"
         turns = sorted(range(-180, 180, 15), key=abs) if whole else (0, 10, -10, 20, -20)
         width, height = label.width(TEXT), label.height(TEXT)
@@ -216,7 +216,7 @@ class Placing:
                     yield box, Placed(arc, label, self.plan.at(x, y), None, right), lines
 
     def _across_angle(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
-        """Words beyond an arc between two legs, or their prolongations."""
+        """Yield the words beyond an arc between two legs, or their prolongations."""
         corner, *legs = self._on_paper(one, right)
         turns = [atan2(y - corner[1], x - corner[0]) for x, y in legs]
         opening = (turns[1] - turns[0]) % (2 * pi)
@@ -247,7 +247,7 @@ class Placing:
             away += _STEP
 
     def _around(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
-        """Words at any place around an oblique dimension."""
+        """Yield the words at any place around an oblique dimension."""
         points = self._on_paper(one, right)
         middle = (points[0][0] + points[1][0]) / 2, (points[0][1] + points[1][1]) / 2
         width, height = label.width(TEXT), label.height(TEXT)
@@ -270,5 +270,5 @@ def _middle(low: float, high: float, width: float, others: list[float]) -> float
 
 
 def _nearest(lines: list[list[Point]]) -> list[list[Point]]:
-    """The shorter half of lines: extension lines from each leg to its own end of the arc."""
+    """Return the shorter half of lines: extension lines from each leg to its own end of the arc."""
     return sorted(lines, key=lambda line: hypot(line[0][0] - line[1][0], line[0][1] - line[1][1]))[:2]

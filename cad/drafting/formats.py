@@ -21,23 +21,23 @@ class Format:
 
     @property
     def area(self) -> Rectangle:
-        """Where the views and their dimensions are."""
+        """Return where the views and their dimensions are."""
         return LEFT, EDGE + HEIGHT, self.width - EDGE - COLUMN, self.height - EDGE
 
     @property
     def room(self) -> tuple[float, float]:
-        """Width and height of that area."""
+        """Return the width and height of that area."""
         left, low, right, high = self.area
         return right - left, high - low
 
     @property
     def block(self) -> tuple[float, float]:
-        """Lower left corner of the title block."""
+        """Return the lower left corner of the title block."""
         return self.width - EDGE - WIDTH, EDGE
 
     @property
     def column(self) -> tuple[float, float]:
-        """Upper left corner of the table of parameters."""
+        """Return the upper left corner of the table of parameters."""
         return self.width - EDGE - COLUMN, self.height - EDGE
 
 

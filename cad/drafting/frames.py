@@ -21,23 +21,23 @@ class Frame:
 
     @property
     def text(self) -> str:
-        """The width of the tolerance in words."""
+        """Return the width of the tolerance in words."""
         return f"{self.amount:.6f}".rstrip("0").rstrip(".")
 
     @property
     def height(self) -> float:
-        """Its height [mm on paper]."""
+        """Return its height [mm on paper]."""
         return 2 * self.letters
 
     @property
     def cells(self) -> Sequence[float]:
-        """The widths of its cells [mm on paper]."""
+        """Return the widths of its cells [mm on paper]."""
         written = width_of(self.text, self.letters) + 2.0
         return [self.height, written, *([self.height] if self.datum else [])]
 
     @property
     def width(self) -> float:
-        """Its width [mm on paper]."""
+        """Return its width [mm on paper]."""
         return sum(self.cells)
 
     def draw(self, page: Page, left: float, low: float) -> None:

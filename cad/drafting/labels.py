@@ -24,18 +24,18 @@ class Label:
 
     @property
     def mtext(self) -> str:
-        """The words as DXF has them: deviations one above the other."""
+        """Return the words as DXF has them: deviations one above the other."""
         stack = f" {{\\H{SMALL}x;\\S{self.upper}^ {self.lower};}}" if self.upper else ""
         return f"{self.text}{stack}"
 
     def width(self, height: float) -> float:
-        """Their width, for letters of that height."""
+        """Return their width, for letters of that height."""
         deviations = max(width_of(self.upper, height), width_of(self.lower, height)) * SMALL
         gap = width_of(" ", height) if self.upper else 0.0
         return width_of(self.text.replace("<>", self.number), height) + deviations + gap
 
     def height(self, height: float) -> float:
-        """Their height, for letters of that height."""
+        """Return their height, for letters of that height."""
         return 2.4 * SMALL * height if self.upper else height
 
 
@@ -65,7 +65,7 @@ def label_of(dimension: Dimension) -> Label:
 
 
 def read_stack(mtext: str) -> tuple[str, str, str]:
-    """The words of a dimension in DXF, without its deviations; and these."""
+    """Return the words of a dimension in DXF, without its deviations; and these."""
     match = _STACK.fullmatch(mtext)
     return (match[1].rstrip() + match[4], match[2], match[3]) if match else (mtext, "", "")
 

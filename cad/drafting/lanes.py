@@ -46,7 +46,7 @@ class Lanes:
 
     @staticmethod
     def sorted(dimensions: Iterable[Dimension], section: View, end: View) -> Lanes:
-        """Every dimension on the side that is nearest to what it measures."""
+        """Return every dimension on the side that is nearest to what it measures."""
         sides = Lanes(section, end, [], [], [], [], [], [], [], [])
         (left, low), (right, high) = section.box
         middle = (left + right) / 2, (low + high) / 2
@@ -81,13 +81,13 @@ class Lanes:
 
     @property
     def counts(self) -> tuple[int, int, int, int, int]:
-        """Largest number of lanes: left, between the views, right, below, above."""
+        """Return the largest number of lanes: left, between the views, right, below, above."""
         below = max(len(self.below), len(self.end_below))
         above = max(len(self.above), min(len(self.end_above), 4))
         return len(self.left), len(self.right), len(self.beyond), min(below, 4), above
 
     def sides(self) -> Iterator[Lane]:
-        """Every side that has dimensions."""
+        """Yield every side that has dimensions."""
         (left, low), (right, high) = self.section.box
         (_, end_low), (end_right, end_high) = self.end.box
         every = (

@@ -26,12 +26,12 @@ _OTHER = 1.0
 
 
 def width_of(text: str, height: float) -> float:
-    """The width of a line of letters of that height, in the same unit."""
+    """Return the width of a line of letters of that height, in the same unit."""
     return sum(_letter(sign) for sign in text) * SIZE * height
 
 
 def clipped(text: str, width: float, height: float) -> str:
-    """A text as one line that is not wider than that; what is left out shows as `…`."""
+    """Return a text as one line that is not wider than that; what is left out shows as `…`."""
     line = "".join(sign if sign.isprintable() else " " for sign in text)
     if width_of(line, height) <= width:
         return line

@@ -39,7 +39,7 @@ class Centres:
 
 
 def centre_lines(section: View, end: View, bodies: Sequence[Body], plan: Plan) -> Centres:
-    """Those of both views."""
+    """Return those of both views."""
     over = _OVER / plan.scale
     (left, _), (right, _) = section.box
     (end_left, low), (end_right, high) = end.box
@@ -60,7 +60,7 @@ def centre_lines(section: View, end: View, bodies: Sequence[Body], plan: Plan) -
 
 
 def pitch_circles(placed: Sequence[Placed]) -> list[tuple[Point, float]]:
-    """Circles about the shaft on which holes lie and that a dimension gives."""
+    """Return the circles about the shaft on which holes lie and that a dimension gives."""
     return [
         ((one.right, 0.0), one.dimension.measure.value / 2)
         for one in placed
@@ -69,7 +69,7 @@ def pitch_circles(placed: Sequence[Placed]) -> list[tuple[Point, float]]:
 
 
 def _axes(view: View, bodies: Sequence[Body], over: float) -> Iterator[Segment]:
-    """Axes of cylinders that lie in the plane of the section, but for the shaft's own."""
+    """Yield the axes of cylinders that lie in the plane of the section, but for the shaft's own."""
     normal = view.frame.towards
     for body in bodies:
         seen = look_at([body])[body.name]
@@ -88,7 +88,7 @@ def _axes(view: View, bodies: Sequence[Body], over: float) -> Iterator[Segment]:
 
 
 def _middles(view: View, plan: Plan) -> dict[Point, float]:
-    """The middles of circles that are not the shaft's, with the largest radius about each."""
+    """Return the middles of circles that are not the shaft's, with the largest radius about each."""
     radii: dict[Point, float] = {}
     for circle in view.circles:
         middle = round(circle.centre[0], 4) + 0.0, round(circle.centre[1], 4) + 0.0
@@ -98,7 +98,7 @@ def _middles(view: View, plan: Plan) -> dict[Point, float]:
 
 
 def _crosses(view: View, plan: Plan, over: float) -> Iterator[Segment]:
-    """Two lines through the middle of every circle."""
+    """Yield two lines through the middle of every circle."""
     for (x, y), radius in _middles(view, plan).items():
         reach = radius + min(over, radius)
         yield (x - reach, y), (x + reach, y)
@@ -123,7 +123,7 @@ def _pitched(view: View, plan: Plan, over: float) -> tuple[list[float], Iterator
 
 
 def _longer(segment: Segment, over: float) -> Segment:
-    """A segment with both ends so far beyond its own."""
+    """Return a segment with both ends so far beyond its own."""
     (x, y), (u, v) = segment
     size = hypot(u - x, v - y) or 1.0
     a, b = (u - x) / size * over, (v - y) / size * over
@@ -138,7 +138,7 @@ def _on_one_line(one: Segment, other: Segment) -> bool:
 
 
 def _distinct(segments: Iterable[Segment]) -> list[Segment]:
-    """Each line once, and of very many only the first."""
+    """Return each line once, and of very many only the first."""
     seen: dict[tuple[float, ...], Segment] = {}
     for one, other in segments:
         ends = sorted((one, other))

@@ -41,7 +41,7 @@ class Measure:
 
 
 def measures(bodies: Sequence[Body], section: View, end: View, most: int = _MOST_LEVELS) -> list[Measure]:
-    """Every size that the views show; of more planes along the shaft than `most` those at its ends."""
+    """Return every size that the views show; of more planes along the shaft than `most` those at its ends."""
     results: list[Measure] = []
     seen = look_at(bodies)
     for one in seen.values():
@@ -89,7 +89,7 @@ def alike(cylinder: Surface, seen: Seen) -> int:
 
 
 def _lengthwise(cylinder: Surface, section: View, end: View, count: int) -> Iterator[Measure]:
-    """Diameter and radius of a cylinder along the shaft."""
+    """Yield the diameter and radius of a cylinder along the shaft."""
     radius, centre = cylinder.diameter / 2, section.frame.flat(cylinder.point)[1]
     side, middle = end.frame.flat(cylinder.point)
     if abs(side) < _CLEAR:
@@ -109,7 +109,7 @@ def _lengthwise(cylinder: Surface, section: View, end: View, count: int) -> Iter
 
 
 def _edge_at(section: View, v: float, reach: tuple[float, float]) -> float | None:
-    """The middle of an edge of the section at that height within a reach along the shaft."""
+    """Return the middle of an edge of the section at that height within a reach along the shaft."""
     level = [
         (min(a[0], b[0]), max(a[0], b[0])) for a, b in section.edges if abs(a[1] - v) + abs(b[1] - v) < 1e-4
     ]
@@ -136,7 +136,7 @@ def _within(cylinder: Surface, normal: Vector) -> bool:
 
 
 def _drilled(cylinder: Surface, section: View, count: int) -> Measure:
-    """The diameter of a drilling in the plane of the section, at its outer mouth."""
+    """Return the diameter of a drilling in the plane of the section, at its outer mouth."""
     flat, away = section.frame.flat(cylinder.point), section.frame.flat(cylinder.direction)
     start = cylinder.point.dot(cylinder.direction)
     reach = max(cylinder.reach, key=abs) - start
@@ -148,7 +148,7 @@ def _drilled(cylinder: Surface, section: View, count: int) -> Measure:
 
 
 def length_between(low: float, high: float, section: View, count: int = 1) -> Measure:
-    """The length between two planes across the shaft."""
+    """Return the length between two planes across the shaft."""
     points = (low, _foot(section, low)), (high, _foot(section, high))
     return Measure("length", high - low, "section", "across", points, count)
 
@@ -186,13 +186,13 @@ def _pairs(levels: Sequence[float]) -> Iterator[tuple[tuple[int, int], tuple[flo
 
 
 def _foot(section: View, z: float) -> float:
-    """The lowest point of the section at that place along the shaft."""
+    """Return the lowest point of the section at that place along the shaft."""
     ends = [p[1] for edge in section.edges for p in edge if abs(p[0] - z) < 1e-4]
     return min(ends, default=section.box[0][1])
 
 
 def _of_axes(cylinders: Iterable[Surface], section: View) -> Iterator[Measure]:
-    """Distances of axes along the shaft that lie in the section from the shaft's own."""
+    """Yield the distances of axes along the shaft that lie in the section from the shaft's own."""
     heights = {
         round(section.frame.flat(c.point)[1], 6) for c in cylinders if _within(c, section.frame.towards)
     }
@@ -212,7 +212,7 @@ def _of_arcs(section: View, spheres: dict[float, int]) -> Iterator[Measure]:
 
 
 def _of_slopes(section: View) -> Iterator[Measure]:
-    """Angles of sloping edges of the section against a plane across the shaft."""
+    """Yield the angles of sloping edges of the section against a plane across the shaft."""
     ends = [sorted((a, b), key=lambda point: point[1]) for a, b in section.edges]
     sloping = [(a, b) for a, b in ends if abs(b[0] - a[0]) > _CLEAR < b[1] - a[1]]
     longest = max((hypot(b[0] - a[0], b[1] - a[1]) for a, b in sloping), default=0.0)
@@ -225,7 +225,7 @@ def _of_slopes(section: View) -> Iterator[Measure]:
 
 
 def _of_flanks(seen: Seen, end: View) -> Iterator[Measure]:
-    """Angles between planes that hold the shaft's axis, on the side of the material."""
+    """Yield the angles between planes that hold the shaft's axis, on the side of the material."""
     flanks = [plane for plane in seen.planes if plane.holds(Z)]
     legs = [_leg(plane, end) for plane in flanks]
     for one, other in combinations([leg for leg in legs if leg], 2):
@@ -236,7 +236,7 @@ def _of_flanks(seen: Seen, end: View) -> Iterator[Measure]:
 
 
 def _leg(plane: Surface, end: View) -> Point | None:
-    """The end of a visible line that runs away from the shaft within a plane."""
+    """Return the end of a visible line that runs away from the shaft within a plane."""
     normal = end.frame.flat(plane.direction)
     on = [p for curve in end.visible for p in curve.points if abs(p[0] * normal[0] + p[1] * normal[1]) < 1e-4]
     return max(on, key=lambda p: hypot(*p), default=None)

@@ -39,7 +39,7 @@ _LAYERS = {
 
 
 def document_of(plan: Plan) -> Drawing:
-    """An empty drawing with layers and styles."""
+    """Return an empty drawing with layers and styles."""
     document = new("R2010", setup=["linetypes"], units=units.MM)
     document.header["$LTSCALE"] = 0.35 / plan.scale
     document.appids.add(APP)
@@ -127,7 +127,7 @@ class Page:
             override.dimension.set_xdata(APP, [(1000, placed.dimension.name)])
 
     def _drawn(self, placed: Placed) -> Any:
-        """A DIMENSION of the right kind."""
+        """Return a DIMENSION of the right kind."""
         measure, base = placed.dimension.measure, placed.base
         points: Any = [(x + placed.right, y) for x, y in measure.points]
         style: Any = {"text": placed.label.mtext, "dimstyle": STYLE}
@@ -184,14 +184,14 @@ class Page:
         self.space.add_lwpolyline([self.plan.at(*p) for p in points], dxfattribs={"layer": layer})
 
     def write(self, text: str, x: float, y: float, size: float) -> Text:
-        """A line of letters on the paper."""
+        """Return a line of letters on the paper."""
         attributes = {"layer": "TEXT", "style": STYLE, "height": size / self.plan.scale}
         written: Text = self.space.add_text(text, dxfattribs={**attributes, "insert": self.plan.at(x, y)})
         return written
 
 
 def _counter_clockwise(points: Sequence[Point]) -> tuple[Point, Point, Point]:
-    """Corner and legs of an angle below 180°, the legs in the order in which it opens."""
+    """Return the corner and legs of an angle below 180°, the legs in the order in which it opens."""
     corner, one, other = points
     cross = (one[0] - corner[0]) * (other[1] - corner[1]) - (one[1] - corner[1]) * (other[0] - corner[0])
     return (corner, one, other) if cross >= 0 else (corner, other, one)

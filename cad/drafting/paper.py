@@ -24,7 +24,10 @@ _PAGE = (
 
 
 def as_pdf(svg: bytes) -> bytes:
-    """A drawing as PDF; equal drawings give equal bytes. What a client wrote in it is text there too."""
+    """Return a drawing as PDF.
+
+    Equal drawings give equal bytes. What a client wrote in it is text there too.
+    """
     files: Any = {
         "main": _PAGE.format(*_size(svg)).encode(),
         "drawing.svg": svg,
@@ -35,6 +38,6 @@ def as_pdf(svg: bytes) -> bytes:
 
 
 def _size(svg: bytes) -> tuple[float, float]:
-    """Width and height of a drawing's sheet [mm]; the words of a client stand behind them."""
+    """Return the width and height of a drawing's sheet [mm]; the words of a client stand behind them."""
     found = _SIZE.search(svg[:500])
     return (float(found[1]), float(found[2])) if found else (FORMATS[0].width, FORMATS[0].height)

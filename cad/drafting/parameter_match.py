@@ -70,7 +70,7 @@ def matched(
 
 
 def _clearest(fitting: Sequence[Measure], matches: Sequence[Dimension]) -> Measure:
-    """The first; of equal ones drawn within the view, that which is farthest from the others there."""
+    """Return the first; of equal ones drawn within the view, that which is farthest from the others there."""
     others = [d.measure.points[0] for d in matches if d.measure.form in _WITHIN]
     first = fitting[0]
     if first.form not in _WITHIN or not others:
@@ -111,7 +111,7 @@ def _sorts(name: str, is_angle: bool) -> tuple[Sort, ...]:
 
 
 def length_of(text: str) -> float:
-    """A length in millimetres.
+    """Return a length in millimetres.
 
     Raises
     ------
@@ -125,7 +125,7 @@ def length_of(text: str) -> float:
 
 
 def _size(text: str) -> tuple[float, bool] | None:
-    """A length in millimetres or an angle in degrees, and which of them it is."""
+    """Return a length in millimetres or an angle in degrees, and which of them it is."""
     match = _AMOUNT.fullmatch(text)
     if match is None:
         return None

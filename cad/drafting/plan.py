@@ -32,22 +32,24 @@ class Plan:
     format: Format = FORMATS[0]
 
     def at(self, x: float, y: float) -> Point:
-        """A place on the paper [mm from its lower left corner] in the drawing's coordinates."""
+        """Return a place on the paper [mm from its lower left corner] in the drawing's coordinates."""
         return self.corner[0] + x / self.scale, self.corner[1] + y / self.scale
 
     def paper(self, point: Sequence[float], right: float = 0.0) -> Point:
-        """A point of a view, moved to the right, on the paper [mm]."""
+        """Return a point of a view, moved to the right, on the paper [mm]."""
         x, y = point[0] + right - self.corner[0], point[1] - self.corner[1]
         return x * self.scale, y * self.scale
 
     @property
     def scale_text(self) -> str:
-        """The scale in words."""
+        """Return the scale in words."""
         return f"{self.scale:g}:1" if self.scale >= 1 else f"1:{1 / self.scale:g}"
 
 
 def plans(section: View, end: View, wanted: Sequence[Dimension], elsewhere: int = 0) -> Iterator[Plan]:
-    """Plans in the order in which they are to be tried; removed sections have `elsewhere` dimensions more.
+    """Yield the plans in the order in which they are to be tried.
+
+    Removed sections have `elsewhere` dimensions more.
 
     First come the sheets and scales whose views fill the sheet, the smallest sheet and its largest scale
     before others; then all others on which everything should have room, the fullest first.

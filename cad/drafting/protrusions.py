@@ -18,7 +18,7 @@ _CLEAR = 1e-6  # [mm]
 
 
 def standing(bodies: Sequence[Body], section: View, end: View) -> list[Measure]:
-    """Every such size that the views show."""
+    """Return every such size that the views show."""
     seen = look_at(bodies).values()
     kinds = (of_circles, of_levels, of_arms, of_uprights)
     beside = [measure for one in seen for kind in kinds for measure in kind(one, end)]
@@ -26,7 +26,7 @@ def standing(bodies: Sequence[Body], section: View, end: View) -> list[Measure]:
 
 
 def of_circles(seen: Seen, end: View) -> Iterator[Measure]:
-    """The circles about the shaft on which the axes of holes lie."""
+    """Yield the circles about the shaft on which the axes of holes lie."""
     for cylinder in seen.cylinders:
         if cylinder.along(Z) and not cylinder.about(Z):
             right, up = end.frame.flat(cylinder.point)
@@ -63,7 +63,7 @@ def of_arms(seen: Seen, end: View) -> Iterator[Measure]:
 
 
 def of_uprights(seen: Seen, end: View) -> Iterator[Measure]:
-    """Holes along y: their diameter, their depth, and how far apart their axes are."""
+    """Yield the holes along y: their diameter, their depth, and how far apart their axes are."""
     feet = []
     for hole in (cylinder.turned(Y) for cylinder in seen.cylinders if cylinder.along(Y)):
         x, (low, high) = hole.point.x, hole.reach
@@ -97,7 +97,7 @@ def of_levels(seen: Seen, end: View) -> Iterator[Measure]:
 
 
 def of_bevels(section: View) -> Iterator[Measure]:
-    """The width of edges of the section at 45°, along the shaft."""
+    """Yield the width of edges of the section at 45°, along the shaft."""
     for (x, y), (z, v) in section.edges:
         if abs(z - x) > _CLEAR and isclose(abs(z - x), abs(v - y), rel_tol=1e-6):
             low, high = sorted(((x, y), (z, v)))

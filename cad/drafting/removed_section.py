@@ -50,12 +50,12 @@ class Removed:
 
     @property
     def names(self) -> set[str | None]:
-        """The parameters that it shows."""
+        """Return the parameters that it shows."""
         return {one.name for one in self.dimensions}
 
     @property
     def along(self) -> list[Point]:
-        """Where along the shaft the upright dimensions begin and end."""
+        """Return where along the shaft the upright dimensions begin and end."""
         sign = self.view.frame.up.dot(Z)
         upright = [d.measure.points for d in self.dimensions if d.measure.form == "up"]
         ends = (sorted(round(y * sign, 6) for _, y in points) for points in upright)
@@ -69,7 +69,7 @@ def removed_sections(
     bodies: Sequence[Body],
     end: View,
 ) -> list[Removed]:
-    """The removed sections of a drawing; one that shows nothing is left out."""
+    """Return the removed sections of a drawing; one that shows nothing is left out."""
     if (end.frame.up - Y).Length > CLEAR:
         return []  # y is not upright in the view in which the section would be marked
     return [
@@ -183,7 +183,7 @@ def _by_size(dimensions: Sequence[Dimension]) -> list[Dimension]:
 
 
 def _is_within(one: Dimension, view: View) -> bool:
-    """True if what a dimension measures ends within the section, as a web does between two pockets."""
+    """Return whether what a dimension measures ends within the section, as a web does between two pockets."""
     return min(x for x, _ in one.measure.points) > view.box[0][0] + CLEAR
 
 
@@ -229,7 +229,7 @@ def _moved(one: Dimension, shift: Point) -> Dimension:
 
 
 def _shifted(view: View, shift: Point) -> View:
-    """A view at another place."""
+    """Return a view at another place."""
     curves = [curve.moved(shift) for curve in view.visible]
     cut = [
         Cut(

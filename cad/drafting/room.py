@@ -55,11 +55,11 @@ class Room:
         return not any(crossed(piece, box).any() for box in self.words)
 
     def length_in_views(self, one: Point, other: Point) -> float:
-        """The length of a straight line within the boxes of views [mm on paper]."""
+        """Return the length of a straight line within the boxes of views [mm on paper]."""
         return sum(_length_within(one, other, box) for box in self.views)
 
     def first(self, boxes: Iterable[tuple[Rectangle, Point]]) -> Point | None:
-        """The point that belongs to the first free rectangle, which is taken."""
+        """Return the point that belongs to the first free rectangle, which is taken."""
         for box, point in boxes:
             if self.is_free(box):
                 self.add(box)
@@ -73,7 +73,7 @@ class Room:
 
 
 def _length_within(one: Point, other: Point, box: Rectangle) -> float:
-    """The part of a straight line that lies within a rectangle (Liang and Barsky)."""
+    """Return the part of a straight line that lies within a rectangle (Liang and Barsky)."""
     enter, leave = 0.0, 1.0
     for axis in (0, 1):
         away = other[axis] - one[axis]
@@ -105,6 +105,6 @@ def crossed(lines: np.ndarray, box: Rectangle, apart: float = 0.0) -> np.ndarray
 
 
 def around(centre: Point, width: float, height: float) -> Rectangle:
-    """A rectangle by its middle."""
+    """Return a rectangle by its middle."""
     x, y = centre
     return x - width / 2, y - height / 2, x + width / 2, y + height / 2

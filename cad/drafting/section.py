@@ -22,11 +22,11 @@ class Frame:
 
     @property
     def towards(self) -> Vector:
-        """From the paper to the eye."""
+        """Return the unit vector from the paper towards the viewer."""
         return self.right.cross(self.up)
 
     def flat(self, point: Vector) -> Point:
-        """A point of space on the paper."""
+        """Return a point of space on the paper."""
         return point.dot(self.right), point.dot(self.up)
 
 
@@ -49,27 +49,27 @@ class Cut:
 
 
 def cut_of(part: int, face: Face, frame: Frame) -> Cut:
-    """A cut face of a part on the paper."""
+    """Return a cut face of a part on the paper."""
     wires = face.outerWire(), *face.innerWires()
     return Cut(part, [outline([curve_of(edge, frame) for edge in wire.Edges()]) for wire in wires])
 
 
 def reach_of(shape: Shape) -> float:
-    """The reach [mm] of planes and boxes that hold a shape and the origin."""
+    """Return the reach [mm] of planes and boxes that hold a shape and the origin."""
     box = BoundBox._fromTopoDS(shape.wrapped, None, False)  # loose, a hundred times as fast
     sides = (box.xmin, box.xmax, box.ymin, box.ymax, box.zmin, box.zmax)
     return 2.5 * float(max(abs(side) for side in sides))
 
 
 def faces_across(shape: Shape, normal: Vector) -> list[Face]:
-    """The faces in which a plane through the origin cuts a shape."""
+    """Return the faces in which a plane through the origin cuts a shape."""
     size = reach_of(shape)
     plane = Face.makePlane(2 * size, 2 * size, Vector(0, 0, 0), normal)
     return list(plane.intersect(shape).Faces())
 
 
 def half_behind(shape: Shape, normal: Vector) -> list[Shape]:
-    """The parts of a shape behind a plane through the origin."""
+    """Return the parts of a shape behind a plane through the origin."""
     size = reach_of(shape)
     low = Vector(-size, -size, -size) + normal * -size
     box = Solid.makeBox(2 * size, 2 * size, 2 * size, low)
@@ -77,7 +77,7 @@ def half_behind(shape: Shape, normal: Vector) -> list[Shape]:
 
 
 def curve_of(edge: Edge, frame: Frame) -> Curve:
-    """An edge of a cut face."""
+    """Return an edge of a cut face."""
     if edge.geomType() == "LINE":
         return Curve([frame.flat(edge.startPoint()), frame.flat(edge.endPoint())])
     if edge.geomType() == "CIRCLE":
@@ -87,7 +87,7 @@ def curve_of(edge: Edge, frame: Frame) -> Curve:
 
 
 def _round(edge: Edge, frame: Frame) -> Curve:
-    """A circular edge in the plane of the paper."""
+    """Return a circular edge in the plane of the paper."""
     centre, radius = frame.flat(edge.arcCenter()), edge.radius()
     turn = min(degrees(edge.Length() / radius), 360.0)
     begin, middle, end = (frame.flat(edge.positionAt(share)) for share in (0.0, 0.25, 1.0))
@@ -100,6 +100,6 @@ def _round(edge: Edge, frame: Frame) -> Curve:
 
 
 def arc_of(edge: Edge, frame: Frame) -> Arc:
-    """A circular edge of a section."""
+    """Return a circular edge of a section."""
     whole = bool(edge.startPoint().sub(edge.endPoint()).Length < CLEAR)
     return Arc(frame.flat(edge.arcCenter()), edge.radius(), frame.flat(edge.positionAt(0.5)), whole)

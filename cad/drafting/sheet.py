@@ -40,7 +40,7 @@ _MOST_PLANS = 8  # sheets and scales that are tried
 
 
 def write_dxf(bodies: Sequence[Body], header: Header | None) -> bytes:
-    """A dimensioned drawing; equal bodies and headers give equal bytes."""
+    """Return a dimensioned drawing; equal bodies and headers give equal bytes."""
     stream = io.StringIO()
     with _no_times():
         document, _ = draw(bodies, header)
@@ -77,7 +77,7 @@ class _Content:
     unseen: Sequence[str]
 
     def plans(self) -> list[Plan]:
-        """The sheets and scales that are tried."""
+        """Return the sheets and scales that are tried."""
         elsewhere = sum(len(one.dimensions) for one in self.removed)
         return list(islice(plans(self.section, self.end, self.dimensions, elsewhere), _MOST_PLANS))
 
@@ -94,7 +94,7 @@ class _Laid:
 
 
 def draw(bodies: Sequence[Body], header: Header | None) -> tuple[Drawing, Format]:
-    """The drawing as a document of ezdxf, and its sheet."""
+    """Return the drawing as a document of ezdxf, and its sheet."""
     declared = Declared.of(header, is_assembly=is_assembly(bodies))
     content, laid = _laid_out(bodies, header, declared)
     page = laid.page
@@ -111,7 +111,10 @@ def draw(bodies: Sequence[Body], header: Header | None) -> tuple[Drawing, Format
 
 
 def _laid_out(bodies: Sequence[Body], header: Header | None, declared: Declared) -> tuple[_Content, _Laid]:
-    """The first sheet on which everything has a place; one without removed sections if there is no other."""
+    """Return the first sheet on which everything has a place.
+
+    One without removed sections if there is no other.
+    """
     section, end = views(bodies, is_shaft=declared.is_shaft)
     parameters = header.parameters if header else {}
     repeated = declared.repeated(parameters, bodies)
@@ -142,7 +145,7 @@ def _laid_out(bodies: Sequence[Body], header: Header | None, declared: Declared)
 def _laid(
     content: _Content, bodies: Sequence[Body], declared: Declared, plan: Plan, *, is_last: bool
 ) -> _Laid:
-    """Dimensions, removed sections and symbols on one sheet.
+    """Return the dimensions, removed sections and symbols on one sheet.
 
     Raises
     ------
@@ -178,7 +181,7 @@ def _fill(
 
 
 def _room(section: View, end: View, centres: Centres, plan: Plan) -> Room:
-    """The sheet with its views, into which no words may come, and its centre lines."""
+    """Return the sheet with its views, into which no words may come, and its centre lines."""
     left, low, right, high = plan.format.area
     room = Room((left + 1, low + 1, right - 1, high - 1))
     for view, away in ((section, 0.0), (end, plan.beside)):
@@ -189,6 +192,6 @@ def _room(section: View, end: View, centres: Centres, plan: Plan) -> Room:
 
 
 def _on_paper(view: View, plan: Plan, right: float) -> Rectangle:
-    """What a view takes on the paper."""
+    """Return what a view takes on the paper."""
     low, high = (plan.paper(corner, right) for corner in view.box)
     return (*low, *high)

@@ -53,17 +53,17 @@ class General:
 
     @property
     def has_profile(self) -> bool:
-        """True if ISO 22081 holds."""
+        """Return whether ISO 22081 holds."""
         return self.profile is not None and self.datum != ""
 
     @property
     def text(self) -> str:
-        """What the title block says, before the frame of the profile."""
+        """Return what the title block says, before the frame of the profile."""
         return f"{SIZES}, {SURFACES}" if self.has_profile else GENERAL
 
     @property
     def note(self) -> str:
-        """What it means, for the notes."""
+        """Return what it means, for the notes."""
         if not self.has_profile:
             return f"sizes, angles and geometry without a tolerance: {GENERAL}"
         return (
@@ -155,7 +155,7 @@ def table(page: Page, parameters: Mapping[str, str], unseen: Sequence[str]) -> N
 
 
 def _wrapped(text: str, width: float) -> list[str]:
-    """A value in lines that are not wider than that; of a very long list only its beginning."""
+    """Return a value in lines that are not wider than that; of a very long list only its beginning."""
     if width_of(text, _LETTERS) <= width:
         return [text]
     lines = [""]

@@ -48,7 +48,7 @@ _FLAT = 0.02  # greatest distance of a hatched outline from its arcs [mm on pape
 
 
 def write_drawing(bodies: Sequence[Body], header: Header | None) -> bytes:
-    """A dimensioned drawing, the sheet in millimetres."""
+    """Return a dimensioned drawing, the sheet in millimetres."""
     document, format = draw(bodies, header)
     frame: Any = document.modelspace().query('LWPOLYLINE[layer=="FRAME"]').first
     (left, low), (right, _) = frame.get_points("xy")[:2]
@@ -77,11 +77,11 @@ class Ink:
         self.left, self.low, self.scale, self.format = left, low, scale, format
 
     def at(self, point: Any) -> tuple[float, float]:
-        """A place on the paper, y downwards."""
+        """Return a place on the paper, y downwards."""
         return (point[0] - self.left) * self.scale, self.format.height - (point[1] - self.low) * self.scale
 
     def of(self, entity: Any, layer: str) -> str:
-        """An entity, or its parts."""
+        """Return an entity, or its parts."""
         match entity.dxftype():
             case "DIMENSION" | "INSERT":
                 return "".join(self.of(part, layer) for part in entity.virtual_entities())
@@ -109,7 +109,10 @@ class Ink:
         return "M" + "L".join("{:.3f} {:.3f}".format(*self.at(point)) for point in points)
 
     def _arc(self, entity: Any, start: float, turn: float) -> str:
-        """An arc as one or two arcs of SVG, none of which turns more than half; y points down there."""
+        """Return an arc as one or two arcs of SVG, none of which turns more than half.
+
+        Y points down there.
+        """
         (x, y), r = self.at(entity.dxf.center), entity.dxf.radius * self.scale
         parts = 2 if turn > 180 else 1
         angles = [radians(start + turn * i / parts) for i in range(parts + 1)]
@@ -142,7 +145,7 @@ class Ink:
         )
 
     def _words(self, entity: Any) -> str:
-        """The words of a dimension about their middle, deviations one above the other behind them."""
+        """Return the words of a dimension about their middle, deviations one above the other behind them."""
         height = entity.dxf.char_height * self.scale
         angle = entity.get_rotation()
         x, y = self.at(entity.dxf.insert)
@@ -169,7 +172,7 @@ def _text(text: str, x: float, y: float, height: float, anchor: str, turn: str) 
 
 
 def _mark_of(entity: Any) -> str:
-    """The attribute that says which field of the title block a text is, if a stamp fills it in."""
+    """Return the attribute that says which field of the title block a text is, if a stamp fills it in."""
     if not entity.has_xdata(APP):
         return ""
     return f' data-stamp="{entity.get_xdata(APP)[0].value.removeprefix(MARK)}"'

@@ -25,7 +25,7 @@ class Symbol:
     filled: Sequence[Polyline] = field(default_factory=list)
 
     def moved(self, x: float, y: float) -> Symbol:
-        """The symbol at another place."""
+        """Return the symbol at another place."""
 
         def move(line: Polyline) -> Polyline:
             return [(a + x, b + y) for a, b in line]
@@ -38,7 +38,7 @@ class Symbol:
         )
 
     def joined(self, *others: Symbol) -> Symbol:
-        """The symbol and others as one."""
+        """Return the symbol and others as one."""
         every = (self, *others)
         return Symbol(
             [line for one in every for line in one.lines],
@@ -49,7 +49,7 @@ class Symbol:
 
 
 def first_angle(height: float) -> Symbol:
-    """A truncated cone from its side, and to its right as it is seen from its left (ISO 5456-2)."""
+    """Return a truncated cone from its side, and to its right as it is seen from its left (ISO 5456-2)."""
     small, large, half = height / 4, height / 2, height / 2
     right = 1.25 * height
     cone = [
@@ -82,14 +82,14 @@ def texture(height: float, reach: float) -> Symbol:
 
 
 def basic_texture(height: float) -> Symbol:
-    """The hook alone, in brackets: surfaces that have a symbol of their own."""
+    """Return the hook alone, in brackets: surfaces that have a symbol of their own."""
     rise = height
     low, high = rise / sqrt(3), 1.6 * rise / sqrt(3)
     return Symbol(lines=[[(-low, rise), (0.0, 0.0), (high, 1.6 * rise)]])
 
 
 def geometric(form: str, size: float) -> Symbol:
-    """The sign of a geometric tolerance (ISO 1101) in a square of that size about the origin.
+    """Return the sign of a geometric tolerance (ISO 1101) in a square of that size about the origin.
 
     Raises
     ------
@@ -139,13 +139,13 @@ def geometric(form: str, size: float) -> Symbol:
 
 
 def _half_round(half: float) -> Polyline:
-    """The upper half of a circle of that radius over the base of the sign of a profile."""
+    """Return the upper half of a circle of that radius over the base of the sign of a profile."""
     turns = (pi * step / 16 for step in range(17))
     return [(half * cos(turn), half * (sin(turn) - 0.5)) for turn in turns]
 
 
 def arrow(tip: Point, start: Point, length: float = 3.0) -> Symbol:
-    """A line with a filled arrow at its tip."""
+    """Return a line with a filled arrow at its tip."""
     x, y = start[0] - tip[0], start[1] - tip[1]
     size = hypot(x, y) or 1.0
     x, y = x / size * length, y / size * length
@@ -154,7 +154,7 @@ def arrow(tip: Point, start: Point, length: float = 3.0) -> Symbol:
 
 
 def datum(tip: Point, angle: float, stem: float) -> tuple[Symbol, Point]:
-    """A filled triangle on a line at `tip`, with a stem away at an angle [rad]; and the stem's end."""
+    """Return a filled triangle on a line at `tip`, with a stem away at an angle [rad]; and the stem's end."""
     u, v = cos(angle), sin(angle)
     top = tip[0] + 3.0 * u, tip[1] + 3.0 * v
     base = [(tip[0] - 1.7 * v, tip[1] + 1.7 * u), (tip[0] + 1.7 * v, tip[1] - 1.7 * u)]

@@ -30,22 +30,22 @@ class Field:
 
     @property
     def mark(self) -> str:
-        """Its name in files, for a stamp."""
+        """Return its name in files, for a stamp."""
         return MADE_OUT + self.name
 
     @property
     def room(self) -> float:
-        """Width of its text [mm on paper]."""
+        """Return the width of its text [mm on paper]."""
         return self.width - 2 * _INSET
 
     @property
     def text_at(self) -> tuple[float, float]:
-        """Where its text begins, from the lower left corner of the block."""
+        """Return where its text begins, from the lower left corner of the block."""
         return self.left + _INSET, self.low + 1.7
 
     @property
     def caption_at(self) -> tuple[float, float]:
-        """Where its caption begins."""
+        """Return where its caption begins."""
         return self.left + _INSET, self.low + self.height - 2.7
 
 
@@ -102,7 +102,7 @@ _SHARE = 20  # a tolerance is at least so many times the roughness of its surfac
 
 
 def roughness(width: float) -> float:
-    """Greatest roughness Ra [µm] of a surface whose dimension has a tolerance of that width [mm].
+    """Return the greatest roughness Ra [µm] of a surface whose dimension has a tolerance of that width [mm].
 
     The rule is ours: the largest usual value of at most a twentieth of the tolerance, so that peaks and
     valleys, some five times Ra apart, take at most a quarter of it.

@@ -42,24 +42,24 @@ class View:
 
     @property
     def straight(self) -> list[tuple[Point, Point]]:
-        """Visible straight lines by their ends."""
+        """Return the visible straight lines by their ends."""
         return _straight(self.visible)
 
     @property
     def unseen(self) -> list[tuple[Point, Point]]:
-        """Hidden straight lines by their ends."""
+        """Return the hidden straight lines by their ends."""
         return _straight(self.hidden)
 
     @property
     def box(self) -> tuple[Point, Point]:
-        """Lower left and upper right corner of what is drawn."""
+        """Return the lower left and upper right corner of what is drawn."""
         points = [point for curve in (*self.visible, *self.hidden) for point in curve.points]
         across, up = [x for x, _ in points], [y for _, y in points]
         return (min(across), min(up)), (max(across), max(up))
 
     @property
     def circles(self) -> list[Round]:
-        """Circles, and arcs of at least half a turn, whether they are hidden or not."""
+        """Return the circles, and arcs of at least half a turn, whether they are hidden or not."""
         turns: dict[tuple[float, ...], list[Round]] = {}
         for curve in (*self.visible, *self.hidden):
             if (arc := curve.arc) is not None:
@@ -73,7 +73,7 @@ def _straight(curves: Sequence[Curve]) -> list[tuple[Point, Point]]:
 
 
 def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View]:
-    """Section and end view; of a shaft, the view from its side instead of a section."""
+    """Return the section and end view; of a shaft, the view from its side instead of a section."""
     up = _upright(bodies)
     section, end = Frame(Z, up), Frame(Z.cross(up), up)
     placed = [
@@ -85,13 +85,13 @@ def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View
 
 
 def is_assembly(bodies: Sequence[Body]) -> bool:
-    """True if balls or bars stand among other parts: then the drawing is that of an assembly."""
+    """Return whether balls or bars stand among other parts: then the drawing is that of an assembly."""
     whole = [_is_ball(body.shape) or _is_bar(body.shape) for body in bodies]
     return any(whole) and not all(whole)
 
 
 def _end(placed: Sequence[_Placed], frame: Frame, section: Frame) -> View:
-    """The view along the shaft, opened at holes that the section does not show."""
+    """Return the view along the shaft, opened at holes that the section does not show."""
     plane = Plane((0, 0, 0), frame.right, frame.towards)
     shapes = [one.shape for one in placed if not one.is_whole]
     normal = section.towards
@@ -128,7 +128,7 @@ def _end(placed: Sequence[_Placed], frame: Frame, section: Frame) -> View:
 
 
 def _axes_across(placed: Sequence[_Placed], frame: Frame) -> list[tuple[Point, Point]]:
-    """Axes of cylinders that lie in the plane of the paper, from where to where these reach."""
+    """Return the axes of cylinders that lie in the plane of the paper, from where to where these reach."""
     axes = []
     for cylinder in (c for one in placed for c in look(one.shape).cylinders):
         if abs(cylinder.direction.dot(frame.towards)) < CLEAR:
@@ -160,7 +160,7 @@ def _is_bar(shape: Shape) -> bool:
 
 
 def _upright(bodies: Sequence[Body]) -> Vector:
-    """The axis across the shaft whose plane with the shaft is cut."""
+    """Return the axis across the shaft whose plane with the shaft is cut."""
     seen = [look(body.shape.moved(place)) for body in bodies for place in body.places]
     cylinders = [c for one in seen for c in one.cylinders if not _surrounds(c)]
     planes = [plane for one in seen for plane in one.planes]
@@ -196,7 +196,7 @@ def _surrounds(cylinder: Surface) -> bool:
 
 
 def _sides(shape: Shape, normal: Vector) -> tuple[float, float]:
-    """The reach of a shape against a normal along an axis, and with it."""
+    """Return the reach of a shape against a normal along an axis, and with it."""
     box = shape.BoundingBox()
     corners = Vector(box.xmin, box.ymin, box.zmin), Vector(box.xmax, box.ymax, box.zmax)
     low, high = sorted(corner.dot(normal) for corner in corners)
@@ -204,7 +204,7 @@ def _sides(shape: Shape, normal: Vector) -> tuple[float, float]:
 
 
 def _section(placed: Sequence[_Placed], frame: Frame) -> View:
-    """What lies behind the plane, with what is not cut, and the faces that the plane cuts."""
+    """Return what lies behind the plane, with what is not cut, and the faces that the plane cuts."""
     sections = [(one, face) for one in placed for face in faces_across(one.shape, frame.towards)]
     faces = [face for _, face in sections]
     behind = [shape for one in placed for shape in _seen(one, frame.towards)]
@@ -220,14 +220,14 @@ def _section(placed: Sequence[_Placed], frame: Frame) -> View:
 
 
 def _seen(one: _Placed, normal: Vector) -> list[Shape]:
-    """What a section leaves of a part: its half behind the plane, or all of it if it is not cut."""
+    """Return what a section leaves of a part: its half behind the plane, or all of it if it is not cut."""
     if not one.is_whole:
         return half_behind(one.shape, normal)
     return [one.shape] if _sides(one.shape, normal)[0] < -CLEAR else []
 
 
 def _projected(shapes: Sequence[Shape], frame: Frame) -> View:
-    """The edges of shapes as they are seen, with those that are hidden."""
+    """Return the edges of shapes as they are seen, with those that are hidden."""
     toward, right = frame.towards, frame.right
     eye = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*toward.toTuple()), gp_Dir(*right.toTuple()))
     whole = Compound.makeCompound(shapes)

@@ -52,7 +52,7 @@ _DIRECTORY, _LARGE_DIRECTORY = (
 
 
 def admitted(content: bytes) -> bytes:
-    """The file as FreeCAD shall open it.
+    """Return the file as FreeCAD shall open it.
 
     Raises
     ------
@@ -123,7 +123,7 @@ class _Document:
         self._depth = 0
 
     def read(self, text: bytes) -> set[str]:
-        """The parts that a document names.
+        """Return the parts that a document names.
 
         Raises
         ------

@@ -161,7 +161,7 @@ def keep_to_files(libc: ctypes.CDLL, writable: str) -> None:
 
 
 def mapped() -> int:
-    """The address space of this process [bytes]."""
+    """Return the address space of this process [bytes]."""
     with open("/proc/self/statm") as statm:
         return int(statm.read().split()[0]) * resource.getpagesize()
 
@@ -189,7 +189,7 @@ class Refused(Exception):
 
 
 def quantity_of(app: Any, text: str) -> Any:
-    """A cell's content as a constant, or None if it is a formula or words."""
+    """Return a cell's content as a constant, or None if it is a formula or words."""
     try:
         return app.Units.Quantity(text.lstrip("=").strip()) if text.strip("= ") else None
     except Exception:
@@ -197,14 +197,14 @@ def quantity_of(app: Any, text: str) -> Any:
 
 
 def unit_of(quantity: Any) -> str | None:
-    """The unit in which a quantity is offered, or None for kinds that are not."""
+    """Return the unit in which a quantity is offered, or None for kinds that are not."""
     if not any(quantity.Unit.Signature):
         return "1"
     return UNITS.get(quantity.Unit.Type)
 
 
 def cells(app: Any, sheet: Any) -> Iterator[tuple[str, float, str]]:
-    """Every alias of a spreadsheet whose cell holds a constant."""
+    """Yield every alias of a spreadsheet whose cell holds a constant."""
     for cell in sheet.PropertiesList:
         alias = sheet.getAlias(cell) if CELL.fullmatch(cell) else None
         if not alias:
@@ -216,7 +216,7 @@ def cells(app: Any, sheet: Any) -> Iterator[tuple[str, float, str]]:
 
 
 def constraints(sketch: Any) -> Iterator[tuple[str, float, str]]:
-    """Every named driving constraint of a sketch that no expression binds."""
+    """Yield every named driving constraint of a sketch that no expression binds."""
     bound = {entry[0].lstrip(".") for entry in sketch.ExpressionEngine}
     for number, constraint in enumerate(sketch.Constraints):
         name = constraint.Name
@@ -228,7 +228,7 @@ def constraints(sketch: Any) -> Iterator[tuple[str, float, str]]:
 
 
 def parameters(app: Any, document: Any) -> list[list[Any]]:
-    """Every parameter that a document offers: [object, kind, key, value, unit, label]."""
+    """Return every parameter that a document offers: [object, kind, key, value, unit, label]."""
     listed: list[list[Any]] = []
     for thing in document.Objects:
         if thing.TypeId == "Spreadsheet::Sheet":
@@ -289,7 +289,7 @@ def is_drawn(thing: Any) -> bool:
 
 
 def finished(document: Any) -> list[Any]:
-    """The objects that nothing else is made of; hidden ones only if all are."""
+    """Return the objects that nothing else is made of; hidden ones only if all are."""
     drawn = [thing for thing in document.Objects if is_drawn(thing)]
     names = {thing.Name for thing in drawn}
     ends = [t for t in drawn if not any(user.Name in names and user is not t for user in t.InListRecursive)]
@@ -298,7 +298,7 @@ def finished(document: Any) -> list[Any]:
 
 
 def solids(document: Any) -> list[tuple[str, float, bytes]]:
-    """Every solid of the finished objects where it stands: name, volume [mm³], shape as text."""
+    """Return every solid of the finished objects where it stands: name, volume [mm³], shape as text."""
     listed = []
     for thing in finished(document):
         shape = thing.Shape.copy()
@@ -315,7 +315,7 @@ def solids(document: Any) -> list[tuple[str, float, bytes]]:
 
 
 def answer(app: Any, request: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
-    """The answer to one request, with the shapes that follow it."""
+    """Return the answer to one request, with the shapes that follow it."""
     for name in list(app.listDocuments()):
         app.closeDocument(name)
     begun = time.monotonic()
@@ -334,7 +334,7 @@ def answer(app: Any, request: dict[str, Any]) -> tuple[dict[str, Any], list[byte
 
 
 def refusal(error: BaseException) -> dict[str, Any]:
-    """An error as an answer."""
+    """Return an error as an answer."""
     if isinstance(error, Refused):
         return {"refused": error.code, "detail": str(error), "names": error.names}
     if isinstance(error, MemoryError) or "bad_alloc" in repr(error):

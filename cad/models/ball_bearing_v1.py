@@ -50,17 +50,17 @@ class Section:
 
     @property
     def groove_angle(self) -> float:
-        """Half the angle of the groove's arc [rad]."""
+        """Return half the angle of the groove's arc [rad]."""
         return acos((self.shoulder - self.groove_centre) / self.groove_radius)
 
     @property
     def area(self) -> float:
-        """A rectangle less two chamfers and the circular segment of the groove [mm²]."""
+        """Return a rectangle less two chamfers and the circular segment of the groove [mm²]."""
         return (self.back - self.shoulder) * self.width - self.chamfer**2 - self._segment
 
     @property
     def moment(self) -> float:
-        """First moment of the area about the pitch circle [mm³]."""
+        """Return the first moment of the area about the pitch circle [mm³]."""
         rectangle = (self.back**2 - self.shoulder**2) / 2 * self.width
         chamfers = self.chamfer**2 * (self.back - self.chamfer / 3)
         arc = 2 / 3 * (self.groove_radius * sin(self.groove_angle)) ** 3
@@ -72,7 +72,7 @@ class Section:
         return self.groove_radius**2 * (half - sin(half) * cos(half))
 
     def outline(self, place: Callable[[float, float], Vector]) -> Face:
-        """The section as a face; `place` puts (s, z) into space."""
+        """Return the section as a face; `place` puts (s, z) into space."""
         half, edge = self.width / 2, self.groove_radius * sin(self.groove_angle)
         bottom = self.groove_centre + self.groove_radius
         ends = place(self.shoulder, -edge), place(self.shoulder, edge)
@@ -97,19 +97,19 @@ def ring(section: Section, pitch_radius: float, side: int) -> Solid:
 
 
 def ring_volume(section: Section, pitch_radius: float, side: int) -> float:
-    """The area times the path of its centroid [mm³] (Pappus)."""
+    """Return the area times the path of its centroid [mm³] (Pappus)."""
     return 2 * pi * (section.area * pitch_radius + side * section.moment)
 
 
 @units("m", returns="m")
 def standard_outer_diameter(bore: Array) -> Array:
-    """Outer diameter [m] for a bore [m], ISO 15, dimension series 02."""
+    """Return the outer diameter [m] for a bore [m], ISO 15, dimension series 02."""
     return _standard("outer_diameter", bore)
 
 
 @units("m", returns="m")
 def standard_width(bore: Array) -> Array:
-    """Width [m] for a bore [m], ISO 15, dimension series 02."""
+    """Return the width [m] for a bore [m], ISO 15, dimension series 02."""
     return _standard("width", bore)
 
 
@@ -207,7 +207,7 @@ class BallBearing(CadModel):
         return 1.01 * self.D_w <= self.D_pw * np.sin(pi / self.n)
 
     def build(self) -> tuple[Part, ...]:
-        """Two rings and the balls."""
+        """Return two rings and the balls."""
         section, radius, balls = self.section(), mm(self.D_pw) / 2, round(float(self.n))
         angles = (2 * pi * i / balls for i in range(balls))
         places = tuple(Location(Vector(radius * cos(a), radius * sin(a), 0)) for a in angles)
@@ -219,7 +219,7 @@ class BallBearing(CadModel):
         )
 
     def section(self) -> Section:
-        """The cross-section that both rings share; one is turned inwards, one outwards."""
+        """Return the cross-section that both rings share; one is turned inwards, one outwards."""
         return Section(
             shoulder=mm(self.s),
             back=mm(self.h) / 2,
@@ -230,12 +230,12 @@ class BallBearing(CadModel):
         )
 
     def bounding_box(self) -> Box:
-        """The outside of the outer ring; no ball stands out of the width."""
+        """Return the outside of the outer ring; no ball stands out of the width."""
         radius, half = mm(self.D) / 2, mm(self.B) / 2
         return Box((-radius, -radius, -half), (radius, radius, half))
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
-        """Every parameter, as the parts show it."""
+        """Return every parameter, as the parts show it."""
         inner, outer, ball = seen["inner_ring"], seen["outer_ring"], seen["ball"]
         return {
             "inner_diameter": inner.diameters(Z)[0],

@@ -179,7 +179,7 @@ class BearingAssembly(CadModel):
         return (self.H_b >= 0.55 * self.D_h) & (self.H_c >= 0.55 * self.D_h)
 
     def build(self) -> tuple[Part, ...]:
-        """Journal, both shells with their linings, block and cap."""
+        """Return the journal, both shells with their linings, block and cap."""
         shell, housing = self.drawn(), self.housing()
         half, radius, down = mm(self.L_j) / 2, mm(self.d) / 2, Vector(0, -2 * shell.crush, 0)
         journal = Solid.makeCylinder(radius, 2 * half, Vector(0, 0, -half), Vector(0, 0, 1))
@@ -199,7 +199,7 @@ class BearingAssembly(CadModel):
         )
 
     def drawn(self) -> HalfShell:
-        """The upper shell."""
+        """Return the upper shell."""
         bore = (mm(self.d) + mm(self.C)) / 2
         return HalfShell(
             bore=bore,
@@ -217,7 +217,7 @@ class BearingAssembly(CadModel):
         )
 
     def housing(self) -> Housing:
-        """Block and cap."""
+        """Return the block and cap."""
         return Housing(
             bore=mm(self.D if self.s <= SAME * self.D else self.D_h) / 2,
             half_width=mm(self.B) / 2,
@@ -227,12 +227,12 @@ class BearingAssembly(CadModel):
         )
 
     def bounding_box(self) -> Box:
-        """The housing, and the journal where it is longer."""
+        """Return the housing, and the journal where it is longer."""
         a, b = mm(self.A) / 2, max(mm(self.B), mm(self.L_j)) / 2
         return Box((-a, -mm(self.H_c) - 2 * mm(self.a), -b), (a, mm(self.H_b), b))
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
-        """Every parameter; clearance between bore and journal, crush height between block and cap."""
+        """Return every parameter; clearance between bore and journal, crush height between block and cap."""
         journal, lining, back = seen["journal"], seen["upper_lining"], seen["upper_back"]
         block, cap = seen["block"], seen["cap"]
         bore = lining.diameters(Z)

@@ -141,7 +141,7 @@ class BearingHousing(CadModel):
         return ((self.d_b <= 0) | (self.d_b >= least)) & ((self.d_o <= 0) | (self.d_o >= least))
 
     def build(self) -> tuple[Part, ...]:
-        """Block and cap."""
+        """Return the block and cap."""
         housing = self.drawn()
         return (
             Part("block", housing.block(), housing.block_volume(), IRON, IRON_DENSITY, material="cast iron"),
@@ -149,7 +149,7 @@ class BearingHousing(CadModel):
         )
 
     def drawn(self) -> Housing:
-        """The parameters as radii and halves."""
+        """Return the parameters as radii and halves."""
         return Housing(
             bore=mm(self.D) / 2,
             half_width=mm(self.B) / 2,
@@ -163,12 +163,12 @@ class BearingHousing(CadModel):
         )
 
     def bounding_box(self) -> Box:
-        """Block and cap together."""
+        """Return the block and cap together."""
         a, b = mm(self.A) / 2, mm(self.B) / 2
         return Box((-a, -mm(self.H_c), -b), (a, mm(self.H_b), b))
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
-        """Every parameter; spacing and depth of bolt holes only if there are any."""
+        """Return every parameter; spacing and depth of bolt holes only if there are any."""
         block, cap = seen["block"], seen["cap"]
         holes = [hole.turned(Y) for hole in block.cylinders if hole.along(Y)]
         bolts = [hole for hole in holes if not hole.about(Y)]

@@ -228,7 +228,7 @@ class ConnectingRod(CadModel):
         return ((self.d_b <= 0) | (self.d_b >= least)) & ((self.b_p <= 0) | (self.b_p >= least))
 
     def build(self) -> tuple[Part, ...]:
-        """Rod and cap."""
+        """Return the rod and cap."""
         rod = self.drawn()
         return (
             Part("rod", rod.body(), rod.volume(), STEEL),
@@ -236,7 +236,7 @@ class ConnectingRod(CadModel):
         )
 
     def drawn(self) -> Rod:
-        """The parameters as radii and halves."""
+        """Return the parameters as radii and halves."""
         big_end = Housing(
             bore=mm(self.D) / 2,
             half_width=mm(self.B) / 2,
@@ -260,12 +260,12 @@ class ConnectingRod(CadModel):
         )
 
     def bounding_box(self) -> Box:
-        """From the cap to the end of the small end."""
+        """Return the box from the cap to the end of the small end."""
         a, b = max(mm(self.A), mm(self.A_s)) / 2, max(mm(self.B), mm(self.B_s)) / 2
         return Box((-a, -mm(self.H_c), -b), (a, mm(self.L) + mm(self.A_s) / 2, b))
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
-        """Every parameter; sizes of bolt holes and pockets only if there are any."""
+        """Return every parameter; sizes of bolt holes and pockets only if there are any."""
         rod, cap = seen["rod"], seen["cap"]
         across, along = rod.levels(X), [z for z in rod.levels(Z) if z > 0]
         bolts = [hole.turned(Y) for hole in rod.cylinders if hole.along(Y)]

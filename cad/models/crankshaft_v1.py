@@ -128,11 +128,11 @@ class Crankshaft(CrankModel):
         return (abs(self.D_r - self.D_j) <= 1e-12 * self.D_j) | (abs(self.D_r - self.D_j) >= 1e-3 * self.D_j)
 
     def ends(self) -> tuple[End, End]:
-        """Timing end and flywheel end."""
+        """Return the timing end and flywheel end."""
         return End(mm(self.D_f) / 2, mm(self.L_f)), End(mm(self.D_r) / 2, mm(self.L_r))
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
-        """Those of the throw, and the cylinders that come last at either end."""
+        """Return those of the throw, and the cylinders that come last at either end."""
         found = seen[self.id]
         front, rear = stubs(found, Webs.of(found))
         return {

@@ -58,7 +58,7 @@ def stand_out(radii: Array, least: Array) -> Truth:
 
 @units("m", "rad", "1", returns="m**2", latex=r"R_w^2\,\varphi_w / 2")
 def sectors(radii: Array, angle: Array, throws: Array) -> Array:
-    """Area of the sector of each web's counterweight, from the journal's axis on [m²]."""
+    """Return the area of the sector of each web's counterweight, from the journal's axis on [m²]."""
     each = np.atleast_1d(radii) ** 2 * np.expand_dims(angle, -1) / 2
     return np.broadcast_to(each, (*each.shape[:-1], round(float(2 * throws))))
 
@@ -68,7 +68,7 @@ class Crankshaft(CrankRules):
 
     z is the axis on which the shaft turns; z = 0 is the middle of the first main journal. The nose is at -z,
     the flange at +z, where an engine has its flywheel. Pin angles count from x towards y, as those of
-    `engine` 2; their number is that of the throws. All throws are alike but for their counterweights.
+    `engine` 1; their number is that of the throws. All throws are alike but for their counterweights.
 
     A bore, fillet, oil drilling, counterweight, bolt hole or inclination of 0 is none. Counterweight radii
     are one number, or one for each web from the nose on, two for each throw; their angle is common.
@@ -299,7 +299,7 @@ class Crankshaft(CrankRules):
         return (self.d_b <= 0) | (self.d_b >= 0.002 * self.D_j)
 
     def drawn(self) -> WholeShaft:
-        """The parameters as radii, lengths and angles of what is drawn."""
+        """Return the parameters as radii, lengths and angles of what is drawn."""
         angles = np.atleast_1d(self.psi).tolist()
         radii = [mm(radius) for radius in np.broadcast_to(self.R_w, 2 * len(angles))]
         return WholeShaft(
@@ -337,21 +337,21 @@ class Crankshaft(CrankRules):
         )
 
     def build(self) -> tuple[Part, ...]:
-        """One solid."""
+        """Return one solid."""
         shaft = self.drawn()
         return (Part(self.id, shaft.solid(), shaft.volume()),)
 
     def bounding_box(self) -> Box:
-        """Webs, counterweights, nose and flange together."""
+        """Return the webs, counterweights, nose and flange together."""
         return self.drawn().box()
 
     def shaft(self) -> Shaft:
-        """Held by the end of its nose, loaded at its flange."""
+        """Return where it is held and loaded: by the end of its nose and by its flange."""
         shaft = self.drawn()
         return Shaft(shaft.low, shaft.high)
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, Dimension]:
-        """Every parameter; the angle of counterweights and the bolt circle only if there are any."""
+        """Return every parameter; the angle of counterweights and the bolt circle only if there are any."""
         found = ShaftSeen(seen[self.id])
         front, rear = found.ends
         radii = found.counterweights()

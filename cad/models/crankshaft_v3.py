@@ -29,7 +29,7 @@ class Crankshaft(SplitParameters, EndParameters):
 
     z is the axis on which the shaft turns; z = 0 is the middle of the first main journal. The nose is at -z,
     the flange at +z, where an engine has its flywheel. Pin angles count from x towards y, as those of
-    `engine` 2; their number is that of the throws. All throws are alike but for their counterweights.
+    `engine` 1; their number is that of the throws. All throws are alike but for their counterweights.
 
     A pin split of 0 is none: one pin a throw. Else each throw has a front pin at its
     pin angle and a rear pin further on by the split, each as long as the pin length, each for one rod, and
@@ -171,7 +171,7 @@ class Crankshaft(SplitParameters, EndParameters):
         return there_is_none(self.R_w) | clear_of_corners(self.web_shape, self.phi_w)
 
     def drawn(self) -> WholeShaft:
-        """The parameters as radii, lengths and angles of what is drawn."""
+        """Return the parameters as radii, lengths and angles of what is drawn."""
         angles = np.atleast_1d(self.psi).tolist()
         radii = [mm(radius) for radius in np.broadcast_to(self.R_w, 2 * len(angles))]
         throws = (
@@ -208,21 +208,21 @@ class Crankshaft(SplitParameters, EndParameters):
         )
 
     def build(self) -> tuple[Part, ...]:
-        """One solid."""
+        """Return one solid."""
         shaft = self.drawn()
         return (Part(self.id, shaft.solid(), shaft.volume()),)
 
     def bounding_box(self) -> Box:
-        """Webs, counterweights, nose and flange together."""
+        """Return the webs, counterweights, nose and flange together."""
         return self.drawn().box()
 
     def shaft(self) -> Shaft:
-        """Held by the end of its nose, loaded at its flange."""
+        """Return where it is held and loaded: by the end of its nose and by its flange."""
         shaft = self.drawn()
         return Shaft(shaft.low, shaft.high)
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, Dimension]:
-        """Every parameter; the angle of counterweights and the bolt circle only if there are any."""
+        """Return every parameter; the angle of counterweights and the bolt circle only if there are any."""
         split = bool(are_split(self.delta))
         found = ShaftSeen(seen[self.id], split)
         front, rear = found.ends

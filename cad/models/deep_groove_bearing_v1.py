@@ -174,7 +174,7 @@ class DeepGrooveBearing(CadModel):
         return (self.B_c <= 0) | (self.D_p <= (self.D_pw - self.t_c) * np.sin(0.97 * pi / self.n))
 
     def build(self) -> tuple[Part, ...]:
-        """Two rings, the balls, and the cage if there is one."""
+        """Return two rings, the balls, and the cage if there is one."""
         ring, radius, balls = self.ring(), mm(self.D_pw) / 2, round(float(self.n))
         angles = (2 * pi * i / balls for i in range(balls))
         places = tuple(Location(Vector(radius * cos(a), radius * sin(a), 0)) for a in angles)
@@ -192,7 +192,7 @@ class DeepGrooveBearing(CadModel):
         return tuple(parts)
 
     def ring(self) -> Ring:
-        """The cross-section that both rings share; one is turned inwards, one outwards."""
+        """Return the cross-section that both rings share; one is turned inwards, one outwards."""
         return Ring(
             shoulder=0.3 * mm(self.D_w),
             back=mm(self.h) / 2,
@@ -203,7 +203,7 @@ class DeepGrooveBearing(CadModel):
         )
 
     def bounding_box(self) -> Box:
-        """The outside of the outer ring; neither balls nor cage stand out of the width."""
+        """Return the outside of the outer ring; neither balls nor cage stand out of the width."""
         radius, half = mm(self.D) / 2, mm(self.B) / 2
         return Box((-radius, -radius, -half), (radius, radius, half))
 

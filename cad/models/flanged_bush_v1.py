@@ -41,11 +41,11 @@ class Bush:
 
     @property
     def middle(self) -> float:
-        """The level of oil groove and oil hole: mid-length beyond the flange."""
+        """Return the level of oil groove and oil hole: mid-length beyond the flange."""
         return (self.flange_thickness + self.width) / 2
 
     def section(self) -> list[Point]:
-        """The cross-section as a closed line through (r, z)."""
+        """Return the cross-section as a closed line through (r, z)."""
         r, g, c, z, w = self.bore, self.groove, self.inner_chamfer, self.middle, self.half_groove
         groove: list[Point] = [(r, z + w), (g, z + w), (g, z - w), (r, z - w)] if g > r and w > 0 else []
         return outline(
@@ -62,12 +62,12 @@ class Bush:
         )
 
     def solid(self) -> Shape:
-        """The section turned about z, less the hole at the crown."""
+        """Return the section turned about z, less the hole at the crown."""
         body = turned(self.section())
         return cut(body, drill(self.hole, self.outside, self.middle)) if self.hole > 0 else body
 
     def volume(self) -> float:
-        """The turned section less the hole [mm³]."""
+        """Return the turned section less the hole [mm³]."""
         half_groove = self.half_groove if self.groove > self.bore else 0.0
         hole = drilled_volume(self.hole, self.outside, self.bore, self.groove, half_groove)
         return turned_volume(self.section()) - hole
@@ -235,12 +235,12 @@ class FlangedBush(CadModel):
         return hole & drawable(self.c_i) & drawable(self.c_o)
 
     def build(self) -> tuple[Part, ...]:
-        """One bush."""
+        """Return one bush."""
         bush = self.drawn()
         return (Part("bush", bush.solid(), bush.volume(), BRONZE, density=8800, material="CuSn8P"),)
 
     def drawn(self) -> Bush:
-        """The parameters as radii and levels."""
+        """Return the parameters as radii and levels."""
         return Bush(
             bore=mm(self.d) / 2,
             outside=mm(self.D) / 2,
@@ -255,12 +255,12 @@ class FlangedBush(CadModel):
         )
 
     def bounding_box(self) -> Box:
-        """As wide as the flange."""
+        """Return a box as wide as the flange."""
         radius = mm(self.D_f) / 2
         return Box((-radius, -radius, 0.0), (radius, radius, mm(self.B)))
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
-        """Every length that the bush has; no groove and no hole show none."""
+        """Return every length that the bush has; no groove and no hole show none."""
         bush = seen["bush"]
         about, levels, holes = (
             bush.about(Z),

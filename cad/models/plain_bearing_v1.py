@@ -40,24 +40,27 @@ class Shell:
     turn: float  # 180° or 360°
 
     def outline(self) -> list[tuple[float, float]]:
-        """The cross-section as a closed line through (r, z)."""
+        """Return the cross-section as a closed line through (r, z)."""
         r, g, R, b, w = self.bore, self.groove, self.outside, self.half_width, self.half_groove
         groove = [(r, w), (g, w), (g, -w), (r, -w)] if g > r and w > 0 else []
         return [(r, -b), (R, -b), (R, b), (r, b), *groove, (r, -b)]
 
     def solid(self) -> Shape:
-        """The outline turned about z from +x over +y; a full turn begins at -y, its seam off the hole."""
+        """Return the outline turned about z from +x over +y.
+
+        A full turn begins at -y, its seam off the hole.
+        """
         start = (0, -1) if self.turn == 360 else (1, 0)
         points = (Vector(r * start[0], r * start[1], z) for r, z in self.outline())
         turned = revolve(face(polyline(*points)), (0, 0, 0), (0, 0, 1), self.turn)
         return cut(turned, self.drill()) if self.hole > 0 else turned
 
     def drill(self) -> Solid:
-        """What the oil hole takes away, from the axis to beyond the crown."""
+        """Return what the oil hole takes away, from the axis to beyond the crown."""
         return Solid.makeCylinder(self.hole, 1.1 * self.outside, Vector(0, 0, 0), Vector(0, 1, 0))
 
     def volume(self) -> float:
-        """The turned outline less the hole [mm³]."""
+        """Return the turned outline less the hole [mm³]."""
         wall = (self.outside**2 - self.bore**2) * self.half_width
         groove = (self.groove**2 - self.bore**2) * self.half_groove
         return 2 * pi * (wall - groove) * self.turn / 360 - self.hole_volume()
@@ -76,7 +79,7 @@ class Shell:
         return 2 * sum(quad(self._slice, low, high, epsabs=0, epsrel=1e-11)[0] for low, high in pieces)
 
     def _slice(self, t: float) -> float:
-        """Area of the hole's section at x = a sin t within the wall, times dx/dt [mm³]."""
+        """Return the area of the hole's section at x = a sin t within the wall, times dx/dt [mm³]."""
         x, z = self.hole * sin(t), self.hole * cos(t)
         in_groove = min(z, self.half_groove)
         outside, groove, bore = (sqrt(R * R - x * x) for R in (self.outside, self.groove, self.bore))
@@ -168,12 +171,12 @@ class PlainBearing(CadModel):
         return drawable(self.d_h) & drawable(self.w_g) & drawable(self.t_g)
 
     def build(self) -> tuple[Part, ...]:
-        """One shell."""
+        """Return one shell."""
         shell = self.drawn()
         return (Part("shell", shell.solid(), shell.volume(), BRONZE),)
 
     def drawn(self) -> Shell:
-        """The parameters as radii and halves."""
+        """Return the parameters as radii and halves."""
         return Shell(
             bore=mm(self.d) / 2,
             groove=mm(self.d) / 2 + mm(self.t_g),
@@ -190,7 +193,7 @@ class PlainBearing(CadModel):
         return Box((-radius, 0 if self.shell == "half" else -radius, -half), (radius, radius, half))
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
-        """Every length that the shell has; no groove and no hole show none."""
+        """Return every length that the shell has; no groove and no hole show none."""
         shell = seen["shell"]
         diameters, levels, holes = shell.diameters(Z), shell.levels(Z), shell.diameters(Y)
         found = {

@@ -370,7 +370,7 @@ class PlainBearing(CadModel):
         return drawable(self.d_r, 1.0)
 
     def build(self) -> tuple[Part, ...]:
-        """Back and lining of each shell."""
+        """Return the back and lining of each shell."""
         parts = []
         for which, side in (("upper", 1), ("lower", -1)):
             if self.shells in ("pair", which):
@@ -393,7 +393,7 @@ class PlainBearing(CadModel):
         ]  # fmt: skip
 
     def drawn(self, which: str) -> HalfShell:
-        """The parameters of one shell as radii and halves."""
+        """Return the parameters of one shell as radii and halves."""
         upper = which == "upper"
         bore = mm(self.d) / 2
         return HalfShell(
@@ -414,7 +414,7 @@ class PlainBearing(CadModel):
         )  # fmt: skip
 
     def bounding_box(self) -> Box:
-        """The back or its flanges, the tang on the side +x, and the legs."""
+        """Return the back or its flanges, the tang on the side +x, and the legs."""
         shell = self.drawn("upper")
         reach = shell.flange.radius if shell.flange else shell.outside
         right = max(reach, shell.outside + shell.tang.height if shell.tang else 0.0)
@@ -424,7 +424,7 @@ class PlainBearing(CadModel):
         return Box((-reach, low, -b), (right, high, b))
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
-        """Every length that the shells have, of the upper one if it is there."""
+        """Return every length that the shells have, of the upper one if it is there."""
         which = "lower" if self.shells == "lower" else "upper"
         one = ShellSeen(seen[f"{which}_back"], seen[f"{which}_lining"], self.drawn(which))
         return one.sizes(with_oil=which == "upper", side=-1 if which == "lower" else 1)

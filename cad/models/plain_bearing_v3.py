@@ -178,7 +178,7 @@ class PlainBearing(ShellRules):
         return (joints(self.shells) > 0) | (is_fitted(self.state) & (self.s_f <= 0))
 
     def build(self) -> tuple[Part, ...]:
-        """Back and lining of each shell."""
+        """Return the back and lining of each shell."""
         if self.shells == "full":
             return tuple(self._parts("full", self.drawn("full"), 1))
         parts = []
@@ -209,7 +209,7 @@ class PlainBearing(ShellRules):
         return parts
 
     def drawn(self, which: str) -> HalfShell:
-        """The parameters of one shell as radii and halves, in its state."""
+        """Return the parameters of one shell as radii and halves, in its state."""
         upper, fitted = which != "lower", self.state == "fitted"
         bore = mm(self.d / 2 if fitted else self.r_f)
         angle = np.pi / 2 if fitted else round(float(self.phi_f), _ANGLE_DIGITS)
@@ -236,7 +236,7 @@ class PlainBearing(ShellRules):
         )  # fmt: skip
 
     def bounding_box(self) -> Box:
-        """The back or its flanges, the tang on the side +x, and the legs."""
+        """Return the back or its flanges, the tang on the side +x, and the legs."""
         shell = self.drawn("full" if self.shells == "full" else "upper")
         left, right, low = reach_of(shell)
         high, b = shell.flange.radius if shell.flange else shell.outside, shell.half_width
@@ -247,7 +247,7 @@ class PlainBearing(ShellRules):
         return Box((-left, bottom, -b), (right, top, b))
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
-        """Every length that the shells have, of the upper one if it is there."""
+        """Return every length that the shells have, of the upper one if it is there."""
         which = "upper" if self.shells == "pair" else self.shells
         back = seen[f"{which}_back"]
         shown = back, seen.get(f"{which}_lining", back), self.drawn(which)

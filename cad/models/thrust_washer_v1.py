@@ -71,7 +71,7 @@ class Washer:
     lug_height: float
 
     def groove_angles(self) -> list[float]:
-        """Where grooves run; none runs to the crown of a full ring."""
+        """Return where grooves run; none runs to the crown of a full ring."""
         if self.is_half:
             return [180 * (n + 0.5) / self.grooves for n in range(self.grooves)]
         return [90 + 360 * (n + 0.5) / self.grooves for n in range(self.grooves)]
@@ -81,7 +81,7 @@ class Washer:
         return 90 + 360 / self.grooves * (self.grooves // 2) if self.grooves else 270.0
 
     def solid(self) -> Shape:
-        """The face pushed up by its thickness, less what pin and grooves take."""
+        """Return the face pushed up by its thickness, less what pin and grooves take."""
         body: Shape = extrude(face(*self._wires()), (0, 0, self.thickness))
         tools = [self._groove(angle) for angle in self.groove_angles()]
         if self.pin > 0:
@@ -93,7 +93,7 @@ class Washer:
         return body
 
     def _groove(self, angle: float) -> Shape:
-        """A box from the axis to beyond the outside, its bottom in the washer."""
+        """Return a box from the axis to beyond the outside, its bottom in the washer."""
         box = Solid.makeBox(
             1.5 * self.outside, 2 * self.half_groove, self.thickness,
             Vector(0, -self.half_groove, self.thickness - self.groove_depth),
@@ -101,7 +101,7 @@ class Washer:
         return box.rotate(Vector(0, 0, 0), Vector(0, 0, 1), angle)
 
     def _wires(self) -> list[Shape]:
-        """The outline, with the lug at the crown; of a full ring that of the bore too."""
+        """Return the outline, with the lug at the crown; of a full ring that of the bore too."""
         arc = self._arc_outside()
         if self.is_half:
             inner = Edge.makeThreePointArc(*(Vector(self.bore * x, self.bore * y) for x, y in
@@ -134,7 +134,7 @@ class Washer:
         return segment(Vector(*one), Vector(*other))
 
     def volume(self) -> float:
-        """Ring and lug less pin hole and grooves, which do not meet each other [mm³]."""
+        """Return the ring and lug less pin hole and grooves, which do not meet each other [mm³]."""
         ring = pi * (self.outside**2 - self.bore**2) / (2 if self.is_half else 1)
         lug = 2 * self.half_lug * (self.outside + self.lug_height) if self.half_lug > 0 else 0.0
         lug -= sheet_under_arc(self.outside, self.half_lug)
@@ -142,7 +142,7 @@ class Washer:
         return (ring + lug - pi * self.pin**2) * self.thickness - taken
 
     def _under_groove(self) -> float:
-        """Area of a groove seen along the shaft [mm²]."""
+        """Return the area of a groove seen along the shaft [mm²]."""
         if self.grooves == 0:
             return 0.0
         outside, bore = (sheet_under_arc(r, self.half_groove) for r in (self.outside, self.bore))
@@ -300,12 +300,12 @@ class ThrustWasher(CadModel):
         return drawable(self.d_p) & drawable(self.w_l)
 
     def build(self) -> tuple[Part, ...]:
-        """One washer."""
+        """Return one washer."""
         washer = self.drawn()
         return (Part("washer", washer.solid(), washer.volume(), BRONZE, density=8800, material="CuSn8P"),)
 
     def drawn(self) -> Washer:
-        """The parameters as radii and halves."""
+        """Return the parameters as radii and halves."""
         return Washer(
             bore=mm(self.d) / 2,
             outside=mm(self.D) / 2,
@@ -326,7 +326,7 @@ class ThrustWasher(CadModel):
         return Box((-R, 0.0 if self.washer == "half" else -R, 0.0), (R, top, mm(self.t)))
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
-        """Every parameter; those of grooves, pin hole and lug only if there are any."""
+        """Return every parameter; those of grooves, pin hole and lug only if there are any."""
         washer, wanted = seen["washer"], self.drawn()
         about, levels = washer.diameters(Z), washer.levels(Z)
         pins = [c for c in washer.cylinders if c.along(Z) and not c.about(Z)]

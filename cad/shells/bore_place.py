@@ -25,7 +25,7 @@ def has_split_bore(cls: type[CadModel]) -> bool:
 
 
 def bore_place(shape: CadModel) -> BorePlace | None:
-    """The split bore of a model; None if it has none."""
+    """Return the split bore of a model; None if it has none."""
     if not has_split_bore(type(shape)):
         return None
     drawn = getattr(shape, "drawn")()  # noqa: B009 - the base of models does not declare it

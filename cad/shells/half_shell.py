@@ -70,22 +70,22 @@ class HalfShell:
 
     @property
     def turn(self) -> float:
-        """The turn of its arc [rad]."""
+        """Return the turn of its arc [rad]."""
         return pi - 2 * self.lift
 
     @property
     def is_lined(self) -> bool:
-        """Whether there is a lining."""
+        """Return whether there is a lining."""
         return self.lining > self.bore
 
     @property
     def is_split(self) -> bool:
-        """Whether the groove parts the lining in two rings."""
+        """Return whether the groove parts the lining in two rings."""
         deep = self.groove and self.groove.is_whole and self.groove.bottom > self.lining
         return bool(self.is_lined and deep)
 
     def back_section(self) -> list[Point]:
-        """The steel back as a closed line through (r, z), without a groove."""
+        """Return the steel back as a closed line through (r, z), without a groove."""
         return outline(*self._back_ends())
 
     def _back_ends(self, *groove: Point) -> list[Point]:
@@ -104,18 +104,18 @@ class HalfShell:
         ]
 
     def _end(self, has_flange: bool) -> list[Point]:
-        """Corners of one end of the back, as radius and distance from that end."""
+        """Return the corners of one end of the back, as radius and distance from that end."""
         if has_flange and self.flange:
             collar = self.flange
             return [(collar.radius, 0.0), (collar.radius, collar.thickness), (self.outside, collar.thickness)]
         return [(self.outside - self.outer_chamfer, 0.0), (self.outside, self.outer_chamfer)]
 
     def back_joint(self) -> list[Point]:
-        """The back at its joint: its section, less a groove that goes so far."""
+        """Return the back at its joint: its section, less a groove that goes so far."""
         return outline(*self._back_ends(*self._notch(self.lining, self.outside)))
 
     def lining_joint(self) -> list[Point]:
-        """The lining at its joint; if the groove parts it, that piece on the side +z."""
+        """Return the lining at its joint; if the groove parts it, that piece on the side +z."""
         b, c, s = self.half_width, self.inner_chamfer, self.lining
         inside = self.bore + (self.relief.depth if self.relief else 0.0)
         up = [(s, max(self.bore + c - s, 0.0)), (min(self.bore + c, s), max(self.bore + c - s, 0.0))]
@@ -130,7 +130,7 @@ class HalfShell:
         return outline(*low, *high, *self._notch(inside, s))
 
     def _notch(self, inside: float, outside: float) -> list[Point]:
-        """Corners of a groove that goes from joint to joint, at its height above the inside."""
+        """Return the corners of a groove that goes from joint to joint, at its height above the inside."""
         groove = self.groove
         if groove is None or not groove.is_whole or groove.bottom <= inside or groove.bottom >= outside:
             return []
@@ -138,7 +138,7 @@ class HalfShell:
         return [(inside, w), (groove.bottom, w), (groove.bottom, -w), (inside, -w)]
 
     def back(self) -> Shape:
-        """The steel: the section turned, with legs and lip, less groove and hole."""
+        """Return the steel: the section turned, with legs and lip, less groove and hole."""
         body = turned(self.back_section(), degrees(self.lift), degrees(self.turn))
         if self.groove and self.groove.bottom > self.lining:
             body = cut(body, self._ring(self.groove))
@@ -148,7 +148,7 @@ class HalfShell:
         return fuse(body, self._lip(self.tang)) if self.tang else body
 
     def _with_legs(self, body: Shape, joint: list[Point]) -> Shape:
-        """With the crush height below both joints."""
+        """Return a body with the crush height below both joints."""
         if self.crush == 0:
             return body
         if self.lift > 0:
@@ -166,13 +166,13 @@ class HalfShell:
         return extrude(foot, (normal * self.crush).toTuple())
 
     def _at_joint(self, body: Shape, side: int) -> Shape:
-        """What was drawn at y = 0, where the joint is on that side."""
+        """Return what was drawn at y = 0, where the joint is on that side."""
         if self.lift == 0:
             return body
         return body.rotate(Vector(0, 0, 0), Vector(0, 0, 1), degrees(side * self.lift))
 
     def _lip(self, tang: Tang) -> Shape:
-        """A box that grows out of the back."""
+        """Return a box that grows out of the back."""
         foot = sqrt(self.outside**2 - tang.length**2) - 0.1 * (self.outside - self.lining)
         lip = Solid.makeBox(
             self.outside + tang.height - foot, tang.length + self.crush, tang.width,
@@ -181,14 +181,17 @@ class HalfShell:
         return self._at_joint(lip, 1)
 
     def _ring(self, groove: Groove) -> Shape:
-        """What the groove takes, from within the bore on."""
+        """Return what the groove takes, from within the bore on."""
         w, low = groove.half_width, 0.9 * self.bore
         section = outline((low, -w), (groove.bottom, -w), (groove.bottom, w), (low, w))
         turn = 180.0 + 2 * _BEYOND if groove.is_whole else degrees(groove.turn)
         return turned(section, 90 - turn / 2, turn)
 
     def lining_piece(self) -> Shape:
-        """The lining, or that half of it on the side +z if the groove parts it; see `lining_places`."""
+        """Return the lining, or that half of it on the side +z if the groove parts it.
+
+        See `lining_places`.
+        """
         low = self.groove.half_width if self.is_split and self.groove else -self.half_width
         body: Shape = extrude(self._lining_face(low), (0, 0, self.half_width - low))
         if self.inner_chamfer > 0:
@@ -201,7 +204,7 @@ class HalfShell:
         return self._with_legs(body, self.lining_joint())
 
     def _cone(self, side: int) -> Shape:
-        """What the chamfer of the bore takes at one end, with room inside and beyond."""
+        """Return what the chamfer of the bore takes at one end, with room inside and beyond."""
         c, b, r = self.inner_chamfer, self.half_width, self.bore
         over, inside = 0.5 * c, 0.1 * r
         section = outline(
@@ -211,7 +214,7 @@ class HalfShell:
         return turned(section, -_BEYOND, 180.0 + 2 * _BEYOND)
 
     def _lining_face(self, z: float) -> Shape:
-        """The lining across the shaft, with both reliefs."""
+        """Return the lining across the shaft, with both reliefs."""
         right, left = self.lift, pi - self.lift
         edges = [self._arc(self.lining, right, left, z)]
         deep, inner = self.bore, [self._arc(self.bore, right, left, z)]
@@ -236,12 +239,12 @@ class HalfShell:
         return Vector(radius * cos(angle), radius * sin(angle), z)
 
     def lining_places(self) -> tuple[Location, ...]:
-        """Where the lining is: once, or on both sides of the groove."""
+        """Return where the lining is: once, or on both sides of the groove."""
         other = Location(Vector(0, 0, 0), Vector(0, 1, 0), 180)
         return (Location(), other) if self.is_split else (Location(),)
 
     def back_volume(self) -> float:
-        """The turned section, legs and lip, less groove and hole [mm³]."""
+        """Return the turned section, legs and lip, less groove and hole [mm³]."""
         volume = (
             turned_volume(self.back_section(), degrees(self.turn)) + 2 * area(self.back_joint()) * self.crush
         )
@@ -253,7 +256,7 @@ class HalfShell:
         return volume - taken
 
     def lining_volume(self) -> float:
-        """All of the lining, in one piece or two [mm³]."""
+        """Return all of the lining, in one piece or two [mm³]."""
         r, s = self.bore, self.lining
         volume = (s * s - r * r) * self.turn * self.half_width
         volume += 2 * area(self.lining_joint()) * self.crush * (2 if self.is_split else 1)
@@ -277,7 +280,7 @@ class HalfShell:
         return drilled_volume(self.hole, outside, inside, bottom, self.groove.half_width)
 
     def _chamfer(self) -> float:
-        """What the chamfer of the bore takes of the lining at one end [mm³]."""
+        """Return what the chamfer of the bore takes of the lining at one end [mm³]."""
         c, r = self.inner_chamfer, self.bore
         if c == 0:
             return 0.0
@@ -286,7 +289,7 @@ class HalfShell:
         return turned_volume(section, degrees(self.turn))
 
     def _relief_in_chamfer(self, relief: Relief) -> float:
-        """What one chamfer and one relief both take [mm³]."""
+        """Return what one chamfer and one relief both take [mm³]."""
         c, r = self.inner_chamfer, self.bore
         if c == 0:
             return 0.0
@@ -302,7 +305,7 @@ class FullBush(HalfShell):
 
     @property
     def turn(self) -> float:
-        """A full turn [rad]."""
+        """Return a full turn [rad]."""
         return 2 * pi
 
     def back(self) -> Shape:

@@ -26,7 +26,7 @@ class Housing:
     drilling: float = 0.0  # radius
 
     def block(self) -> Shape:
-        """The half at +y, its bolt holes blind, its drilling from the top to the bore."""
+        """Return the half at +y, its bolt holes blind, its drilling from the top to the bore."""
         body = self._half(1, self.block_height)
         for axis in self._bolts():
             body = cut(body, self._hole(self.bolt, axis, -self.bolt_depth, self.bolt_depth))
@@ -35,7 +35,7 @@ class Housing:
         return body
 
     def cap(self, gap: float = 0.0) -> Shape:
-        """The half at -y, bolt holes through it; with a gap it stands off so far."""
+        """Return the half at -y, bolt holes through it; with a gap it stands off so far."""
         body = self._half(-1, self.cap_height)
         for axis in self._bolts():
             body = cut(body, self._hole(self.bolt, axis, -1.5 * self.cap_height, self.cap_height))
@@ -54,12 +54,12 @@ class Housing:
         return Solid.makeCylinder(radius, high - low, Vector(x, low, 0), Vector(0, 1, 0))
 
     def block_volume(self) -> float:
-        """Box less half a bore, blind holes and the drilling [mm³]."""
+        """Return the box less half a bore, blind holes and the drilling [mm³]."""
         bolts = len(self._bolts()) * pi * self.bolt**2 * self.bolt_depth
         return self._half_volume(self.block_height) - bolts - self._drilled()
 
     def cap_volume(self) -> float:
-        """Box less half a bore and the holes through it [mm³]."""
+        """Return the box less half a bore and the holes through it [mm³]."""
         return self._half_volume(self.cap_height) - len(self._bolts()) * pi * self.bolt**2 * self.cap_height
 
     def _half_volume(self, height: float) -> float:

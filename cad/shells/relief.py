@@ -22,18 +22,18 @@ class Relief:
 
     @property
     def angle(self) -> float:
-        """From the joint to the end of the relief [rad]."""
+        """Return the angle from the joint to the end of the relief [rad]."""
         return asin(self.height / self.bore)
 
     @property
     def axis(self) -> float:
-        """Distance of the axis from the bore's, towards the joint."""
+        """Return the distance of the axis from the bore's, towards the joint."""
         fall = self.height**2 / (self.bore + sqrt(self.bore**2 - self.height**2))  # of the bore's arc
         return self.depth * (2 * self.bore + self.depth) / (2 * (self.depth + fall))
 
     @property
     def radius(self) -> float:
-        """Of the circle."""
+        """Return the radius of the circle."""
         return self.bore + self.depth - self.axis
 
     def arc(self) -> list[tuple[float, float]]:
@@ -44,12 +44,12 @@ class Relief:
         return [(self.bore + self.depth, 0.0), (sqrt(x * x + y * y), atan2(y, x)), (self.bore, self.angle)]
 
     def area(self) -> float:
-        """What it takes of the wall across the shaft [mm²]."""
+        """Return what it takes of the wall across the shaft [mm²]."""
         circle, bore = (sheet_under_arc(r, self.height) / 2 for r in (self.radius, self.bore))
         return self.axis * self.height + circle - bore
 
     def angle_at(self, radius: float) -> float:
-        """The angle [rad] from the joint about the bore at which the arc is at a radius."""
+        """Return the angle [rad] from the joint about the bore at which the arc is at a radius."""
         c, rho = self.axis, self.radius
         cosine = ((radius - rho) * (radius + rho) + c * c) / (2 * radius * c)
         return acos(min(1.0, max(-1.0, cosine)))

@@ -28,17 +28,17 @@ class Rod:
 
     @property
     def shoulder(self) -> float:
-        """Where the shank begins, from the axis of the big end."""
+        """Return where the shank begins, from the axis of the big end."""
         return self.big_end.block_height
 
     @property
     def pocket(self) -> tuple[float, float]:
-        """Where a pocket begins and ends: as far from the ends of the shank as from its sides."""
+        """Return where a pocket begins and ends: as far from the ends of the shank as from its sides."""
         edge = (self.shank_width - self.pocket_width) / 2
         return self.shoulder + edge, self.distance - self.outside - edge
 
     def body(self) -> Shape:
-        """Upper half of the big end, shank and small end as one solid."""
+        """Return the upper half of the big end, shank and small end as one solid."""
         end, full = Vector(0, self.distance, -self.half_width), 2 * self.half_width
         shank = self._bar(self.shank_width, self.shoulder, self.distance, 0.0, self.thickness)
         if self.pocket_width > 0:
@@ -52,7 +52,7 @@ class Rod:
         return cut(whole, Solid.makeCylinder(self.bore, 2 * full, below, Vector(0, 0, 1)))
 
     def volume(self) -> float:
-        """Of the body [mm³]: the shank ends where the small end's circle begins."""
+        """Compute the volume of the body [mm³]: the shank ends where the small end's circle begins."""
         half = self.shank_width / 2
         sheet = self.shank_width * (self.distance - self.shoulder) - sheet_under_arc(self.outside, half)
         eye = pi * (self.outside**2 - self.bore**2) * 2 * self.half_width

@@ -43,23 +43,23 @@ class ShellSeen:
 
     @property
     def bore(self) -> float:
-        """Radius [mm]."""
+        """Return the radius [mm]."""
         return self.lining.diameters(Z)[0] / 2
 
     @property
     def wall(self) -> float:
-        """Back and lining [mm]."""
+        """Return the back and lining [mm]."""
         return self.outside - self.bore
 
     @property
     def outside(self) -> float:
-        """Radius of the back [mm]; a flange is larger."""
+        """Return the radius of the back [mm]; a flange is larger."""
         diameters = self.back.diameters(Z)
         return diameters[-2 if self.wanted.flange else -1] / 2
 
     @property
     def lining_wall(self) -> float:
-        """Thickness of the lining [mm]; 0 if there is none."""
+        """Return the thickness of the lining [mm]; 0 if there is none."""
         return self.lining.diameters(Z)[-1] / 2 - self.bore if self.wanted.is_lined else 0.0
 
     @property
@@ -74,11 +74,11 @@ class ShellSeen:
         return [plane for plane in self.lining.planes if plane.holds(Z)]
 
     def width(self) -> float:
-        """Along the shaft [mm]."""
+        """Return the length along the shaft [mm]."""
         return self.back.length(Z)
 
     def chamfers(self) -> dict[str, float]:
-        """Of the bore; of the back where it has no flange."""
+        """Return the chamfers of the bore, and of the back where it has no flange."""
         half = self.width() / 2
         bore = self._highest(self.lining, self.bore)
         flange = self.wanted.flange
@@ -92,7 +92,7 @@ class ShellSeen:
         return max(c.reach[1] for c in seen.about(Z) if abs(c.diameter / 2 - radius) < _SAME)
 
     def relief(self) -> dict[str, float]:
-        """Height and depth of the joint relief."""
+        """Return the height and depth of the joint relief."""
         circles = [c for c in self.lining.cylinders if c.along(Z) and not c.about(Z)]
         if not circles:
             return {"relief_depth": 0.0}
@@ -101,7 +101,7 @@ class ShellSeen:
         return {"relief_height": height, "relief_depth": depth}
 
     def groove(self) -> dict[str, float]:
-        """Width, depth and turn of the oil groove, and the diameter of the oil hole."""
+        """Return the width, depth and turn of the oil groove, and the diameter of the oil hole."""
         holes = [c.diameter for c in self.back.cylinders if c.about(Y)]
         sizes = {"oil_hole_diameter": holes[0] if holes else 0.0}
         groove = self.wanted.groove
@@ -122,7 +122,7 @@ class ShellSeen:
         return lining[1] / 2 if len(lining) == 3 else deep[1] / 2
 
     def tang(self) -> dict[str, float]:
-        """The lip at the back."""
+        """Return the lip at the back."""
         tang = self.wanted.tang
         if tang is None:
             return {"tang_width": 0.0}
@@ -136,7 +136,7 @@ class ShellSeen:
         }
 
     def flange(self) -> dict[str, float]:
-        """The collars."""
+        """Return the collars."""
         flange = self.wanted.flange
         if flange is None:
             return {"flange_diameter": 0.0}
@@ -151,5 +151,5 @@ class ShellSeen:
 
 
 def _from_crown(plane: Surface) -> float:
-    """The angle [rad] of a plane that holds the shaft's axis, against the plane of crown and shaft."""
+    """Return the angle [rad] of a plane that holds the shaft's axis, against the plane of crown and shaft."""
     return asin(min(1.0, abs(plane.direction.dot(Y))))

@@ -25,7 +25,7 @@ _STEPS = 12  # of Newton's method, which doubles the digits with each
 @on_paper("solved by Newton's method from a quarter turn on")
 @units("m", "m", "m", "m", returns="rad")
 def half_angle(length: Array, wall: Array, crush: Array, width: Array) -> Array:
-    r"""Angle from the crown to a joint of a free shell [rad].
+    r"""Return the angle from the crown to a joint of a free shell [rad].
 
     The outer edges of the joints are `width` apart: 2 ((s/φ + t/2) sin φ + a cos φ) = W.
 
@@ -58,19 +58,19 @@ class FreeShellSeen(ShellSeen):
 
     @property
     def angle(self) -> float:
-        """From the crown to a joint [rad]; the legs are along the tangent there."""
+        """Return the angle from the crown to a joint [rad]; the legs are along the tangent there."""
         return nearest(map(_from_crown, self._joints()), pi / 2 - self.wanted.lift)
 
     def _upright(self) -> list[Surface]:
         return [plane for plane in self.back.planes if not plane.along(Z)]
 
     def _joints(self) -> list[Surface]:
-        """The planes at the ends of the wall."""
+        """Return the planes at the ends of the wall."""
         away = nearest(map(_off_axis, self._upright()), self.wanted.crush)
         return [plane for plane in self._upright() if abs(_off_axis(plane) - away) < 1e-6]
 
     def free_sizes(self, *, with_oil: bool) -> dict[str, float]:
-        """Every parameter by name."""
+        """Return every parameter by name."""
         angle, crush = self.angle, _off_axis(self._joints()[0])
         fitted = (self.bore + self.wall / 2) * angle / (pi / 2)
         width = 2 * (self.outside * sin(angle) + crush * cos(angle))
@@ -111,5 +111,5 @@ def _off_axis(plane: Surface) -> float:
 
 
 def _from_crown(plane: Surface) -> float:
-    """The angle [rad] of a plane along the shaft, against the plane of crown and shaft."""
+    """Return the angle [rad] of a plane along the shaft, against the plane of crown and shaft."""
     return atan2(abs(plane.direction.dot(Y)), abs(plane.direction.dot(X)))

@@ -55,7 +55,7 @@ CYCLE = "crank_angle"
 UNBALANCED = (
     "no viscosity was found at which heat and viscosity agree: give more supply pressure or clearance, "
     "cooler or thicker oil, or less load; without side flow nothing carries the heat off. At level supplied "
-    "a film may starve: see the verdict of oil_film_cycle 3"
+    "a film may starve: see the verdict of oil_film_cycle 1"
 )
 
 
@@ -69,7 +69,7 @@ class CycleHeatBalance(Oil, FedBearing):
     ------
     One temperature and one viscosity for the whole film and cycle, at the mean of supply and outlet, as ISO
     7902-1 has it for a steady load. Nothing is stored in the walls, and what they carry off is the share of
-    the loss that heat_share leaves. The film is that of oil_film_cycle 3 at the same level: massless journal,
+    the loss that heat_share leaves. The film is that of oil_film_cycle 1 at the same level: massless journal,
     rigid, aligned, laminar; see there for load sense, angles and axes.
     Side flow is what the motion of the journal displaces from the ends. Feed flow is what the supply
     pressure drives from the groove over its two lands, with the gap along the orbit; the film's pressure does

@@ -42,7 +42,7 @@ def test_points_multiply_the_cost():
 
 
 def test_level_flooded_takes_longest():
-    cls = CATALOGUE.get("oil_film_cycle", 3)
+    cls = CATALOGUE.get("oil_film_cycle", 1)
     assert estimated_seconds(cls, cls.example, "flooded") > 10
 
 

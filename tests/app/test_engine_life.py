@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from serving import created, revision
 
+from benchmarks.in_line_four import IN_LINE_FOUR
 from templates.core.language.evaluate import evaluate
 from templates.door import built_in
 
@@ -21,9 +22,9 @@ USED = ("crankpin_load_x", "crankpin_load_y", "crank_angle", "crankpin_angles")
 
 
 def test_loads_of_the_engine_become_life(http):
-    engine = built_in().get("engine", 2).example
+    engine = IN_LINE_FOUR
     steps = {
-        "engine": {"template": "engine", "version": 2, "inputs": {**engine}, "outputs": [*USED]},
+        "engine": {"template": "engine", "version": 1, "inputs": {**engine}, "outputs": [*USED]},
         "life": {"template": "fatigue_life", "version": 1, "inputs": {**STRESSES, **TURNED}},
     }
     done = revision(http, created(http, {"name": "crank", "steps": steps}))["steps"]

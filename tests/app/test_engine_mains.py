@@ -66,7 +66,7 @@ def test_an_item_beyond_the_mains_is_refused_by_name(http, index):
 )
 def test_contradictions_of_an_engine_are_refused_by_name(http, change, names):
     inputs = four_cylinders(bore="86 mm", **change)["inputs"]
-    answer = http.post(f"{API}/templates/engine/versions/2/evaluate", json={"inputs": inputs})
+    answer = http.post(f"{API}/templates/engine/versions/1/evaluate", json={"inputs": inputs})
     assert answer.status_code == 422, answer.text
     assert names <= {error["name"] for error in answer.json()["errors"]}
 

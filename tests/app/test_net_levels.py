@@ -75,7 +75,7 @@ def test_chunks_are_bounded_and_make_no_difference():
     net = net_of(CURVES, "speed")
     wanted = [ref("film.film_thickness"), ref("loads.main_load_x")]
     assert net.rows_at_once(wanted, {}) <= 4096
-    assert net.rows_at_once(wanted, {"film": "transient"}) == 1
+    assert net.rows_at_once(wanted, {"film": "flooded"}) == 1
     assert net.rows_at_once([ref("speed")], {}) == 4096
     assert net.rows_at_once([ref("factor")], {}, chunk=10**9) == 2_000_000 // 24
     rows = spread(net, 10)

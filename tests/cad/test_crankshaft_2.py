@@ -115,12 +115,12 @@ def test_symmetric_shaft_of_an_in_line_four_has_no_couple() -> None:
 
 
 def test_rotating_couple_is_that_of_the_engine() -> None:
-    """Mass moments of the solid's throws as unbalance of `engine` 2: its couple over ω² is the solid's."""
+    """Mass moments of the solid's throws as unbalance of `engine` 1: its couple over ω² is the solid's."""
     angles = (0.0, 90.0, 270.0, 180.0)
     throws = throws_measured(
         build({**PLAIN, "pin_angles": degrees(*angles)}).step, [k * PITCH for k in range(1, 4)]
     )
-    engine = find([Path(templates.__file__).parent], Template).get("engine", 2)
+    engine = find([Path(templates.__file__).parent], Template).get("engine", 1)
     without = {name: value for name, value in engine.example.items() if not name.startswith(("web", "count"))}
     without |= {"speed": "3000 rpm", "pin_angles": degrees(*angles), "reference_position": "0 mm"}
     unbalance = {"value": [abs(one.unbalance) * 1e3 for one in throws], "unit": "kg*mm"}

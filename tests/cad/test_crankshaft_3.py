@@ -10,6 +10,7 @@ from scipy.optimize import minimize
 
 from app.solids.analysis_process import throw_of
 from app.solids.questions import Question
+from benchmarks.in_line_four import IN_LINE_FOUR
 from cad.cranks.chain_throw import shaft_of_throws, sizes_of_throw, throws_apart
 from cad.cranks.split_parameters import least_gap
 from cad.errors import AnalysisError
@@ -17,7 +18,7 @@ from cad.models.crankshaft_v2 import Crankshaft as Undivided
 from cad.models.crankshaft_v3 import Crankshaft
 from cad.regenerate import Build, as_text, regenerate
 from cad.shaft import STEEL_DENSITY
-from templates.bearing_load.engine_v2 import Engine
+from templates.bearing_load.engine_v1 import Engine
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from tests.references.throw_measures import rotating_couple, throws_measured
@@ -92,7 +93,7 @@ def test_throw_of_pins_and_webs_alone_has_the_unbalance_of_a_drawing() -> None:
 def test_pins_stand_where_an_engine_has_them() -> None:
     """A V6 of 90° that fires evenly: pins 30° apart on each throw, read from the solid."""
     engine = {
-        **loads_only(Engine.example), "firing_order": [1, 2, 3, 4, 5, 6],
+        **loads_only(IN_LINE_FOUR), "firing_order": [1, 2, 3, 4, 5, 6],
         "bank_angles": angles(-45, 45, -45, 45, -45, 45),
         "throws": [1, 1, 2, 2, 3, 3], "pins_of_a_throw": "split", "cylinder_offset": "0 mm",
         "cylinder_positions": {"value": [30, 64, 147, 181, 264, 298], "unit": "mm"},

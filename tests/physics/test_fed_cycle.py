@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from templates.core.language.evaluate import evaluate
-from templates.oil_film.oil_film_cycle_v2 import OilFilmCycle
+from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
 from templates.oil_film.oil_film_v2 import OilFilm
 from templates.physics.orbits.cyclic_film import Duty
 from templates.physics.orbits.grooved_mobility import Groove

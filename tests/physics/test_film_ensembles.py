@@ -1,4 +1,4 @@
-"""What stands behind the bounds of `oil_film_cycle` 3: order statistics, samples that have every supply."""
+"""What stands behind the bounds of `oil_film_cycle` 1: order statistics, samples that have every supply."""
 
 import json
 from collections import Counter

@@ -16,14 +16,12 @@ from test_catalogue_properties import (
     check_case,
 )
 
-from templates.bearing_load import engine_v2, engine_v3
+from templates.bearing_load import engine_v1
 from templates.core.catalogue import golden
 from templates.oil_film import (
     cycle_heat_balance_v1,
     mixed_friction_v1,
     oil_film_cycle_v1,
-    oil_film_cycle_v2,
-    oil_film_cycle_v3,
     oil_film_v2,
     thermal_film_v1,
     thrust_bearing_v1,
@@ -33,8 +31,7 @@ from templates.stiffness import fatigue_life_v1, forced_torsion_v1
 pytestmark = pytest.mark.slow
 VERSIONS = [
     cycle_heat_balance_v1.CycleHeatBalance,
-    engine_v2.Engine,
-    engine_v3.Engine,
+    engine_v1.Engine,
     fatigue_life_v1.FatigueLife,
     forced_torsion_v1.ForcedTorsion,
     mixed_friction_v1.MixedFriction,
@@ -42,8 +39,6 @@ VERSIONS = [
     thermal_film_v1.ThermalFilm,
     thrust_bearing_v1.ThrustBearing,
     oil_film_cycle_v1.OilFilmCycle,
-    oil_film_cycle_v2.OilFilmCycle,
-    oil_film_cycle_v3.OilFilmCycle,
 ]
 
 

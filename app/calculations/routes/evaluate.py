@@ -57,7 +57,7 @@ class LargeRoute(PlainRoute):
             await services_of(request).answering.admit(request, *_template(request))
 
     async def shortcut(self, request: StrictRequest) -> Response | None:
-        """The answer to a large body."""
+        """Return the answer to a large body."""
         system, body = _system(request), await request.pieces()
         if system is None or len(body) <= LARGE or not _is_plain(request):
             return None
@@ -73,12 +73,12 @@ def _is_plain(request: Request) -> bool:
 
 
 def _template(request: Request) -> tuple[str, int]:
-    """The template and the version that a plain path names."""
+    """Return the template and the version that a plain path names."""
     return request.path_params["id"], int(request.path_params["number"])
 
 
 def _system(request: Request) -> System | None:
-    """The units that the request wants to read; None for a word that names none."""
+    """Return the units that the request wants to read; None for a word that names none."""
     return SYSTEMS.get(request.query_params.get("units"))
 
 

@@ -87,7 +87,7 @@ async def _calculated_again(
 
 
 def _calculation(jobs: Jobs, id: str) -> Job:
-    """The job, if its result is an answer; raises JobNotFound."""
+    """Return the job, if its result is an answer; raises JobNotFound."""
     row = jobs.get(id)
     if row.kind not in ANSWERS:
         raise JobNotFound(id)
@@ -95,6 +95,6 @@ def _calculation(jobs: Jobs, id: str) -> Job:
 
 
 def stored_answer(store: Artifacts, row: Job) -> Pieces:
-    """The answer from the store; raises ArtifactMissing, ArtifactDamaged."""
+    """Return the answer from the store; raises ArtifactMissing, ArtifactDamaged."""
     assert row.result is not None
     return Pieces.of(store.read(row.result.rpartition("sha256=")[2]))

@@ -69,7 +69,10 @@ async def evaluate_line(
 
 
 def _inputs(request: Request) -> dict[str, Raw]:
-    """The inputs as texts; a name that stands several times is an array, and a reserved one is refused."""
+    """Return the inputs as texts.
+
+    A name that stands several times is an array, and a reserved one is refused.
+    """
     given: dict[str, list[str]] = {}
     for name, text in request.query_params.multi_items():
         if name not in RESERVED:

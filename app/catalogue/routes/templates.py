@@ -74,14 +74,14 @@ _titles: WeakKeyDictionary[type[Template], dict[str, str]] = WeakKeyDictionary()
 
 
 def _description(cls: type[Template]) -> Mapping[str, object]:
-    """The description of a version, which nobody changes: it follows from the class alone."""
+    """Return the description of a version, which nobody changes: it follows from the class alone."""
     if (description := _described.get(cls)) is None:
         description = _described[cls] = describe(cls)
     return description
 
 
 def _words(cls: type[Template]) -> Mapping[str, str]:
-    """The title and the summary of a version."""
+    """Return the title and the summary of a version."""
     if (words := _titles.get(cls)) is None:
         words = _titles[cls] = {"title": cls.title(), "summary": cls.summary()}
     return words
@@ -92,7 +92,7 @@ Marks = Mapping[Key, Mapping[str, SheetMark]]
 
 
 def marks(catalogues: Catalogues) -> Marks:
-    """The worksheet's part of the answer about each template."""
+    """Return the worksheet's part of the answer about each template."""
     return {
         key: {
             "worksheet": SheetMark(
@@ -109,12 +109,12 @@ def marks(catalogues: Catalogues) -> Marks:
 def listed(
     catalogue: Catalogue[T], limit: int, cursor: str | None, marked: Marks = MappingProxyType({})
 ) -> TemplateList:
-    """One page of all versions in a catalogue."""
+    """Return one page of all versions in a catalogue."""
     return page_of(TemplateList, list(catalogue), limit, cursor, lambda cls: summary(cls, catalogue, marked))
 
 
 def versions_of(catalogue: Catalogue[T], id: str, marked: Marks = MappingProxyType({})) -> TemplateVersions:
-    """All versions of one template or model.
+    """Return all versions of one template or model.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def versions_of(catalogue: Catalogue[T], id: str, marked: Marks = MappingProxyTy
 
 
 def summary(cls: type[Template], catalogue: Catalogue[T], marked: Marks) -> TemplateSummary:
-    """One version in a list."""
+    """Return one version in a list."""
     return TemplateSummary(
         id=cls.id,
         version=cls.version,

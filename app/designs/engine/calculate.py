@@ -56,7 +56,7 @@ def calculate(
 
 
 def resume(before: Calculation, measured: Measured, analysed: Analysed) -> Calculation:
-    """A calculation without faults, continued: only what was pending is calculated."""
+    """Return a calculation without faults, continued: only what was pending is calculated."""
     result = _copy(before)
     result.pending, result.deferred, result.faults = set(), set(), []
     result.shapes, result.measures = dict(before.shapes), dict(before.measures)
@@ -128,7 +128,7 @@ def _again(result: Calculation, block: Block, outputs: tuple[str, ...] | None) -
 def following(
     calculation: Calculation, changed: Collection[Reference], again: Collection[str] = ()
 ) -> list[Cell | Block]:
-    """The cells and steps that follow from some outputs, or from steps calculated `again`, in order."""
+    """Return the cells and steps after some outputs, or after steps calculated `again`, in order."""
     moved = dict[Node, None]()
     nodes = list[Cell | Block]()
     for node in calculation.graph.order:
@@ -150,7 +150,7 @@ def _is_disjoint(cell: Cell, changed: Collection[Reference]) -> bool:
 
 
 def _copy(before: Calculation) -> Calculation:
-    """The same calculation, to be continued; what it has of solids is shared."""
+    """Return the same calculation, to be continued; what it has of solids is shared."""
     return replace(
         before,
         values=dict(before.values),
@@ -196,7 +196,7 @@ def _is_needed(result: Calculation, node: Node) -> bool:
 
 
 def _unmapped(result: Calculation, name: str, sources: Iterable[Node]) -> list[Fault]:
-    """Faults of a value that needs a model of which a parameter is not set."""
+    """Return faults of a value that needs a model of which a parameter is not set."""
     models = {node.model.name for node in sources if isinstance(node, (Solid, SolidAnalysis))}
     unset = [f"{model}.{n}" for model in sorted(models) for n in result.missing.get(model, ())]
     return (
@@ -238,7 +238,7 @@ def _waits(result: Calculation, cell: Cell, sources: Collection[Node]) -> bool:
 
 
 def literal(cell: Cell) -> Typed:
-    """A quantity as its user wrote it.
+    """Return a quantity as its user wrote it.
 
     Raises
     ------
@@ -267,7 +267,7 @@ def _limit(result: Calculation, cell: Cell, uses: Mapping[str, Column]) -> None:
 
 
 def _typed(result: Calculation, cell: Cell, column: Column) -> Typed:
-    """The value of a relation as the template of its block takes it."""
+    """Return the value of a relation as the template of its block takes it."""
     si = column.value
     if cell.declared is None:
         return Typed(None, "", si, {})  # it is used in SI only
@@ -279,7 +279,7 @@ def _typed(result: Calculation, cell: Cell, column: Column) -> Typed:
 
 
 def _joined(cell: Cell, uses: Mapping[str, Column]) -> Column:
-    """The value of a relation, or of a list that mixes relations and quantities."""
+    """Return the value of a relation, or of a list that mixes relations and quantities."""
     if not isinstance(cell.raw, list):
         return related(cell.relations[0], uses)
     items = [_item(cell, item, uses) for item in cell.raw]
@@ -299,7 +299,7 @@ def _item(cell: Cell, item: Raw, uses: Mapping[str, Column]) -> Column:
 def _admitted(
     result: Calculation, cell: Cell, column: Column, uses: Mapping[str, Column], why: str
 ) -> Column:
-    """A column with NaN in the rows that have no finite value, which are refused.
+    """Return a column with NaN in the rows that have no finite value, which are refused.
 
     Raises
     ------
@@ -322,7 +322,7 @@ def _admitted(
 def _wrong_indices(
     cell: Cell, uses: Mapping[str, Column], rows: Iterable[int]
 ) -> Iterator[tuple[int, Refusal]]:
-    """The rows in which a relation has no value because an index is no place of its array."""
+    """Yield the rows in which a relation has no value because an index is no place of its array."""
     for relation in cell.relations:
         for row in rows if relation.items and uses else ():
             if error := wrong_index(relation, uses, row):
@@ -359,7 +359,7 @@ def _block(result: Calculation, block: Block) -> None:
 
 
 def _given(result: Calculation, cell: Cell) -> Column | Raw:
-    """The value of a cell as a step takes it: a column if it differs from row to row."""
+    """Return the value of a cell as a step takes it: a column if it differs from row to row."""
     column = result.values.get(cell.name)
     if column is not None and column.is_row:
         return column
@@ -406,7 +406,7 @@ def _attempt(result: Calculation, block: Block, raw: dict[str, Raw], waiting: se
 
 
 def _outputs(result: Calculation, block: Block) -> tuple[str, ...] | None:
-    """The outputs of a step to compute; None for all."""
+    """Return the outputs of a step to compute; None for all."""
     return result.graph.computed(block) if result.needs is None else result.needs.outputs(block)
 
 
@@ -428,7 +428,10 @@ def _evaluate(result: Calculation, block: Block, raw: dict[str, Raw], wanted: tu
 def _evaluation(
     result: Calculation, block: Block, raw: dict[str, Raw], wanted: tuple[str, ...] | None
 ) -> Evaluation:
-    """The evaluation of a step: at the level of a design as it is kept or computed, at one of rows here."""
+    """Return the evaluation of a step.
+
+    At the level of a design as it is kept or computed, at one of rows here.
+    """
     if result.levels is None:
         return memory.evaluation(block, raw, wanted)
     level = result.levels.get(block.name)
@@ -438,7 +441,10 @@ def _evaluation(
 
 
 def _prepared(result: Calculation, block: Block) -> Evaluation | None:
-    """The evaluation of a step that somebody else has made for this calculation; None if nobody has."""
+    """Return the evaluation of a step that somebody else has made for this calculation.
+
+    None if nobody has.
+    """
     prepared = result.prepared.pop(block.name, None)
     if prepared == DEFERRED:
         raise StepDeferred

@@ -110,11 +110,11 @@ class Calculation:
 
     @property
     def for_all(self) -> Refusal | None:
-        """The refusal of every row; None, if nothing is wrong with all of them."""
+        """Return the refusal of every row; None, if nothing is wrong with all of them."""
         return refusal_of(self.faults) if self.faults else None
 
     def value(self, reference: Reference) -> Value:
-        """The value [SI] of a name in a design of one row, once its node is calculated.
+        """Return the value [SI] of a name in a design of one row, once its node is calculated.
 
         Raises
         ------
@@ -124,7 +124,7 @@ class Calculation:
         return self.used(reference).value
 
     def used(self, reference: Reference) -> Column:
-        """The value of a name as relations use it; raises as `value`."""
+        """Return the value of a name as relations use it; raises as `value`."""
         if reference in self.changed:
             return self.changed[reference]
         if cell := self.graph.cell(reference):
@@ -144,7 +144,7 @@ class Calculation:
             return Column(getattr(self.instance(reference.block), declared.attribute))
 
     def column(self, reference: Reference) -> Column:
-        """The value of a name in all rows; NaN while it waits, and where it does not exist."""
+        """Return the value of a name in all rows; NaN while it waits, and where it does not exist."""
         step = self.step(reference.block) if self.graph.cell(reference) is None else None
         try:
             if step is not None and reference not in self.changed and reference not in self.given:
@@ -154,7 +154,7 @@ class Calculation:
             return Column(np.nan)
 
     def taken(self, reference: Reference) -> Column:
-        """A parameter of a model as the model takes it; NaN where it has none."""
+        """Return a parameter of a model as the model takes it; NaN where it has none."""
         if reference.block in self.steps:
             return self.steps[reference.block].column(reference.member)
         shape = self.shapes.get(reference.block)
@@ -163,7 +163,7 @@ class Calculation:
         return Column(getattr(shape, shape.inputs[reference.member].attribute))
 
     def step(self, name: str) -> StepRows | None:
-        """A step, or a model of which rows want the values, as its rows; None while it waits."""
+        """Return a step, or a model of which rows want the values, as its rows; None while it waits."""
         if name in self.steps:
             return self.steps[name]
         evaluation = self.evaluations.get(name)
@@ -185,7 +185,9 @@ class Calculation:
         return reference.analysis is None and reference.member in block.cls.formulas
 
     def measure(self, reference: Reference) -> Value:
-        """A measure of a solid, or output of its analyses [SI], by its name: `throw.torsion.stiffness`.
+        """Return a measure of a solid, or output of its analyses [SI], by its name.
+
+        `throw.torsion.stiffness`.
 
         A number, a table as an array [row, column], or a list as an array.
 
@@ -207,7 +209,7 @@ class Calculation:
         return float(scale.to_si(float(computed)))
 
     def outputs(self, model: str, kind: str) -> Outputs:
-        """The outputs of an analysis that are used and calculated; empty while it is pending."""
+        """Return the outputs of an analysis that are used and calculated; empty while it is pending."""
         return self.analyses.get(model, {}).get(kind, {})
 
     def _computed(self, reference: Reference, kind: str) -> object:
@@ -217,7 +219,7 @@ class Calculation:
         return result["value"]
 
     def instance(self, block: str) -> Template:
-        """The template of a step, or the model, with its values; of rows, that of the first.
+        """Return the template of a step, or the model, with its values; of rows, that of the first.
 
         Raises
         ------
@@ -232,7 +234,7 @@ class Calculation:
         return self.evaluations[block].template if block in self.evaluations else self.shapes[block]
 
     def waiting(self) -> list[SolidAnalysis]:
-        """The analyses that are waited for, of models that are built."""
+        """Return the analyses that are waited for, of models that are built."""
         return [
             node
             for node in self.graph.order
@@ -240,7 +242,7 @@ class Calculation:
         ]
 
     def levels_used(self) -> dict[str, str | None]:
-        """The level at which each step was calculated; None of a step without levels."""
+        """Return the level at which each step was calculated; None of a step without levels."""
         used = {name: evaluation.level for name, evaluation in self.evaluations.items()}
         single = {name: level if isinstance(level, str) else None for name, level in used.items()}
         return single | {n: step.level for n, step in self.steps.items() if not step.block.is_model}

@@ -42,33 +42,33 @@ class Column:
 
     @property
     def places(self) -> tuple[int, ...]:
-        """The shape of the value in one row."""
+        """Return the shape of the value in one row."""
         return np.shape(self.value)[int(self.is_row) :]
 
     def of(self, rows: Indices | slice) -> Column:
-        """The column of some of the rows."""
+        """Return the column of some of the rows."""
         return Column(self.value[rows], is_row=True) if self.is_row else self  # type: ignore[index]
 
     def padded(self, rank: int) -> Value:
-        """The value as an array that broadcasts with values of a larger rank."""
+        """Return the value as an array that broadcasts with values of a larger rank."""
         if not self.is_row or rank <= self.rank:
             return self.value
         value = np.asarray(self.value)
         return value.reshape(len(value), *(1,) * (rank - self.rank), *value.shape[1:])
 
     def spread(self, count: int) -> Array:
-        """The value of every row; a view, where one value serves all of them."""
+        """Return the value of every row; a view, where one value serves all of them."""
         value = np.asarray(self.value, dtype=float)
         return value if self.is_row else np.broadcast_to(value, (count, *value.shape))
 
     def finite_rows(self) -> Mask:
-        """The rows in which the value is finite at all its places."""
+        """Return the rows in which the value is finite at all its places."""
         finite: Mask = np.asarray(np.isfinite(self.value))
         whole: Mask = np.all(finite, axis=tuple(range(1, finite.ndim)))
         return whole
 
     def without(self, refused: Mask) -> Column:
-        """The column with NaN in the rows that are refused."""
+        """Return the column with NaN in the rows that are refused."""
         if not refused.any():
             return self
         where = refused.reshape(-1, *(1,) * self.rank)
@@ -76,7 +76,7 @@ class Column:
 
 
 def aligned(columns: Mapping[str, Column]) -> tuple[dict[str, Value], bool]:
-    """Values that broadcast row by row, and whether any of them has rows.
+    """Return values that broadcast row by row, and whether any of them has rows.
 
     Axes within a row broadcast from the last one, as they would in a design without rows.
     """
@@ -86,7 +86,7 @@ def aligned(columns: Mapping[str, Column]) -> tuple[dict[str, Value], bool]:
 
 
 def stacked(items: Sequence[Column]) -> Column:
-    """A list of single values, of which some may differ from row to row, as one value of rank 1."""
+    """Return a list of single values, of which some may differ from row to row, as one value of rank 1."""
     if not any(item.is_row for item in items):
         return Column(np.array([item.value for item in items], dtype=float))
     values = np.broadcast_arrays(*(item.value for item in items))
@@ -94,7 +94,7 @@ def stacked(items: Sequence[Column]) -> Column:
 
 
 def scattered(count: int, parts: Iterable[tuple[Indices | slice, Column]]) -> Column:
-    """One column of so many rows from columns of parts of the rows; NaN in the others.
+    """Return one column of so many rows from columns of parts of the rows; NaN in the others.
 
     Raises
     ------

@@ -52,7 +52,7 @@ class ClimbResult:
 
     @property
     def undecided(self) -> list[str]:
-        """The criteria asked for that are still undecided."""
+        """Return the criteria asked for that are still undecided."""
         return [j.name for j in self.criteria if j.verdict == "undecided" and j.name in self.asked]
 
 
@@ -68,7 +68,7 @@ class _Move:
 
     @property
     def gain(self) -> float:
-        """The error that it takes away, for its cost."""
+        """Return the error that it takes away, for its cost."""
         return (min(self.before, 1e6) - self.after) / max(self.seconds, 1e-6)
 
 
@@ -117,7 +117,7 @@ class Climb:
         return self._climb(max(affordable, key=lambda move: move.gain), open_now)
 
     def _moves(self, open_now: Sequence[str]) -> Iterator[_Move]:
-        """For every uncertain output behind the open criteria its next levels, cheapest first."""
+        """Return the next levels of each uncertain output behind the open criteria, cheapest first."""
         verdicts = Verdicts(self.calculation)
         for reference in sorted({r for name in open_now for r in verdicts.uncertain(name)}, key=str):
             block = self.calculation.graph.blocks[reference.block]
@@ -156,7 +156,7 @@ class Climb:
         self.skipped.setdefault((step, level), Trial(step, level, 0, 0.0, reason=reason))
 
     def _needed(self, block: Block, open_now: Sequence[str]) -> tuple[str, ...]:
-        """The outputs of a step that the open criteria and relations use."""
+        """Return the outputs of a step that the open criteria and relations use."""
         verdicts = Verdicts(self.calculation)
         named = (r for name in open_now for r in verdicts.references(name).values() if r.block == block.name)
         used = (*named, *self.calculation.graph.used.get(block.name, ()))
@@ -191,11 +191,11 @@ class Climb:
         return None
 
     def _judged(self, names: Sequence[str]) -> dict[str, Judgement]:
-        """The criteria of these names, judged again."""
+        """Return the criteria of these names, judged again."""
         return {judgement.name: judgement for judgement in Verdicts(self.calculation).some(names)}
 
 
 def _largest(error: object) -> float:
-    """The largest error of several points; infinite where it is not stated."""
+    """Return the largest error of several points; infinite where it is not stated."""
     errors = np.asarray(error if error is not None else np.nan, dtype=float)
     return float(np.nanmax(errors)) if np.isfinite(errors).any() else math.inf

@@ -43,7 +43,7 @@ class Levelling:
     wanted: Wanted
 
     def of_tolerances(self, levels: Levels) -> dict[str, str | None]:
-        """The levels given, and those of steps for which the design has a tolerance and no level."""
+        """Return the levels given, and those of steps for which the design has a tolerance and no level."""
         chosen = dict(levels)
         for block in self.design.steps(self.wanted):
             if block.tolerance is not None and not (levels.get(block.name) or block.level):
@@ -51,7 +51,7 @@ class Levelling:
         return chosen
 
     def within(self, tolerance: float, share: float, starts: Levels) -> dict[str, str | None]:
-        """The level of each step, chosen after those from which it follows.
+        """Return the level of each step, chosen after those from which it follows.
 
         `starts` are levels at which steps start whose rows would start at different ones.
         """
@@ -95,7 +95,7 @@ class LevelSearch:
     share: float
 
     def level(self) -> str:
-        """The cheapest level that serves; the starting one, where that states too few errors."""
+        """Return the cheapest level that serves; the starting one, where that states too few errors."""
         measured = accuracy(self.block.cls)
         for level in self.ladder:
             if measured is not None and self._met(measured, level) >= self.share:
@@ -114,17 +114,17 @@ class LevelSearch:
 
     @cached_property
     def start(self) -> str:
-        """The level at which the step starts."""
+        """Return the level at which the step starts."""
         return next((step.level for step in self._started if step.level), self.block.cls.default_level)
 
     @cached_property
     def ladder(self) -> tuple[str, ...]:
-        """The levels that answer these rows, cheapest first."""
+        """Return the levels that answer these rows, cheapest first."""
         return next((part.template.ladder() for _, part in self._parts), (self.block.cls.default_level,))
 
     @cached_property
     def _exists(self) -> dict[str, Mask]:
-        """For each output, the rows in which it has a value at the starting level."""
+        """Return for each output the rows in which it has a value at the starting level."""
         return {name: _joined(_has_value(step, name) for step in self._started) for name in self.outputs}
 
     def _stated(self) -> float:
@@ -148,7 +148,7 @@ class LevelSearch:
         return float(np.mean(met))
 
     def _calculated(self, level: str | None) -> list[StepRows]:
-        """The step in each chunk of rows; without parts where it waits, or is refused."""
+        """Return the step in each chunk of rows; without parts where it waits, or is refused."""
         nothing = StepRows(self.block, 1, has_rows=False)
         return [rows.step(self.block.name) or nothing for rows in self.passes(level)]
 
@@ -166,12 +166,12 @@ def _joined(chunks: Iterable[NDArray[S]]) -> NDArray[S]:
 
 
 def _has_value(step: StepRows, output: str) -> Mask:
-    """The rows in which an output has a value."""
+    """Return the rows in which an output has a value."""
     return Column(step.column(output).spread(step.count), is_row=True).finite_rows()
 
 
 def _expected(measured: Accuracy, step: StepRows, level: str, output: str) -> Array:
-    """The errors that another level states for where the rows lie; infinite, where it states none."""
+    """Return the errors that another level states for where the rows lie; infinite, where it states none."""
     errors = np.full(step.count, np.inf)
     for part in step.parts:
         errors[part.rows] = measured.expected(part.template, level, [output])[output]

@@ -32,7 +32,7 @@ class Needs:
     waiting: set[Reference] = field(default_factory=set)
 
     def outputs(self, block: Block) -> tuple[str, ...]:
-        """The formulas of a block that are used, in the order in which they are declared."""
+        """Return the formulas of a block that are used, in the order in which they are declared."""
         used = self.members.get(block.name, set())
         return tuple(name for name in block.cls.formulas if name in used)
 
@@ -43,7 +43,7 @@ def needs(
     measured: Collection[Reference],
     inside: Iterable[Reference] = (),
 ) -> Needs:
-    """All nodes on which some values depend, except those that lie behind `known` values.
+    """Return all nodes on which some values depend, except those that lie behind `known` values.
 
     Of inputs `inside` steps the steps are needed too, with what they take these inputs for.
     """
@@ -61,7 +61,7 @@ def needs(
 def _before(
     graph: Graph, reference: Reference, measured: Collection[Reference], result: Needs
 ) -> Iterator[Reference]:
-    """The values that are used for one value, which is noted as needed."""
+    """Yield the values that are used for one value, which is noted as needed."""
     if cell := graph.cell(reference):
         result.cells.add(cell)
         if reference not in measured:
@@ -75,7 +75,7 @@ def _before(
 
 
 def _of_member(graph: Graph, reference: Reference, result: Needs) -> list[Reference]:
-    """The values that are used for an input or output of a block, which is noted as needed."""
+    """Return the values that are used for an input or output of a block, which is noted as needed."""
     block = graph.blocks[reference.block]
     result.members.setdefault(block.name, set()).add(reference.member)
     return [cell.reference for cell in block.cells.values()]
@@ -99,7 +99,7 @@ class Varying:
         return node in self.because
 
     def chain(self, node: Node) -> list[Node]:
-        """From the varied cell to a node that follows from it."""
+        """Return the path from the varied cell to a node that follows from it."""
         nodes = [node]
         while before := self.because[nodes[-1]]:
             nodes.append(before)
@@ -107,7 +107,7 @@ class Varying:
 
 
 def varying(graph: Graph, varied: Collection[Reference]) -> Varying:
-    """All nodes that follow from varied places."""
+    """Return all nodes that follow from varied places."""
     because: dict[Node, Node | None] = {}
     for node in graph.order:
         if source := next((source for source in graph.sources.get(node, ()) if source in because), None):
@@ -123,7 +123,7 @@ def _is_varied(cell: Cell, varied: Collection[Reference]) -> bool:
 
 
 def solids_in_the_way(graph: Graph, measures: Iterable[Reference], moving: Varying) -> list[Fault]:
-    """A fault for each measure of a solid that differs from row to row; it names the chain."""
+    """Return a fault for each measure of a solid that differs from row to row; it names the chain."""
     solids = {reference: graph.blocks[reference.block].solid for reference in sorted(measures, key=str)}
     return [_in_the_way(graph, r, moving.chain(solid)) for r, solid in solids.items() if solid in moving]
 

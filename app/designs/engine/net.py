@@ -50,12 +50,12 @@ class Net:
 
     @property
     def varied(self) -> frozenset[Reference]:
-        """The places of which rows give the values."""
+        """Return the places of which rows give the values."""
         return self.design.varied
 
     @property
     def graph(self) -> Graph:
-        """The network of the design, with a value at every varied place."""
+        """Return the network of the design, with a value at every varied place."""
         return self.design.graph
 
     @classmethod
@@ -71,7 +71,7 @@ class Net:
         pending: bool = False,
         set_aside: Collection[Reference] = (),
     ) -> Net:
-        """A design whose places `varied` differ from row to row.
+        """Return a design whose places `varied` differ from row to row.
 
         Parameters
         ----------
@@ -128,7 +128,7 @@ class Net:
         criteria: Collection[str] | None = None,
         chunk: int = MOST_ROWS,
     ) -> Table:
-        """The wanted values of all rows, and the verdicts of criteria.
+        """Return the wanted values of all rows, and the verdicts of criteria.
 
         Parameters
         ----------
@@ -176,7 +176,7 @@ class Net:
         *,
         criteria: Collection[str] = (),
     ) -> dict[str, str | None]:
-        """One level for each step: the cheapest whose stated error is within the tolerance.
+        """Return one level for each step: the cheapest whose stated error is within the tolerance.
 
         It is so at a `share` of the rows that have values at all. A step of which the design names a level
         keeps it, and one that states too few errors has the level at which it starts. None of a step without
@@ -225,11 +225,11 @@ class Net:
         return self.design.rows_at_once(self._wanted(wanted, criteria), levels, chunk)
 
     def criteria(self) -> list[str]:
-        """The criteria that a design of one row has: not those of outputs that its steps leave out."""
+        """Return the criteria that a design of one row has: not those of outputs that its steps leave out."""
         return [name for name, one in subjects(self.graph).items() if one.is_due(self.graph)]
 
     def unit(self, reference: Reference) -> str:
-        """The declared unit of a place, an output or a measure; of a parameter the unit as written."""
+        """Return the declared unit of a place, an output or a measure; of a parameter the unit as written."""
         if cell := self.graph.parameters.get(str(reference)):
             typed = None if cell.relations else read_any(cell.raw).unit
             return typed or f"{self.graph.kinds[str(reference)].base:~C}" or "1"
@@ -238,12 +238,15 @@ class Net:
         return self.graph.unit_of(reference) if is_inside else measured_unit(reference)
 
     def nominal(self, reference: Reference) -> Value:
-        """The value [SI] of a name as the document has it; NaN where it has none, or waits for a solid."""
+        """Return the value [SI] of a name as the document has it.
+
+        NaN where it has none, or waits for a solid.
+        """
         raise_if(list(self.design.faults([reference], {})))
         return self.written.nominal(Wanted.of([reference]), {}).column(reference).value
 
     def checked(self, rows: Rows, levels: Levels | None = None) -> tuple[int, dict[Reference, Array]]:
-        """The number of rows, and their columns as arrays.
+        """Return the number of rows, and their columns as arrays.
 
         Raises
         ------
@@ -254,7 +257,7 @@ class Net:
         return checked_rows(self.graph, self.varied, rows)
 
     def subjects(self, criteria: Collection[str]) -> dict[str, Subject]:
-        """Criteria by their names.
+        """Return criteria by their names.
 
         Raises
         ------
@@ -271,5 +274,5 @@ class Net:
 
 
 def _all_used(graph: Graph) -> list[Reference]:
-    """All references of all relations."""
+    """Return all references of all relations."""
     return [reference for cell in graph.cells() for reference in cell.uses.values()]

@@ -42,7 +42,7 @@ def with_places(document: Document, graph: Graph, varied: Collection[Reference])
 
 
 def _unit(graph: Graph, reference: Reference) -> str:
-    """The unit of a parameter that a relation sets."""
+    """Return the unit of a parameter that a relation sets."""
     return f"{graph.kinds[str(reference)].base:~C}" or "1"
 
 
@@ -84,7 +84,7 @@ def place_faults(
 
 
 def _followed(cell: Cell) -> str:
-    """The places to vary instead of a relation."""
+    """Return the places to vary instead of a relation."""
     text = cell.raw if isinstance(cell.raw, str) else "a list with relations"
     instead = f"; vary {', '.join(sorted(cell.uses))} instead, or write a value there" if cell.uses else ""
     return f"{cell.name} follows from others ({text.strip()}){instead}"
@@ -104,7 +104,7 @@ class Ranks:
     _ranks: dict[Cell, int] = field(default_factory=dict)
 
     def faults(self, blocks: Collection[str]) -> Iterator[Fault]:
-        """Lists of single values among the inputs of steps that differ from row to row."""
+        """Yield lists of single values among the inputs of steps that differ from row to row."""
         for node in self.graph.order:
             if isinstance(node, Cell):
                 self._ranks[node] = self._of_cell(node)
@@ -156,7 +156,7 @@ def _rank(cell: Cell) -> int:
 def checked_rows(
     graph: Graph, varied: Collection[Reference], rows: Mapping[Reference, Value]
 ) -> tuple[int, dict[Reference, Array]]:
-    """The number of rows, and their columns as arrays.
+    """Return the number of rows, and their columns as arrays.
 
     Raises
     ------

@@ -32,7 +32,7 @@ _ADD, _SUBTRACT = OPERATORS["add"], OPERATORS["subtract"]
 
 
 def related(relation: Relation, uses: Mapping[str, Column]) -> Column:
-    """The value of a relation in all rows; NaN where an index is no place of its array.
+    """Return the value of a relation in all rows; NaN where an index is no place of its array.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def _with_lists(relation: Relation, columns: Mapping[str, Column]) -> Column:
 
 
 def wrong_index(relation: Relation, uses: Mapping[str, Column], row: int) -> FaultyText | None:
-    """Why a row has no value, if that is because of an index."""
+    """Return why a row has no value, if that is because of an index."""
     alone = {name: np.asarray(c.value)[row] if c.is_row else c.value for name, c in uses.items()}
     try:
         for item in relation.items:
@@ -85,7 +85,7 @@ def _item(item: Item, uses: Mapping[str, Column]) -> Column:
 
 
 def column_of(node: Node, columns: Mapping[str, Column]) -> Column:
-    """The value of a tree in all rows, from the columns of its names and of items by their text.
+    """Return the value of a tree in all rows, from the columns of its names and of items by their text.
 
     Raises
     ------

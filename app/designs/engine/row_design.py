@@ -45,7 +45,7 @@ class Wanted:
 
     @classmethod
     def of(cls, references: Iterable[Reference], judged: Iterable[Subject] = ()) -> Wanted:
-        """Values, and those that criteria name."""
+        """Return values, and those that criteria name."""
         subjects = [subject for subject in judged if subject.block is None or not subject.block.is_model]
         subjects += [other for one in subjects for _, other in one.instead]
         used = [(one, r) for one in subjects for r in one.references.values()]
@@ -65,11 +65,11 @@ class RowDesign:
 
     @cached_property
     def moving(self) -> Varying:
-        """The values that differ from row to row."""
+        """Return the values that differ from row to row."""
         return varying(self.graph, self.varied)
 
     def needs(self, wanted: Wanted) -> Needs:
-        """The cells on which some values depend; kept for the next call."""
+        """Return the cells on which some values depend; kept for the next call."""
         if wanted not in self._needs:
             if len(self._needs) >= MOST_PREPARED:
                 self._needs.clear()
@@ -82,7 +82,7 @@ class RowDesign:
         return {}
 
     def steps(self, wanted: Wanted) -> list[Block]:
-        """The steps that are calculated for some values, in order."""
+        """Return the steps that are calculated for some values, in order."""
         due = self.needs(wanted).members
         blocks = (node for node in self.graph.order if isinstance(node, Block))
         return [block for block in blocks if block.name in due and not block.is_model]
@@ -129,7 +129,7 @@ class RowDesign:
         levels: Levels,
         chunk: int = MOST_ROWS,
     ) -> Iterator[tuple[int, Calculation]]:
-        """The rows in chunks, each with the number of its first row.
+        """Yield the rows in chunks, each with the number of its first row.
 
         Raises
         ------
@@ -152,16 +152,16 @@ class RowDesign:
         self._paces[wanted, self._pinned(wanted, levels)] = seconds
 
     def pace(self, wanted: Wanted, levels: Levels) -> float | None:
-        """The processor time of a row in the last call of this kind [s]; None before there was one."""
+        """Return the processor time of a row in the last call of this kind [s]; None before there was one."""
         return self._paces.get((wanted, self._pinned(wanted, levels)))
 
     def _pinned(self, wanted: Wanted, levels: Levels) -> frozenset[tuple[str, str | None]]:
-        """The levels of the steps that are calculated, as far as they are given."""
+        """Return the levels of the steps that are calculated, as far as they are given."""
         due = self.needs(wanted).members
         return frozenset((name, levels.get(name) or self.graph.blocks[name].level) for name in due)
 
     def settled(self, calculate: Callable[[Levels], T], levels: Levels) -> T:
-        """A result for which each step has one level: the finest at which any of its rows starts."""
+        """Return a result for which each step has one level: the finest at which any of its rows starts."""
         pinned = dict(levels)
         with np.errstate(all="ignore"):
             while True:
@@ -172,7 +172,7 @@ class RowDesign:
                     pinned[moved.step] = max(moved.before, moved.level, key=ladder.index)
 
     def nominal(self, wanted: Wanted, levels: Levels) -> Calculation:
-        """The design as it was written, of which nothing varies."""
+        """Return the design as it was written, of which nothing varies."""
         with np.errstate(all="ignore"):
             return replace(self, varied=frozenset(), _prepared={}).constants(wanted, levels)
 

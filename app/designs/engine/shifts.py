@@ -56,7 +56,7 @@ class Origins:
         return Origins(self.carried | other.carried, self.stopped | other.stopped)
 
     def without(self) -> Origins:
-        """The same, behind something through which no error is carried."""
+        """Return the same, behind something through which no error is carried."""
         return Origins(stopped=self.carried | self.stopped)
 
 
@@ -93,15 +93,18 @@ class Shifts:
     _seconds: float = 0.0  # that the calculations so far were estimated to take of one row
 
     def upstream(self, references: Iterable[Reference]) -> Upstream:
-        """The origins of some values, without the errors of their own steps."""
+        """Return the origins of some values, without the errors of their own steps."""
         return self.known(_joined(map(self._beneath_of, references)))
 
     def behind(self, reference: Reference) -> Upstream:
-        """The origins of a value for those who use it: the error of its own step, and those beneath it."""
+        """Return the origins of a value for those who use it.
+
+        The error of its own step, and those beneath it.
+        """
         return self.known(self._beneath_of(reference) | self._own(reference))
 
     def unknown(self, upstream: Upstream) -> Mask:
-        """The rows in which the error of any output is not known."""
+        """Return the rows in which the error of any output is not known."""
         count = self.calculation.count
         unknown = np.zeros(count, dtype=bool)
         for origin in upstream.unknown:
@@ -112,13 +115,13 @@ class Shifts:
     def shifts(
         self, references: Mapping[str, Reference], upstream: Upstream
     ) -> tuple[list[Shifted], frozenset[Reference]]:
-        """The values of some names with each uncertain origin at either end, and the origins left out."""
+        """Return values of names with each uncertain origin at either end, and the origins left out."""
         carried = [origin for origin in sorted(upstream.uncertain, key=str) if self._is_carried(origin)]
         shifts = [self._shift(origin, references) for origin in carried]
         return shifts, upstream.uncertain.difference(carried)
 
     def _shift(self, origin: Reference, references: Mapping[str, Reference]) -> Shifted:
-        """Values of names at both ends; the origin keeps its value: its own band is counted elsewhere."""
+        """Return values of names at both ends; the origin keeps its value, its band is counted elsewhere."""
         low, high = self._ends[origin]
         return self._at(low, origin, references), self._at(high, origin, references)
 
@@ -131,7 +134,7 @@ class Shifts:
         }
 
     def known(self, origins: Origins) -> Upstream:
-        """Origins by what is known of their errors; those that are exact are left out."""
+        """Return origins by what is known of their errors; those that are exact are left out."""
         if origins == NONE:
             return NOTHING
         kinds = {origin: self._kinds(origin) for origin in origins.carried | origins.stopped}
@@ -143,7 +146,7 @@ class Shifts:
         return Upstream(sets["uncertain"], sets["unknown"], sets["unstated"] | stopped)
 
     def _kinds(self, origin: Reference) -> frozenset[str]:
-        """The places of an output in an `Upstream`; in rows it may have more than one."""
+        """Return the places of an output in an `Upstream`; in rows it may have more than one."""
         estimate = self.estimate(origin)
         if isinstance(estimate, Absent):
             return frozenset()
@@ -166,7 +169,10 @@ class Shifts:
 
     @cached_property
     def _is_carried_on(self) -> bool:
-        """Whether any relation uses what is calculated or measured; what is written in a cell is exact."""
+        """Return whether any relation uses what is calculated or measured.
+
+        What is written in a cell is exact.
+        """
         graph = self.calculation.graph
         return any(graph.cell(used) is None for cell in graph.cells() for used in cell.uses.values())
 
@@ -193,11 +199,11 @@ class Shifts:
         return self._origins(reference) | self._own(reference)
 
     def _own(self, reference: Reference) -> Origins:
-        """An output of a step that is calculated, and so may be off."""
+        """Return an output of a step that is calculated, and so may be off."""
         return Origins(frozenset({reference})) if self.calculation.is_output(reference) else NONE
 
     def _of_block(self, block: Block, member: str) -> Origins:
-        """The origins of an input or output of a block: the cells on which it depends here."""
+        """Return the origins of an input or output of a block: the cells on which it depends here."""
         declared = block.cls.inputs.get(member) or block.cls.formulas[member]
         try:
             beneath = self.calculation.instance(block.name).depends_on(declared.attribute)
@@ -209,7 +215,10 @@ class Shifts:
         return origins.without() if origins != NONE and self._is_expensive(block) else origins
 
     def _is_expensive(self, block: Block) -> bool:
-        """True if a step takes too long to be calculated again and again; by its estimate, not by a clock."""
+        """Return whether a step takes too long to be calculated again and again.
+
+        By its estimate, not by a clock.
+        """
         return not block.is_model and self._estimated_seconds(block) > EXPENSIVE
 
     def _estimated_seconds(self, block: Block) -> float:
@@ -224,7 +233,7 @@ class Shifts:
         return self.calculation.levels_used()
 
     def _first(self, cell: Cell) -> Raw:
-        """The value of a cell in the first row."""
+        """Return the value of a cell in the first row."""
         column = self.calculation.values.get(cell.name)
         if column is None or cell.declared is None or not column.is_row:
             return self.calculation.typed.get(cell.name, cell.raw)

@@ -64,7 +64,7 @@ class Part:
 
     @cached_property
     def is_array(self) -> bool:
-        """Whether its template has a point for each of its rows."""
+        """Return whether its template has a point for each of its rows."""
         return self.template.shape_of_points() == self.rows.shape
 
 
@@ -95,29 +95,29 @@ class StepRows:
 
     @classmethod
     def of(cls, block: Block, evaluation: Evaluation) -> StepRows:
-        """A step of which nothing differs from row to row."""
+        """Return a step of which nothing differs from row to row."""
         part = Part(_ONE_ROW, evaluation.template, evaluation.outputs, evaluation.error)
         level = evaluation.level if isinstance(evaluation.level, str) else None
         return cls(block, 1, has_rows=False, level=level, parts=[part], evaluation=evaluation)
 
     def refused(self) -> Mask:
-        """Which rows are refused."""
+        """Return which rows are refused."""
         refused = np.zeros(self.count, dtype=bool)
         refused[list(self.refusals)] = True
         return refused
 
     def column(self, name: str) -> Column:
-        """The values [SI] of an input or output; NaN where there is none."""
+        """Return the values [SI] of an input or output; NaN where there is none."""
         if name not in self._columns:
             self._columns[name] = self._joined([(part.rows, self._value(part, name)) for part in self.parts])
         return self._columns[name]
 
     def error(self, output: str) -> Column:
-        """The relative errors of an output; NaN where none is stated."""
+        """Return the relative errors of an output; NaN where none is stated."""
         return self._joined([(part.rows, self._error(part, output)) for part in self.parts])
 
     def absence(self, output: str) -> str | None:
-        """Why an output does not exist in rows that are not refused: the first reason."""
+        """Return why an output does not exist in rows that are not refused: the first reason."""
         for part in self.parts:
             answer = part.answers[output]
             if answer.value is None:
@@ -130,7 +130,7 @@ class StepRows:
         return None
 
     def _joined(self, columns: list[tuple[Indices, Column]]) -> Column:
-        """One column of all parts, without the rows that are refused."""
+        """Return one column of all parts, without the rows that are refused."""
         if not columns:
             return Column(np.nan)
         if len(columns) == 1 and columns[0][0].size == self.count:
@@ -193,7 +193,10 @@ def step_rows(
 
 
 def _grouped(block: Block, columns: Mapping[str, Column], rows: Indices) -> Iterator[Indices]:
-    """Rows that go into one array call: those of equal inputs where an input is one value for all points."""
+    """Yield rows that go into one array call.
+
+    Those of equal inputs where an input is one value for all points.
+    """
     shared = [
         np.asarray(column.value)[rows].reshape(len(rows), -1)
         for name, column in columns.items()
@@ -237,7 +240,7 @@ class _Evaluator:
             self.step.refusals |= masked(self.step.block.name, part.template, part.rows)
 
     def _varied(self) -> list[str]:
-        """The inputs that differ from row to row."""
+        """Return the inputs that differ from row to row."""
         return [name for name, value in self.given.items() if isinstance(value, Column)]
 
     def _part(self, rows: Indices) -> Part:
@@ -261,7 +264,10 @@ class _Evaluator:
         return step.level
 
     def _input(self, name: str, rows: Indices) -> Raw:
-        """An input as its template takes it; of a single row as a single value, so that it speaks of it."""
+        """Return an input as its template takes it.
+
+        Of a single row as a single value, so that it speaks of it.
+        """
         value = self.given[name]
         if not isinstance(value, Column):
             return value

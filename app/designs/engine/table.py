@@ -51,7 +51,7 @@ class Table:
 
     @classmethod
     def of(cls, count: int, wanted: Iterable[Reference]) -> Table:
-        """A table to which chunks are added; of no rows it has its columns already."""
+        """Return a table to which chunks are added; of no rows it has its columns already."""
         return cls(count) if count else cls(0, {reference: np.empty(0) for reference in wanted})
 
     def add(self, start: int, rows: Calculation, wanted: Iterable[Reference]) -> None:
@@ -86,7 +86,7 @@ class Table:
                 self.judged[name] = column.within(whole, chunk, self.count)
 
     def _filled(self, whole: Array | None, chunk: slice, column: Column, reference: Reference) -> Array:
-        """A column with the values of a chunk; allocated once, unless one value serves all rows."""
+        """Return a column with the values of a chunk; allocated once, unless one value serves all rows."""
         if not column.is_row and chunk == slice(0, self.count):
             return column.spread(self.count)
         if whole is None or (whole.ndim == 1 and column.rank):

@@ -47,7 +47,7 @@ COLUMNS = ("value", "limit", "low", "high", "utilisation", "margin")
 
 
 def judged(calculation: Calculation) -> list[Judgement]:
-    """Every criterion of a design, worst first; what waits for a solid or a step is not checked."""
+    """Return every criterion of a design, worst first; what waits for a solid or a step is not checked."""
     return worst_first(Verdicts(calculation).all())
 
 
@@ -76,7 +76,7 @@ class JudgedColumn:
     is_stated: bool
 
     def within(self, whole: JudgedColumn | None, chunk: slice, count: int) -> JudgedColumn:
-        """A column of so many rows, of which these are a chunk; the rest is that of `whole`."""
+        """Return a column of so many rows, of which these are a chunk; the rest is that of `whole`."""
         columns = _columns(whole, count)
         for name in COLUMNS:
             columns[name][chunk] = getattr(self, name)
@@ -116,11 +116,11 @@ class Verdicts:
     _estimates: dict[Reference, RowEstimate | Absent] = field(default_factory=dict)
 
     def all(self) -> Iterator[Judgement]:
-        """Every criterion, in no order."""
+        """Return every criterion, in no order."""
         return self.some(self._subjects)
 
     def some(self, names: Iterable[str]) -> Iterator[Judgement]:
-        """The criteria of these names."""
+        """Yield the criteria of these names."""
         for name in names:
             subject = self._subjects[name]
             if subject.block is not None:
@@ -129,19 +129,19 @@ class Verdicts:
                 yield self._of_design(subject, subject.demand)
 
     def names(self) -> list[str]:
-        """The names of all criteria."""
+        """Return the names of all criteria."""
         return list(self._subjects)
 
     def subject(self, name: str) -> Subject:
-        """A criterion by its name, and where it is declared."""
+        """Return a criterion by its name, and where it is declared."""
         return self._subjects[name]
 
     def references(self, name: str) -> Mapping[str, Reference]:
-        """The values that a criterion names, without limits."""
+        """Return the values that a criterion names, without limits."""
         return self._subjects[name].references
 
     def uncertain(self, name: str) -> frozenset[Reference]:
-        """The outputs of steps whose errors, as far as they are stated, make the band of a criterion."""
+        """Return the outputs of steps whose stated errors make the band of a criterion."""
         subject = self._subjects[name]
         judged = [subject, *(one for _, one in subject.instead)]
         references = (reference for one in judged for reference in one.references.values())
@@ -149,7 +149,7 @@ class Verdicts:
         return reduce(or_, origins, frozenset())
 
     def rows(self, subject: Subject) -> tuple[RowCodes, JudgedColumn]:
-        """The verdict of a criterion in each row, and the numbers behind it."""
+        """Return the verdict of a criterion in each row, and the numbers behind it."""
         criterion = subject.criterion
         estimates = self._of_rows(subject)
         missing = np.zeros(self.calculation.count, dtype=bool)
@@ -174,7 +174,7 @@ class Verdicts:
         return Shifts(self.calculation, self._estimate)
 
     def _of_template(self, block: Block, subject: Subject) -> Iterator[Judgement]:
-        """A criterion of a step's template, unless the step leaves out outputs that it needs."""
+        """Yield a criterion of a step's template, unless the step leaves out outputs that it needs."""
         criterion, evaluated = subject.criterion, self._evaluated(block.name)
         if evaluated is None:
             absent = dict.fromkeys(criterion.names, Absent((), f"{block.name} waits for its calculation"))
@@ -187,7 +187,7 @@ class Verdicts:
         yield _named(judgement, block, subject.demand)
 
     def _instead(self, block: Block, evaluated: Evaluated, criterion: Criterion) -> Instead | None:
-        """The judgement where a side has no value, with the errors from upstream."""
+        """Return the judgement where a side has no value, with the errors from upstream."""
         missing = missing_of(evaluated, criterion)
         if missing is None or missing.instead is None:
             return None
@@ -208,7 +208,10 @@ class Verdicts:
         return self._judged(subject, found, along, more, instead)
 
     def _waiting_limits(self, block: Block, criterion: Criterion) -> dict[str, Absent]:
-        """The limits whose relations have no value yet; a row of the library does not stand in for them."""
+        """Return the limits whose relations have no value yet.
+
+        A row of the library does not stand in for them.
+        """
         related = (block.related[name] for name in criterion.limits_by_name if name in block.related)
         waiting = [cell for cell in related if cell.name not in self.calculation.values]
         return {
@@ -217,7 +220,7 @@ class Verdicts:
         }
 
     def _of_design(self, subject: Subject, demand: Demand) -> Judgement:
-        """A criterion that the design writes itself."""
+        """Return a criterion that the design writes itself."""
         found = {name: self._estimate(reference) for name, reference in demand.uses.items()}
         estimates = {name: one for name, one in found.items() if isinstance(one, RowEstimate)}
         absent = {name: one for name, one in found.items() if isinstance(one, Absent)}
@@ -228,14 +231,14 @@ class Verdicts:
         return self._judged(subject, estimates, along, more, None)
 
     def _stated_by(self, demand: Demand) -> dict[str, str | None]:
-        """Level and truth, where an output of a step is judged alone."""
+        """Return level and truth, where an output of a step is judged alone."""
         subject = demand.criterion.subject if demand.criterion else None
         reference = demand.uses[subject] if subject else None
         evaluated = self._evaluated(reference.block) if reference and reference.output else None
         return level_and_truth(evaluated, reference.output) if reference and evaluated else {}
 
     def _along(self, demand: Demand) -> Along | None:
-        """The places of the first curve that a criterion uses."""
+        """Return the places of the first curve that a criterion uses."""
         for reference in demand.uses.values():
             evaluated = self._evaluated(reference.block) if reference.output else None
             along = along_of(evaluated.template, [reference.member]) if evaluated else None
@@ -251,7 +254,7 @@ class Verdicts:
         more: Mapping[str, str | None],
         instead: Instead | None,
     ) -> Judgement:
-        """A criterion all of whose names have values."""
+        """Return a criterion all of whose names have values."""
         criterion = subject.criterion
         try:
             sides = self._sides(subject, estimates)
@@ -264,7 +267,7 @@ class Verdicts:
         return _explained(result, sides)
 
     def _sides(self, subject: Subject, estimates: Mapping[str, RowEstimate]) -> _Sides:
-        """The values that a criterion names, with the errors that reach them from upstream.
+        """Return the values that a criterion names, with the errors that reach them from upstream.
 
         Raises
         ------
@@ -295,7 +298,7 @@ class Verdicts:
         *,
         is_unstated: bool,
     ) -> Mapping[str, RowEstimate]:
-        """Values whose errors upstream are not known, or not stated, marked as such."""
+        """Return values whose errors upstream are not known, or not stated, marked as such."""
         if upstream.unknown:
             unknown = self._shifts.unknown(upstream)
             return {n: e.without_error(unknown) if n in references else e for n, e in estimates.items()}
@@ -304,7 +307,7 @@ class Verdicts:
         return estimates
 
     def _estimate(self, reference: Reference) -> RowEstimate | Absent:
-        """The value of a name with the error of its own step, or why there is none."""
+        """Return the value of a name with the error of its own step, or why there is none."""
         if reference not in self._estimates:
             self._estimates[reference] = self._estimated(reference)
         return self._estimates[reference]
@@ -323,7 +326,7 @@ class Verdicts:
             return Absent((), f"{reference} waits for a solid or for its calculation")
 
     def _inside(self, reference: Reference) -> RowEstimate | Absent:
-        """An input or output of a step as the step was evaluated with it."""
+        """Return an input or output of a step as the step was evaluated with it."""
         step, parts = self.calculation.step(reference.block), self._parts(reference.block)
         if step is None or not parts:
             return Absent((), f"{reference.block} waits for its calculation")
@@ -333,12 +336,12 @@ class Verdicts:
         return Absent((), f"{reference} is not computed; name it in the outputs of the step")
 
     def _evaluated(self, step: str) -> Evaluated | None:
-        """A step as its criteria see it; None of a model, and while it waits."""
+        """Return a step as its criteria see it; None of a model, and while it waits."""
         parts = self._parts(step)
         return parts[0][1] if parts else None
 
     def _parts(self, name: str) -> Evaluations:
-        """The parts of a step as its criteria see them; none of a model, and while it waits."""
+        """Return the parts of a step as its criteria see them; none of a model, and while it waits."""
         if name not in self._steps:
             step = self.calculation.step(name)
             self._steps[name] = []
@@ -356,7 +359,10 @@ class Verdicts:
         return self._steps[name]
 
     def _limits(self, block: Block) -> Mapping[str, GivenLimit]:
-        """The limits of a step; those by relations as far as they have values, with these as source."""
+        """Return the limits of a step.
+
+        Those by relations as far as they have values, with these as source.
+        """
         if not block.related:
             return block.limits
         values = self.calculation.values
@@ -365,7 +371,7 @@ class Verdicts:
         return {**block.limits, **given}
 
     def _of_rows(self, subject: Subject) -> dict[str, RowEstimate]:
-        """The values that a criterion names in rows, as far as there are any."""
+        """Return the values that a criterion names in rows, as far as there are any."""
         block = subject.block
         if block is not None and block.is_model:
             return {}
@@ -382,7 +388,7 @@ class Verdicts:
         return estimates
 
     def _limit(self, subject: Subject, limit: Limit, others: Mapping[str, RowEstimate]) -> RowEstimate | None:
-        """A limit of the user: one for all rows, or a curve beside a curve."""
+        """Return a limit of the user: one for all rows, or a curve beside a curve."""
         assert subject.block is not None
         given = subject.block.limits.get(limit.name)
         if given is not None:
@@ -402,7 +408,7 @@ class Verdicts:
         return RowEstimate.exact(Column(end, column.is_row))
 
     def _compared(self, subject: Subject, estimates: Mapping[str, RowEstimate]) -> tuple[Array, JudgedColumn]:
-        """The verdicts of rows, and the numbers behind them."""
+        """Return the verdicts of rows, and the numbers behind them."""
         sides = self._sides(subject, estimates)
         compared = compare(subject.criterion, sides.estimates, sides.shifts)
         if not any(one.has_rows for one in estimates.values()) and np.ndim(compared.codes):
@@ -412,7 +418,7 @@ class Verdicts:
         return codes, _column(subject.criterion, numbers, is_stated)
 
     def _filled(self, subject: Subject, codes: RowCodes) -> RowCodes:
-        """With the verdicts of what is judged where a value is missing that another one stands beside."""
+        """Return verdicts, those of another comparison where a value is missing."""
         for missing, instead in subject.instead:
             if not instead.is_due(self.calculation.graph) or subject.block is None:
                 continue
@@ -427,7 +433,7 @@ class Verdicts:
     def _not_checked(
         self, criterion: Criterion, estimates: Mapping[str, RowEstimate]
     ) -> tuple[RowCodes, JudgedColumn]:
-        """No verdict in any row; a side that has a single value is reported."""
+        """Return no verdict in any row, with the value of a side that has a single one."""
         count = self.calculation.count
         nothing = np.full(count, np.nan)
         value, limit = (self._side(side, estimates) for side in (criterion.value, criterion.limit))
@@ -436,7 +442,7 @@ class Verdicts:
         return np.full(count, NOT_CHECKED, dtype=np.int8), column
 
     def _side(self, side: Relation, estimates: Mapping[str, RowEstimate]) -> Array:
-        """The value of a side, where it is one for each row."""
+        """Return the value of a side, where it is one for each row."""
         count = self.calculation.count
         if side.names <= estimates.keys() and not any(estimates[n].value.rank for n in side.names):
             value = side_of(side, {name: estimates[name].padded(0) for name in side.names})
@@ -455,7 +461,7 @@ def _padded(
 
 
 def _column(criterion: Criterion, sides: list[Array], is_stated: bool) -> JudgedColumn:
-    """The numbers of each row, as a report of a single design has them."""
+    """Return the numbers of each row, as a report of a single design has them."""
     value, limit, low, high, *_ = sides
     is_least = criterion.sign == ">="
     with np.errstate(all="ignore"):
@@ -466,7 +472,7 @@ def _column(criterion: Criterion, sides: list[Array], is_stated: bool) -> Judged
 
 
 def _explained(result: Judgement, sides: _Sides) -> Judgement:
-    """A judgement that names where upstream its error is lost."""
+    """Return a judgement that names where upstream its error is lost."""
     if sides.unknown and result.verdict == "undecided":
         return replace(
             result, reason=f"it follows from {_listed(sides.unknown)}, whose error is not known here"
@@ -490,7 +496,7 @@ def _operations(criterion: Criterion, estimates: Mapping[str, RowEstimate], upst
 
 
 def _named(judgement: Judgement, block: Block, demand: Demand | None) -> Judgement:
-    """A criterion of a template by its name in the design, with what the design says of it."""
+    """Return a criterion of a template by its name in the design, with what the design says of it."""
     written = demand.written if demand else None
     return replace(
         judgement,

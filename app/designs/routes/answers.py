@@ -38,7 +38,7 @@ async def answer_saved(
     prefer: str | None,
     proposals: Sequence[Proposal] | None = None,
 ) -> Response:
-    """The design itself, whether its job ended in time (200, 201) or goes on (202, the job in Location)."""
+    """Return the design: 200 or 201 if its job ended in time, else 202 with the job in Location."""
     done = not saved.is_deferred and await finished(jobs, saved.job, prefer)
     status = (201 if saved.created else 200) if done else 202
     place = f"/api/v1/jobs/{saved.job}" if saved.job and not done else f"/api/v1/designs/{saved.design}"
@@ -51,5 +51,5 @@ async def answer_saved(
 
 
 def shown(design: Design, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
-    """A design as an answer; the ETag is its revision."""
+    """Return a design as an answer; the ETag is its revision."""
     return written(design, status, {**(headers or {}), "ETag": f'"{design.revision}"'})

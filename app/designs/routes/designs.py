@@ -289,7 +289,7 @@ def document_of(body: DesignIn) -> tuple[JsonObject, str | None]:
 
 
 def noted(body: JsonObject) -> tuple[JsonObject, str | None]:
-    """A patch and its note."""
+    """Return a patch and its note."""
     patch = {key: value for key, value in body.items() if key != "note"}
     note = body.get("note")
     if note is not None and not (isinstance(note, str) and len(note) <= LONGEST_NOTE):

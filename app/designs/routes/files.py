@@ -131,7 +131,7 @@ class FileRequest:
     def _lookup(
         self, find: Callable[[Session], RevisionModelRow], wanted: str
     ) -> tuple[str, str, Stamp, File | None]:
-        """The key of the model's build, the kind of file that is stored, its stamp, and an older file."""
+        """Return the key of the model's build, the kind of the stored file, its stamp, and an older file."""
         with self.database.read() as session:
             model = find(session)
             kind = self._stored_kind(wanted)
@@ -141,7 +141,7 @@ class FileRequest:
             return model.build_key or "", kind, stamp, views.file(session, model, kind)
 
     def _stored_kind(self, wanted: str) -> str:
-        """The kind of file that is stored for one that is wanted."""
+        """Return the kind of file that is stored for one that is wanted."""
         if self.deflection is not None:
             return with_deflection(wanted, self.deflection)
         return PRINTED.get(wanted, wanted)
@@ -155,7 +155,7 @@ class FileRequest:
         return problems.answer(problem) if problem and not has_older else None
 
     def _sent(self, file: File, stamp: Stamp, kind: str) -> Response:
-        """A file under its name, or 304; with its stamp, if it is of a kind that has one."""
+        """Return a file under its name, or 304; with its stamp, if it is of a kind that has one."""
         plain, wide = f"{stamp.stem}.{kind}", f"{stamp.wide_stem}.{kind}"
         headers = {
             "Design-Revision": str(stamp.revision),
@@ -190,7 +190,7 @@ async def plain_file_request(
     prefer: Prefer = None,
     if_none_match: IfNoneMatch = None,
 ) -> FileRequest:
-    """The parts of a request that all routes of files have in common."""
+    """Return the parts of a request that all routes of files have in common."""
     return FileRequest(
         database,
         store,
@@ -217,7 +217,7 @@ async def file_request(
     deflection: Deflection = None,
     build: BuildSeen = None,
 ) -> FileRequest:
-    """The same, with the options of a mesh and of a drawing."""
+    """Return the same, with the options of a mesh and of a drawing."""
     return replace(plain, deflection=deflection, title_block=title_block)
 
 
@@ -249,13 +249,16 @@ async def read_model_file(
 
 
 def _is_outdated(models: Models, key: str, kind: str) -> bool:
-    """True if a drawing is one of an older program, which had no room for a stamp; it is drawn again."""
+    """Return whether a drawing is one of an older program, which had no room for a stamp.
+
+    It is drawn again.
+    """
     file = models.file(key, kind) if kind in DRAWINGS else None
     return file is not None and not takes_stamp(models.store.read(file.sha256), kind)
 
 
 def _accepted(accept: str | None) -> str:
-    """The kind that the client likes best, of those it likes equally the first; STEP by default."""
+    """Return the kind that the client likes best, of those it likes equally the first; STEP by default."""
     kinds = {media: kind for kind, media in MEDIA_TYPES.items()}
     liked = [(weight, kinds[media]) for media, weight in accepted_weights(accept).items() if media in kinds]
     return max(liked, key=lambda pair: pair[0], default=(1.0, "step"))[1]

@@ -46,7 +46,7 @@ class SheetRoute(StrictRoute):
 
 
 def sheet_kind(request: Request) -> Kind | None:
-    """The kind of sheet that a client sends, or likes best; None for JSON."""
+    """Return the kind of sheet that a client sends, or likes best; None for JSON."""
     if request.method == "PUT":
         sent = request.headers.get("content-type", "").partition(";")[0]
         return KINDS.get(sent.strip().lower())

@@ -50,7 +50,7 @@ async def answer_asked(
     client: str,
     prefer: str | None,
 ) -> Response:
-    """The answer to a question about a design; 202 with its job where it takes longer than is waited for."""
+    """Return the answer to a question about a design; 202 with its job where that takes too long."""
     seconds = patience(prefer, questions.steps.deadline)
     answer, job = await threads.run_within(seconds, request, questions.answer, asked, client)
     return accepted(job) if answer is None else written(answer)

@@ -30,7 +30,7 @@ class TitleBlock:
     texts: dict[str, str]
 
     def on(self, stamp: Stamp, kind: str) -> Stamp:
-        """The stamp with these texts.
+        """Return the stamp with these texts.
 
         Raises
         ------
@@ -57,7 +57,7 @@ class TitleBlock:
 
 
 def _contradictions(typed: dict[str, str], stamp: Stamp) -> list[Fault]:
-    """Names and states that only an approval gives."""
+    """Return names and states that only an approval gives."""
     faults = []
     for field, name in _SIGNED.items():
         signed = getattr(stamp, field)
@@ -79,12 +79,18 @@ def _contradictions(typed: dict[str, str], stamp: Stamp) -> list[Fault]:
 
 
 def _shown(text: str) -> str:
-    """A text as a drawing shows it, without room about it: signs that do not print are spaces there."""
+    """Return a text as a drawing shows it, without room about it.
+
+    Signs that do not print are spaces there.
+    """
     return "".join(sign if sign.isprintable() else " " for sign in text).strip()
 
 
 def _letters(text: str) -> str:
-    """The small Latin letters of a text: a reader sees `released` in `Released.` and in `ｒeleased` too."""
+    """Return the small Latin letters of a text.
+
+    A reader sees `released` in `Released.` and in `ｒeleased` too.
+    """
     return "".join(sign for sign in normalize("NFKD", text).lower() if "a" <= sign <= "z")
 
 
@@ -98,7 +104,7 @@ def title_block(
     approved_by: Typed = "",
     document_status: Typed = "",
 ) -> TitleBlock:
-    """The texts of the request: fields of ISO 7200, of a drawing only."""
+    """Return the texts of the request: fields of ISO 7200, of a drawing only."""
     return TitleBlock(
         {
             "legal_owner": legal_owner,

@@ -149,7 +149,7 @@ async def replace_variants(
 
 
 async def answer_table(designs: Designs, jobs: Jobs, saved: Saved, prefer: str | None) -> Response:
-    """The table as it was saved: 200, or 202 while solids are built."""
+    """Return the table as it was saved: 200, or 202 while solids are built."""
     is_done = not saved.is_deferred and await finished(jobs, saved.job, prefer)
     return await run_in_threadpool(_table, designs, saved, is_done)
 
@@ -280,7 +280,7 @@ def _file(store: Artifacts, entry: Entry) -> bytes:
 
 
 def _tag(names: Sequence[str], ready: Sequence[Entry]) -> str:
-    """A strong ETag: the ZIP is a pure function of these."""
+    """Return a strong ETag: the ZIP is a pure function of these."""
     parts = (
         f"{name}\0{entry.sha256}\0{entry.stamp.date}\0{entry.stamp.material}\n"
         for name, entry in zip(names, ready, strict=True)

@@ -22,7 +22,7 @@ _LINE = re.compile(r"\r\n|\r|\n")
 
 
 def read_csv(content: bytes) -> Grid:
-    """The cells of a CSV file. Linear in its length, which is at most `MOST_BYTES`.
+    """Return the cells of a CSV file. Linear in its length, which is at most `MOST_BYTES`.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def read_csv(content: bytes) -> Grid:
 
 
 def write_csv(rows: Sequence[Sequence[Value]]) -> bytes:
-    """Rows as a CSV file; a text that a spreadsheet would take for a formula gets an apostrophe."""
+    """Return rows as a CSV file; a text that a spreadsheet would take for a formula gets an apostrophe."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\r\n")
     writer.writerows([_escaped(cell) for cell in row] for row in rows)
@@ -70,7 +70,7 @@ def _rows(text: str, separator: str) -> list[list[str]]:
 
 
 def _meant(cell: str, separator: str) -> str:
-    """A cell without the apostrophe that keeps a text from being a formula, its decimal comma a point."""
+    """Return a cell without a leading apostrophe against formulas, its decimal comma a point."""
     plain = cell.strip()
     if plain.startswith("'") and plain.lstrip("'").startswith(DANGEROUS):
         return plain[1:]
@@ -80,7 +80,7 @@ def _meant(cell: str, separator: str) -> str:
 
 
 def _escaped(cell: Value) -> Value:
-    """A text that `_meant` reads back unchanged and that no spreadsheet runs."""
+    """Return a text that `_meant` reads back unchanged and that no spreadsheet runs."""
     if isinstance(cell, str) and cell.startswith("'") and cell.lstrip("'").startswith(DANGEROUS):
         return f"'{cell}"
     return harmless(cell)

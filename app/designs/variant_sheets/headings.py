@@ -8,7 +8,9 @@ from app.reference import Reference
 
 
 def place_named(heading: str, places: Collection[str]) -> str:
-    """The place that a heading names, by its whole name or in the words of its input; else the heading.
+    """Return the place that a heading names, by its whole name or in the words of its input.
+
+    Else the heading.
 
     `Radial load` is `film.radial_load` where no other step has an input of these words.
     """
@@ -20,5 +22,5 @@ def place_named(heading: str, places: Collection[str]) -> str:
 
 
 def joined(words: str) -> str:
-    """Words as a name: each space is an underscore."""
+    """Return words as a name: each space is an underscore."""
     return "_".join(words.split())

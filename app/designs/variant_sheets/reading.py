@@ -45,11 +45,11 @@ class SheetVariants:
     addresses: Mapping[tuple[str, str], str]  # of values by variant and place, of names by variant and ""
 
     def named(self, error: InvalidInputs) -> InvalidInputs:
-        """The faults of a save, those of variants named by the addresses of their cells."""
+        """Return the faults of a save, those of variants named by the addresses of their cells."""
         return InvalidInputs(self._named(fault) for fault in error.faults)
 
     def without(self, faults: Iterable[Fault]) -> SheetVariants:
-        """The cells that have none of these faults; of a variant whose name has one, none is left."""
+        """Return the cells that have none of these faults; of a variant whose name has one, none is left."""
         wrong = {fault.name for fault in faults}
         variants = {
             name: {place: v for place, v in row.items() if self.addresses[name, place] not in wrong}
@@ -68,7 +68,7 @@ class SheetVariants:
 
 
 def read_variants(grid: Grid, units: Units, before: Variants) -> tuple[SheetVariants, list[Fault]]:
-    """The cells of a sheet that can be read as variants, and the faults of all others.
+    """Return the cells of a sheet that can be read as variants, and the faults of all others.
 
     A value that means what it meant before is kept as it was typed then. Rows without a name of their own are
     left out.
@@ -111,14 +111,14 @@ def _refuse_many(grid: Grid, skipped: Collection[int]) -> None:
 
 
 def _skipped(grid: Grid) -> set[int]:
-    """The columns of results, which are never read."""
+    """Return the columns of results, which are never read."""
     return {at for at in range(grid.width) if grid.cell(0, at).lower().startswith(RESULTS)}
 
 
 def _columns(
     grid: Grid, units: Units, skipped: Collection[int], faults: list[Fault], *, has_units: bool
 ) -> Iterator[Column]:
-    """The columns of inputs; what is wrong with their headings and units is added to the faults."""
+    """Yield the columns of inputs; what is wrong with their headings and units is added to the faults."""
     if grid.cell(0, 0).lower() != FIRST:
         message = f"the first column holds the names of the variants; its heading is {FIRST!r}"
         faults.append(Fault("A1", "missing_name", message))
@@ -153,7 +153,7 @@ def _heading(text: str) -> tuple[str, str, bool]:
 
 
 def _unit(below: str, named: str, declared: str | None, at: int, faults: list[Fault]) -> str:
-    """The unit of a column, empty for none; a wrong one is added to the faults."""
+    """Return the unit of a column, empty for none; a wrong one is added to the faults."""
     where = address(1, at) if below else address(0, at)
     text = below or named
     if text in ("", "-"):
@@ -168,7 +168,7 @@ def _unit(below: str, named: str, declared: str | None, at: int, faults: list[Fa
 
 
 def _name(grid: Grid, row: int, variants: Collection[str], faults: list[Fault]) -> tuple[str, bool]:
-    """The name of the variant in a row, and whether it may have it; else the faults get one more."""
+    """Return the name of the variant in a row, and whether it may have it; else the faults get one more."""
     before = len(faults)
     name, where = joined(grid.cell(row, 0)), address(row, 0)
     if not name:
@@ -188,7 +188,7 @@ def _name(grid: Grid, row: int, variants: Collection[str], faults: list[Fault]) 
 def _values(
     grid: Grid, row: int, columns: list[Column], units: Units, wrong: Collection[str], faults: list[Fault]
 ) -> dict[str, tuple[int, Raw]]:
-    """Column and value of every place that a row sets; what is wrong is added to the faults."""
+    """Return column and value of every place that a row sets; what is wrong is added to the faults."""
     values: dict[str, tuple[int, Raw]] = {}
     for column in columns:
         text, where = grid.cell(row, column.number), address(row, column.number)
@@ -214,5 +214,5 @@ def _given(text: str, column: Column, units: Units) -> Raw:
 
 
 def _kept(old: Raw, value: Raw) -> Raw:
-    """The value as it was typed before, if it means the same."""
+    """Return the value as it was typed before, if it means the same."""
     return old if old is not None and same(old, value) else value

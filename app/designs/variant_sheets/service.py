@@ -26,7 +26,7 @@ TRIES = 3  # to find what a save would refuse: links, values, results
 
 
 def write_sheet(out: VariantsOut, kind: Kind) -> bytes:
-    """The table of a design's variants as a file."""
+    """Return the table of a design's variants as a file."""
     columns = sheet_columns(out)
     if kind == "csv":
         return write_csv(rows_of(columns))
@@ -34,7 +34,7 @@ def write_sheet(out: VariantsOut, kind: Kind) -> bytes:
 
 
 def read_sheet(content: bytes, kind: Kind) -> Grid:
-    """The cells of a file.
+    """Return the cells of a file.
 
     Raises
     ------
@@ -47,7 +47,7 @@ def read_sheet(content: bytes, kind: Kind) -> Grid:
 def save_sheet(
     designs: Designs, id: str, content: bytes, kind: Kind, expected: str | None, once: Once
 ) -> Saved:
-    """A new revision whose variants are those of a sheet; a sheet that changes nothing makes none.
+    """Return a new revision whose variants are those of a sheet; a sheet that changes nothing makes none.
 
     Raises
     ------

@@ -13,7 +13,7 @@ from templates.core.units.relation import is_relation
 
 
 def units_of(network: Network) -> Units:
-    """Units by place; None for a choice, and for a parameter that a relation sets."""
+    """Return units by place; None for a choice, and for a parameter that a relation sets."""
     return {place: _unit(network, Reference.parse(place)) for place in places(network)}
 
 
@@ -25,7 +25,7 @@ def _unit(network: Network, place: Reference) -> str | None:
 
 
 def _typed_unit(cell: Cell) -> str | None:
-    """The unit that a parameter was typed in; a relation has none of its own."""
+    """Return the unit that a parameter was typed in; a relation has none of its own."""
     if is_relation(cell.raw) or cell.relations:
         return None
     try:

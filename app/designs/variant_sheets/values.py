@@ -35,7 +35,7 @@ class Shape:
 
 
 def shape(raw: Raw) -> Shape:
-    """The cell of a value as typed."""
+    """Return the cell of a value as typed."""
     if is_relation(raw):
         return Shape(str(raw).strip().removeprefix("=").strip(), is_relation=True)
     number = _number(raw)
@@ -75,7 +75,7 @@ def _same_unit(one: str, other: str) -> bool:
 
 
 def relation(text: str) -> str:
-    """The relation in a cell, which stands there without its sign.
+    """Return the relation in a cell, which stands there without its sign.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def relation(text: str) -> str:
 
 
 def given(text: str, column: str, declared: str | None) -> Raw:
-    """The value in a cell of a column whose unit is `column`, empty for none.
+    """Return the value in a cell of a column whose unit is `column`, empty for none.
 
     `declared` is the unit in which the place is declared; None for a choice, or where it is not known.
 

@@ -30,20 +30,20 @@ class SheetColumn:
 
 
 def sheet_columns(out: VariantsOut) -> list[SheetColumn]:
-    """The columns of a table of variants: names, what they override, results."""
+    """Return the columns of a table of variants: names, what they override, results."""
     names = list(out.variants)
     inputs = [column for about in out.columns for column in _of_place(out, about)]
     return [SheetColumn(FIRST, UNIT, names), *inputs, *_results(out, names)]
 
 
 def rows_of(columns: Sequence[SheetColumn]) -> list[list[Value]]:
-    """Headings, units, and a row for each variant."""
+    """Return headings, units, and a row for each variant."""
     head: list[list[Value]] = [[column.heading for column in columns], [column.unit for column in columns]]
     return head + [list(cells) for cells in zip(*(column.cells for column in columns), strict=True)]
 
 
 def _of_place(out: VariantsOut, about: VariantColumn) -> Iterable[SheetColumn]:
-    """One column for the values of a place, and one for the relations that set it, each if there are any."""
+    """Yield a column for the values of a place, and one for its relations, if there are any."""
     raws = [overrides.get(about.place) for overrides in out.variants.values()]
     shapes = [None if raw is None else shape(raw) for raw in raws]
     if any(one and not one.is_relation for one in shapes):
@@ -56,7 +56,7 @@ def _of_place(out: VariantsOut, about: VariantColumn) -> Iterable[SheetColumn]:
 
 
 def page_columns(out: VariantsOut) -> list[SheetColumn]:
-    """The columns of inputs on a page: texts, relations with their sign, one column for a place."""
+    """Return the columns of inputs on a page: texts, relations with their sign, one column for a place."""
     names = list(out.variants)
     return [SheetColumn(FIRST, UNIT, names), *(_on_page(out, about) for about in out.columns)]
 
@@ -80,14 +80,14 @@ def _text(one: Shape | None, raw: object, unit: str) -> str:
 
 
 def _unit(shapes: Sequence[Shape | None], about: VariantColumn) -> str:
-    """The unit that most of the numbers have; none for a choice."""
+    """Return the unit that most of the numbers have; none for a choice."""
     units = Counter(one.unit for one in shapes if one and one.unit)
     most = max(units, key=lambda unit: units[unit], default="")
     return "" if about.unit is None and most == "1" else most
 
 
 def _cell(one: Shape | None, raw: object, unit: str) -> Value:
-    """A number in the unit of its column, else the value with its own unit."""
+    """Return a number in the unit of its column, else the value with its own unit."""
     if one is None or one.is_relation:
         return None
     is_plain = one.unit == unit or (one.unit == "1" and not unit)
@@ -95,7 +95,7 @@ def _cell(one: Shape | None, raw: object, unit: str) -> Value:
 
 
 def _results(out: VariantsOut, names: Sequence[str]) -> Iterable[SheetColumn]:
-    """Verdict and governing criterion of every variant, then verdict and utilisation of every criterion."""
+    """Yield verdict and governing criterion of each variant, then verdict and use of each criterion."""
     rows = {row.name: row for row in out.rows}
     results = [rows.get(name) for name in names]
     if any(row and row.problem for row in results):

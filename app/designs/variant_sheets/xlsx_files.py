@@ -36,15 +36,15 @@ class _Cell(Protocol):
 
     @property
     def value(self) -> object:
-        """A number, a text, a date; None where it is empty."""
+        """Return a number, a text, a date; None where it is empty."""
 
     @property
     def data_type(self) -> str:
-        """`f` for a formula, `e` for an error."""
+        """Return `f` for a formula, `e` for an error."""
 
 
 def read_xlsx(content: bytes) -> Grid:
-    """The cells of an XLSX file.
+    """Return the cells of an XLSX file.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def _check_size(content: bytes) -> None:
 
 
 def _sheet(book: Workbook) -> Worksheet:
-    """The sheet to read; hidden ones are passed over."""
+    """Return the sheet to read; hidden ones are passed over."""
     visible = [sheet for sheet in book.worksheets if sheet.sheet_state == "visible"]
     if not visible:
         raise _wrong("no_sheet", "the file has no visible sheet with cells")
@@ -91,7 +91,7 @@ def _sheet(book: Workbook) -> Worksheet:
 
 
 def _cells(sheet: Worksheet) -> tuple[list[list[str]], list[Fault]]:
-    """The texts of all cells; and the faults of those that hold no value."""
+    """Return the texts of all cells; and the faults of those that hold no value."""
     sheet.reset_dimensions()  # what the file says of its own size may be wrong
     rows: list[list[str]] = []
     faults: list[Fault] = []
@@ -108,7 +108,10 @@ def _cells(sheet: Worksheet) -> tuple[list[list[str]], list[Fault]]:
 
 
 def _first(rows: Iterable[Sequence[_Cell]]) -> Iterator[Sequence[_Cell]]:
-    """Rows up to the last that is allowed; of those below, the first that has a value, which is refused."""
+    """Yield rows up to the last that is allowed.
+
+    Of those below, the first that has a value, which is refused.
+    """
     for number, row in enumerate(rows):
         if number < LAST_ROW:
             yield row
@@ -118,7 +121,7 @@ def _first(rows: Iterable[Sequence[_Cell]]) -> Iterator[Sequence[_Cell]]:
 
 
 def _text(value: object, kind: str) -> str:
-    """A value of a cell as text.
+    """Return a value of a cell as text.
 
     Raises
     ------
@@ -138,7 +141,7 @@ def _text(value: object, kind: str) -> str:
 
 
 def number_text(number: float) -> str:
-    """A number with all its digits, as short as can be: `60`, `0.05`."""
+    """Return a number with all its digits, as short as can be: `60`, `0.05`."""
     if isinstance(number, float) and not math.isfinite(number):
         raise FaultyText("not_finite", "the value must be finite")
     whole = isinstance(number, int) or (number.is_integer() and abs(number) < 1e15)
@@ -146,7 +149,7 @@ def number_text(number: float) -> str:
 
 
 def write_xlsx(rows: Sequence[Sequence[Value]], results: Sequence[bool], title: str) -> bytes:
-    """Rows as an XLSX file with frozen headings; `results` says which columns hold results."""
+    """Return rows as an XLSX file with frozen headings; `results` says which columns hold results."""
     from openpyxl import Workbook
     from openpyxl.worksheet.worksheet import Worksheet
 

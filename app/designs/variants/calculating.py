@@ -16,7 +16,7 @@ MOST_CELLS = 50_000  # values of a design, times its variants; a cell takes some
 
 
 def checked(document: Document, base: Calculation, available: Available) -> tuple[list[Outcome], list[Fault]]:
-    """The variants of a document as far as they can be calculated now, and what is wrong with the table."""
+    """Return the variants of a document that can be calculated now, and the faults of the table."""
     if faults := list(too_many_cells(document)):
         return [], faults
     cells = faulty_cells(document, base.graph)
@@ -26,7 +26,10 @@ def checked(document: Document, base: Calculation, available: Available) -> tupl
 
 
 def too_many_cells(document: Document) -> Iterator[Fault]:
-    """A fault if there is more to calculate than a save does: every variant has every value of the design."""
+    """Yield a fault if there is more to calculate than a save does.
+
+    Every variant has every value of the design.
+    """
     blocks = [*(step.inputs for step in document.steps.values())]
     blocks += [model.parameters for model in document.models.values()]
     cells = len(document.parameters) + sum(map(len, blocks))
@@ -39,5 +42,5 @@ def too_many_cells(document: Document) -> Iterator[Fault]:
 
 
 def row_faults(base: Calculation) -> list[Fault]:
-    """A fault for every step of a design with variants that has rows of its own."""
+    """Return a fault for every step of a design with variants that has rows of its own."""
     return [fault.within("variants") for fault in row_arrays(base)]

@@ -18,7 +18,10 @@ from templates.core.units.quantity import Typed, read, read_any
 
 
 def columns(plain: JsonObject, catalogues: Catalogues) -> list[VariantColumn]:
-    """The columns of a stored document: its parameters first, then steps and models, each as declared."""
+    """Return the columns of a stored document.
+
+    Its parameters first, then steps and models, each as declared.
+    """
     if not plain.get("variants"):
         return []
     document = Document.model_validate(plain)
@@ -41,7 +44,10 @@ def _column(place: str, graph: Graph) -> VariantColumn:
 
 
 def _unit(place: str, cell: Cell | None, declared: Input | None, graph: Graph) -> str | None:
-    """The unit of a column: as declared, of a parameter as the design has typed it; None of a choice."""
+    """Return the unit of a column: as declared, of a parameter as the design has typed it.
+
+    None of a choice.
+    """
     if declared is not None:
         return None if isinstance(declared, Choice) else declared.meaning.unit
     if cell is not None and not cell.relations and (typed := _typed(cell)):
@@ -50,7 +56,7 @@ def _unit(place: str, cell: Cell | None, declared: Input | None, graph: Graph) -
 
 
 def _nominal(cell: Cell | None) -> Shown | None:
-    """The design's own value, as typed; None where it is a relation, or not set."""
+    """Return the design's own value, as typed; None where it is a relation, or not set."""
     if cell is None or cell.relations:
         return None
     if isinstance(cell.declared, Choice):

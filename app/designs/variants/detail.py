@@ -70,7 +70,7 @@ def detailed(
 
 
 def _alone(document: Document, wanted: WantedVariant) -> Document:
-    """The document with one of its variants only."""
+    """Return the document with one of its variants only."""
     variants = {BASE: {}, **document.variants}
     if wanted.variant not in variants:
         there = f"there are {', '.join(variants)}"
@@ -99,7 +99,10 @@ def _shown(wanted: WantedVariant, number: int, outcome: Outcome) -> VariantDetai
 
 
 def _outputs(calculation: Calculation) -> Iterator[tuple[str, Output]]:
-    """Every output of every step by its name in relations; null with its reason where the step waits."""
+    """Yield every output of every step by its name in relations.
+
+    Null with its reason where the step waits.
+    """
     for block in calculation.graph.blocks.values():
         if block.is_model:
             continue

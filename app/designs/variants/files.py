@@ -27,14 +27,14 @@ class Entry:
 
     @property
     def name(self) -> str:
-        """Its name in the ZIP, in the letters of its user."""
+        """Return its name in the ZIP, in the letters of its user."""
         return f"{self.stamp.wide_stem}.{STEP}"
 
 
 def variant_model(
     session: Session, id: str, variant: str, model: str | None, number: int | None
 ) -> RevisionModelRow:
-    """The model of a variant to serve: of one revision, or the newest good one of the design.
+    """Return the model of a variant to serve: of one revision, or the newest good one of the design.
 
     Raises
     ------
@@ -53,7 +53,7 @@ def variant_model(
 
 
 def entries(session: Session, id: str, number: int | None) -> tuple[int, list[Entry], list[str]]:
-    """The revision, the STEP files of all its variants in their order, and the models that have none.
+    """Return the revision, the STEP files of all its variants in their order, and the models that have none.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def _revision(session: Session, id: str, number: int | None) -> RevisionRow:
 
 
 def _model_named(row: RevisionRow, id: str, variant: str, model: str | None) -> str:
-    """The model that is meant: the one named, or the only one."""
+    """Return the model that is meant: the one named, or the only one."""
     names = list(row.document["models"])
     wanted = model or (names[0] if len(names) == 1 else None)
     if wanted is None or wanted not in names:
@@ -97,7 +97,7 @@ def _model_named(row: RevisionRow, id: str, variant: str, model: str | None) -> 
 def _good(
     session: Session, row: RevisionRow, variant: str, model: str, number: int | None
 ) -> RevisionModelRow | None:
-    """The model of a variant if it is built: of one revision, or of the newest in which it is."""
+    """Return the model of a variant if it is built: of one revision, or of the newest in which it is."""
     name = dotted(variant, model)
     if number is None:
         return repository.newest_good(session, row.design_id, name, row.number)
@@ -106,7 +106,7 @@ def _good(
 
 
 def _why(row: RevisionRow, variant: str, model: str) -> str:
-    """Why a model of a variant has no solid."""
+    """Return why a model of a variant has no solid."""
     if row.state == "regenerating":
         return "it is being regenerated: ask again, or follow /events"
     stored: JsonObject = (row.results or {}).get("variants", {}).get(variant, {})

@@ -19,7 +19,9 @@ Judged = Mapping[str, Sequence[Judgement]]
 
 
 def merged(base: Sequence[Judgement], variants: Judged) -> list[Judgement]:
-    """Every criterion of a design at its worst variant, worst first; as it is where there are no variants.
+    """Return every criterion of a design at its worst variant, worst first.
+
+    As it is where there are no variants.
 
     Points are variants, the design itself one of them. Whatever is not certain of one is not certain of all.
     """
@@ -34,7 +36,7 @@ def merged(base: Sequence[Judgement], variants: Judged) -> list[Judgement]:
 
 
 def _worst(judgements: Sequence[Judgement]) -> Judgement:
-    """The worst of one criterion over variants, and how many of each verdict there are."""
+    """Return the worst of one criterion over variants, and how many of each verdict there are."""
     worst = worst_first(judgements)[0]
     counts = Counter(judgement.verdict for judgement in judgements)
     return replace(

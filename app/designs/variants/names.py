@@ -23,7 +23,7 @@ NaturalKey = tuple[tuple[tuple[int, int, str], ...], str]
 
 
 def natural(name: str) -> NaturalKey:
-    """The key by which names are sorted as people count: main_2 before main_10."""
+    """Return the key by which names are sorted as people count: main_2 before main_10."""
     parts = (
         (0, int(part), "") if part[0].isdigit() else (1, 0, part.lower()) for part in _PART.findall(name)
     )
@@ -31,5 +31,8 @@ def natural(name: str) -> NaturalKey:
 
 
 def dotted(variant: str, model: str) -> str:
-    """The name of a variant's model among the models of a revision; a model of the design has no dot."""
+    """Return the name of a variant's model among the models of a revision.
+
+    A model of the design has no dot.
+    """
     return f"{variant}.{model}"

@@ -73,12 +73,12 @@ class Outcome:
 
 
 def refused(name: str, faults: Sequence[Fault]) -> Outcome:
-    """A variant that cannot be calculated; the faults are those of a design."""
+    """Return a variant that cannot be calculated; the faults are those of a design."""
     return Outcome(name, faults=tuple(fault.within(f"variants.{name}") for fault in faults))
 
 
 def units_of(document: Document, places: Collection[str]) -> dict[str, str]:
-    """Places with the units of parameters as the design has typed them; empty where it has none."""
+    """Return places with the units of parameters as the design has typed them; empty where it has none."""
     return {place: _typed_unit(document.parameters.get(place)) for place in places}
 
 
@@ -90,7 +90,7 @@ def _typed_unit(raw: Raw) -> str:
 
 
 def outcome_of(name: str, places: Mapping[str, str], document: Document, calculation: Calculation) -> Outcome:
-    """A variant that was calculated as a design of its own."""
+    """Return a variant that was calculated as a design of its own."""
     if calculation.faults:
         return refused(name, calculation.faults)
     return Outcome(
@@ -109,7 +109,7 @@ def outcome_of(name: str, places: Mapping[str, str], document: Document, calcula
 
 
 def values(calculation: Calculation, places: Mapping[str, str]) -> dict[str, JsonObject]:
-    """Overridden places as quantities; one that waits for a solid is left out."""
+    """Return overridden places as quantities; one that waits for a solid is left out."""
     shown = {place: _value(calculation, place, unit) for place, unit in places.items()}
     return {place: value for place, value in shown.items() if value is not None}
 
@@ -132,12 +132,15 @@ def _value(calculation: Calculation, place: str, typed_unit: str) -> JsonObject 
 
 
 def base_unit(graph: Graph, parameter: str) -> str:
-    """The unit in SI of a parameter that is a relation."""
+    """Return the unit in SI of a parameter that is a relation."""
     return f"{graph.kinds[parameter].base:~C}" or "1"
 
 
 def single_outputs(calculation: Calculation) -> dict[str, JsonObject]:
-    """Every output of every step that is not an array, by its name in relations; null with its reason."""
+    """Return every output of every step that is not an array, by its name in relations.
+
+    Null with its reason.
+    """
     shown: dict[str, JsonObject] = {}
     for step, evaluation in calculation.evaluations.items():
         answers = {n: a for n, a in evaluation.outputs.items() if not isinstance(a.value, np.ndarray)}
@@ -146,6 +149,6 @@ def single_outputs(calculation: Calculation) -> dict[str, JsonObject]:
 
 
 def _without_nan(quantity: JsonObject) -> JsonObject:
-    """A quantity fit for JSON."""
+    """Return a quantity fit for JSON."""
     value: Json = quantity["value"]
     return {**quantity, "value": None} if value != value else quantity

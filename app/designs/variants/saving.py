@@ -16,7 +16,7 @@ Table = Mapping[str, Mapping[str, Raw]]
 def replace_variants(
     designs: Designs, id: str, table: Table, note: str | None, expected: str | None, once: Once
 ) -> Saved:
-    """A new revision whose variants are those of a table; a table that changes nothing makes none.
+    """Return a new revision whose variants are those of a table; a table that changes nothing makes none.
 
     Raises
     ------
@@ -33,7 +33,7 @@ def replace_variants(
 
 
 def patch_between(old: Table, new: Table) -> JsonObject:
-    """The merge patch that makes one table of another."""
+    """Return the merge patch that makes one table of another."""
     gone: JsonObject = {name: None for name in old if name not in new}
     kept = {
         name: {**{place: None for place in old.get(name, {}) if place not in values}, **values}

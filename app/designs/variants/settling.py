@@ -40,7 +40,7 @@ Settle = Callable[[Prepared, JobContext], Calculation]
 
 
 def plain_problem(error: Exception) -> JsonObject:
-    """An error as a problem, where nobody knows more of it."""
+    """Return an error as a problem, where nobody knows more of it."""
     return {"type": "about:blank", "title": "The variant failed", "status": 422, "detail": str(error)}
 
 
@@ -63,7 +63,7 @@ class Settling:
     _failed: dict[str, Exception] = field(default_factory=dict)  # by key of build: nothing is tried twice
 
     def settled(self, outcomes: Sequence[Outcome]) -> list[Outcome]:
-        """The variants with all their solids built, or with the reason why one is not."""
+        """Return the variants with all their solids built, or with the reason why one is not."""
         done: list[Outcome] = []
         for number, outcome in enumerate(outcomes):
             self.context.progress(number / len(outcomes), f"variant {outcome.name}")
@@ -103,7 +103,7 @@ class Settling:
                 return
 
     def _completed(self, outcome: Outcome, document: Document, calculation: Calculation) -> Outcome:
-        """A variant that is a design of its own, with everything that follows from its solids."""
+        """Return a variant that is a design of its own, with everything that follows from its solids."""
         try:
             complete = self.settle(Prepared(document, calculation), self.context)
         except FAILURES as error:

@@ -35,11 +35,13 @@ class Asking:
 
     @property
     def wanted(self) -> tuple[str, ...] | None:
-        """The outputs to compute; None for all."""
+        """Return the outputs to compute; None for all."""
         return self.graph.computed(self.block)
 
     def form(self) -> Hashable:
-        """The key that variants must have in common to share an array call; None for one that is alone.
+        """Return the key that variants must have in common to share an array call.
+
+        None for one that is alone.
 
         It is the step, the names of the inputs, the shapes of curves, and the values of choices, tables and
         of what is one value for all points.
@@ -62,7 +64,10 @@ def _form(block: Block, name: str, raw: Raw) -> Hashable:
 
 
 def evaluations(asked: Sequence[Asking]) -> list[Prepared | None]:
-    """The evaluation of each, `DEFERRED` if nobody waits for it; None where it has to be calculated alone."""
+    """Return the evaluation of each, `DEFERRED` if nobody waits for it.
+
+    None where it has to be calculated alone.
+    """
     results: list[Prepared | None] = [None] * len(asked)
     groups: dict[Hashable, list[int]] = {}
     for place, one in enumerate(asked):
@@ -77,7 +82,7 @@ def evaluations(asked: Sequence[Asking]) -> list[Prepared | None]:
 
 
 def _chunks(block: Block, places: Sequence[int]) -> Iterator[Sequence[int]]:
-    """Places in parts that one array call takes."""
+    """Yield places in parts that one array call takes."""
     level = block.level or block.cls.default_level
     most = [block.cls.most_points.get(level, MOST_ROWS)]
     most += block.cls.most_points.values() if block.tolerance is not None else []
@@ -87,7 +92,7 @@ def _chunks(block: Block, places: Sequence[int]) -> Iterator[Sequence[int]]:
 
 
 def _shared(asked: Sequence[Asking]) -> Sequence[Prepared | None]:
-    """The rows of one array call; of a call that refuses, those of its halves."""
+    """Return the rows of one array call; of a call that refuses, those of its halves."""
     if len(asked) < 2:
         return [None] * len(asked)  # alone it is calculated as it always is
     first = asked[0]
@@ -105,7 +110,7 @@ def _shared(asked: Sequence[Asking]) -> Sequence[Prepared | None]:
 
 
 def _stacked(asked: Sequence[Asking]) -> dict[str, Raw]:
-    """Inputs for all rows: one value where all have the same, else an array with the row first."""
+    """Return inputs for all rows: one value where all have the same, else an array with the row first."""
     return {name: _column(asked, name) for name in asked[0].raw}
 
 
@@ -127,7 +132,7 @@ class _Rows:
     count: int
 
     def evaluation(self, row: int, asked: Asking) -> Evaluation | None:
-        """The evaluation of one row; None if it has to be calculated alone, because it is refused."""
+        """Return the evaluation of one row; None if it has to be calculated alone, because it is refused."""
         try:
             template = self._template(row, asked)
             answers, errors = answers_at_level(template, list(self.whole.outputs))
@@ -137,7 +142,7 @@ class _Rows:
         return Evaluation(template, {}, answers, self.whole.level, errors, [], seconds)
 
     def _template(self, row: int, asked: Asking) -> Template:
-        """The template of one variant with what the array call has computed.
+        """Return the template of one variant with what the array call has computed.
 
         What has no value in a row is left out: the template then finds out why.
         """
@@ -153,7 +158,7 @@ class _Rows:
         return template
 
     def _value(self, row: int, declared: Declaration, value: Any) -> Any:
-        """The value of an attribute in one row."""
+        """Return the value of an attribute in one row."""
         axes = declared.axes if isinstance(declared, Profile) else int(isinstance(declared, Curve))
         own = value[row] if isinstance(value, np.ndarray) and value.ndim > axes else value
         return str(own) if isinstance(own, str) else own

@@ -21,7 +21,7 @@ VARIANTS = "variants"
 
 
 def stored(calculation: Calculation, rounds: list[JsonObject], outcomes: Sequence[Outcome]) -> JsonObject:
-    """The results of a calculation and its variants that a revision keeps, beside the models."""
+    """Return the results of a calculation and its variants that a revision keeps, beside the models."""
     own = judged(calculation)
     if not outcomes:
         return results.stored(calculation, rounds, own)
@@ -42,7 +42,7 @@ def _shown(
     failures: Mapping[str, JsonObject],
     problem: JsonObject | None,
 ) -> JsonObject:
-    """One variant as a revision keeps it, without empty members."""
+    """Return one variant as a revision keeps it, without empty members."""
     parts: JsonObject = {
         "values": dict(values),
         "outputs": dict(outputs),
@@ -53,6 +53,6 @@ def _shown(
 
 
 def models(calculation: Calculation, outcomes: Sequence[Outcome]) -> list[ModelState]:
-    """Every model of a revision: those of the design, then those of its variants."""
+    """Return every model of a revision: those of the design, then those of its variants."""
     own = results.models(calculation)
     return [*own, *chain.from_iterable(outcome.models for outcome in outcomes)] if outcomes else own

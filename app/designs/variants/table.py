@@ -19,7 +19,10 @@ Overrides = Mapping[str, Raw]
 
 
 def applied(document: Document, overrides: Overrides) -> Document:
-    """The document as one variant has it, without variants of its own; nothing of the original changes."""
+    """Return the document as one variant has it, without variants of its own.
+
+    Nothing of the original changes.
+    """
     parameters = dict(document.parameters)
     inside: dict[str, dict[str, Raw]] = {}
     for place, value in overrides.items():
@@ -43,7 +46,7 @@ def _model(model: Model, values: Overrides | None) -> Model:
 
 
 def place_name(variant: str, place: str) -> str:
-    """The name of a cell of the table in faults: `variants.main_2.clearance`."""
+    """Return the name of a cell of the table in faults: `variants.main_2.clearance`."""
     return f"variants.{variant}.{place}"
 
 
@@ -52,7 +55,7 @@ Cells = Mapping[tuple[str, str], Fault]
 
 
 def faulty_cells(document: Document, graph: Graph) -> Cells:
-    """A reserved name, places that the design does not have, and parameters of another kind than its own."""
+    """Return faults: a reserved name, unknown places, and parameters of another kind than the design's."""
     faults: dict[tuple[str, str], Fault] = {}
     for name in RESERVED.keys() & document.variants.keys():
         faults[name, ""] = Fault(f"variants.{name}", "reserved", RESERVED[name])
@@ -71,7 +74,7 @@ def faulty_cells(document: Document, graph: Graph) -> Cells:
 
 
 def _other_kind(graph: Graph, variant: str, place: str, value: Raw) -> Fault | None:
-    """A fault if a parameter is given in a unit of another kind than that of the design."""
+    """Return a fault if a parameter is given in a unit of another kind than that of the design."""
     cell, kind = graph.parameters.get(place), graph.kinds.get(place)
     if cell is None or kind is None or is_relation(value) or isinstance(value, list):
         return None
@@ -83,7 +86,7 @@ def _other_kind(graph: Graph, variant: str, place: str, value: Raw) -> Fault | N
 
 
 def sound(document: Document, faults: Cells) -> Document:
-    """The document without its faulty cells, so that all other faults are found too."""
+    """Return the document without its faulty cells, so that all other faults are found too."""
     variants = {
         name: {place: value for place, value in overrides.items() if (name, place) not in faults}
         for name, overrides in document.variants.items()
@@ -93,7 +96,10 @@ def sound(document: Document, faults: Cells) -> Document:
 
 
 def is_place(network: Network, place: str) -> bool:
-    """True if a variant may override a place: a parameter, an input of a step, a parameter of a model."""
+    """Return whether a variant may override a place.
+
+    A parameter, an input of a step, a parameter of a model.
+    """
     reference = Reference.parse(place)
     if reference.output is None:
         return reference.block in network.parameters
@@ -102,7 +108,7 @@ def is_place(network: Network, place: str) -> bool:
 
 
 def places(network: Network) -> Iterator[str]:
-    """Every place that a variant may override."""
+    """Yield every place that a variant may override."""
     yield from network.parameters
     yield from chain.from_iterable(
         (f"{block.name}.{name}" for name in block.cls.inputs) for block in network.blocks.values()

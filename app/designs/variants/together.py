@@ -71,14 +71,14 @@ class _Run:
         self.calculation.faults.append(Fault("relations", "too_many_values", TOO_MUCH))
 
     def outcome(self) -> Outcome:
-        """The result."""
+        """Return the result."""
         if wrong := row_arrays(self.calculation):
             return refused(self.name, wrong)
         return outcome_of(self.name, self.places, self.document, self.calculation)
 
 
 def together(document: Document, available: Available) -> list[Outcome]:
-    """Every variant of a document, as far as it can be calculated now."""
+    """Return every variant of a document, as far as it can be calculated now."""
     begun = {name: _begun(document, name, available) for name in document.variants}
     runs = [run for run in begun.values() if isinstance(run, _Run)]
     for run in runs:
@@ -101,7 +101,7 @@ def _limit(runs: Sequence[_Run]) -> None:
 
 
 def _begun(document: Document, name: str, available: Available) -> _Run | Outcome:
-    """A variant before anything of it is calculated, or what is wrong with its network."""
+    """Return a variant before anything of it is calculated, or what is wrong with its network."""
     overrides = document.variants[name]
     own = applied(document, overrides)
     graph, faults = build_graph(own, available.catalogues)
@@ -116,7 +116,7 @@ def _begun(document: Document, name: str, available: Available) -> _Run | Outcom
 
 
 def _by_step(runs: Sequence[_Run]) -> list[list[_Run]]:
-    """The variants that are at the first step at which any is; the others wait, to be joined there."""
+    """Return the variants that are at the first step at which any is; the others wait, to be joined there."""
     steps: dict[str, list[_Run]] = {}
     for run in runs:
         assert run.at is not None, "it waits at a step"
@@ -135,7 +135,7 @@ def _share(runs: Sequence[_Run]) -> None:
 
 
 def _asking(run: _Run) -> Asking | None:
-    """The inputs of a step for one variant; None while an input waits for a solid, or is faulty."""
+    """Return the inputs of a step for one variant; None while an input waits for a solid, or is faulty."""
     block, calculation = run.at, run.calculation
     assert block is not None, "it waits at a step"
     unknown = calculation.pending | calculation.broken
@@ -146,7 +146,7 @@ def _asking(run: _Run) -> Asking | None:
 
 
 def row_arrays(calculation: Calculation) -> Sequence[Fault]:
-    """A fault for every step that is calculated at several points at once."""
+    """Return a fault for every step that is calculated at several points at once."""
     points = {
         name: evaluation.template.shape_of_points() for name, evaluation in calculation.evaluations.items()
     }

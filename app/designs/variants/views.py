@@ -33,7 +33,7 @@ def variants(
     catalogues: Catalogues,
     outputs: Collection[str] = (),
 ) -> VariantsOut:
-    """The variants of a design's revision, the newest if none is named; with those outputs.
+    """Return the variants of a design's revision, the newest if none is named; with those outputs.
 
     Raises
     ------
@@ -94,7 +94,7 @@ class _Table:
         return cls(row, stored, models, rows.builds(session, keys), rows.artifacts_of(session, keys))
 
     def row(self, name: str, outputs: Collection[str]) -> VariantResult:
-        """One variant, without members that do not apply."""
+        """Return one variant, without members that do not apply."""
         result = self.stored.get(name, {})
         models = {
             model.name.removeprefix(f"{name}."): self._model(model, result.get("failures", {}))
@@ -150,7 +150,7 @@ def _chosen(result: JsonObject, outputs: Collection[str]) -> Iterator[tuple[str,
 
 
 def _governing(results: Collection[VariantResult]) -> dict[str, Governing]:
-    """The worst variant of each criterion; the first of those that are equal."""
+    """Return the worst variant of each criterion; the first of those that are equal."""
     worst: dict[str, Governing] = {}
     for result in results:
         for criterion in result.criteria:
@@ -163,5 +163,5 @@ def _governing(results: Collection[VariantResult]) -> dict[str, Governing]:
 
 
 def _rank_of_governing(one: Governing) -> tuple[int, float]:
-    """Worst first, as criteria are ordered."""
+    """Return worst first, as criteria are ordered."""
     return WORST_FIRST.index(one.verdict), -(one.utilisation or 0.0)

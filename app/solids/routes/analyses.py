@@ -154,7 +154,7 @@ def _converted(read: Callable[[str], bytes], sha256: str, units: System, headers
 
 
 def _checked(cls: type[CadModel], kind: str, body: AnalysisIn) -> tuple[str, ...]:
-    """The outputs to find, if nothing in the body is wrong beside its parameters."""
+    """Return the outputs to find, if nothing in the body is wrong beside its parameters."""
     asked = [name for name in KINDS[kind] if name not in ON_REQUEST] if body.outputs is None else body.outputs
     names = ", ".join(offered(kind))
     wrong = faults(kind, body)

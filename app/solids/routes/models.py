@@ -276,7 +276,7 @@ async def verify_step(
 def send_file(
     store: Artifacts, file: File | None, headers: dict[str, str] | None = None, name: str | None = None
 ) -> Response:
-    """A stored file with its hash as ETag.
+    """Return a stored file with its hash as ETag.
 
     Raises
     ------

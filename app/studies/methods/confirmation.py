@@ -55,7 +55,7 @@ class Round:
 
     @property
     def fell_short(self) -> bool:
-        """Whether the search promised every criterion, and the fine level is on the wrong side of a limit."""
+        """Return whether the search promised all criteria, but the fine level violates a limit."""
         return self.is_feasible and bool((self.worst < 0).any())
 
     @property

@@ -106,7 +106,7 @@ def pareto_front(
 
 
 def dominations(objectives: Array) -> Integers:
-    """By how many rows each row is dominated, shape (N,); objectives to minimise, shape (N, k)."""
+    """Return how many rows dominate each row, shape (N,); objectives to minimise, shape (N, k)."""
     columns = [np.ascontiguousarray(column) for column in objectives.T]
     counts = np.zeros(len(objectives), dtype=np.int64)
     for row, values in enumerate(objectives):

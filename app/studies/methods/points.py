@@ -98,7 +98,7 @@ class Sobol:
 
 
 def sobol_sequence(dimensions: int, seed: int, first: int, last: int) -> Array:
-    """Points number `first` to `last`, the last one excluded, of a scrambled sequence in the unit cube."""
+    """Return points `first` to `last`, the last excluded, of a scrambled sequence in the unit cube."""
     from scipy.stats import qmc  # it takes as long as all other imports of a small command
 
     sequence = qmc.Sobol(dimensions, rng=seed)

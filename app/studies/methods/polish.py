@@ -40,7 +40,7 @@ class Place:
 
 
 def rank(place: Place) -> tuple[float, float]:
-    """By this places compare: feasible ones first, the smaller objective first."""
+    """Return the key to sort places: feasible ones first, the smaller objective first."""
     return (place.violation, place.objective)
 
 
@@ -58,7 +58,7 @@ class Scaled:
     most: Array | None = None
 
     def __call__(self, unit: Array) -> tuple[Array, Array]:
-        """Objectives, shape (N,), and margins, shape (N, m), or (N, m + k - 1) with bounds on the others."""
+        """Return objectives, (N,), and margins, (N, m), or (N, m + k - 1) with bounds on the others."""
         seen = self.surface(unit)
         scaled = (seen.objectives - self.middle) / self.width
         margins = seen.margins - HOLD

@@ -86,7 +86,7 @@ async def begin_study(
 async def answer_begun(
     request: Request, client: str, studies: Studies, body: StudyIn, once: Once
 ) -> Response:
-    """The study that a request begins, or has begun before."""
+    """Return the study that a request begins, or has begun before."""
     id = await begun(request, client, studies, body, once)
     shown = await run_in_threadpool(_shown, studies, id)
     return written(shown, 202, {"Location": f"/api/v1/studies/{id}"})
@@ -113,7 +113,7 @@ async def estimate_study(
 
 
 async def _planned(request: Request, client: str, draft: Draft) -> tuple[Plan, Array | None]:
-    """The plan of a study, and the rows that its user gave; made in the pool."""
+    """Return the plan of a study, and the rows that its user gave; made in the pool."""
     pool = services_of(request).calculations
     calculation = pool.submit(client, planned, draft.task, draft.rows, draft.solid_seconds)
     plan, given = await calculated_in_pool(pool, calculation)

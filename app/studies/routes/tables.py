@@ -28,7 +28,7 @@ KINDS: dict[str, FileKind] = {
 
 
 def _kind(scope: Scope) -> FileKind | None:
-    """The kind of file that a request says it brings."""
+    """Return the kind of file that a request says it brings."""
     given = Headers(scope=scope).get("content-type", "")
     return KINDS.get(given.partition(";")[0].strip().lower())
 
@@ -92,7 +92,7 @@ def _names(text: str) -> list[str]:
 
 
 def _build(text: str) -> str | list[int]:
-    """A word, or numbers of rows."""
+    """Return a word, or numbers of rows."""
     numbers = _names(text)
     return (
         [int(n) for n in numbers] if numbers and all(n.isdecimal() and len(n) < 9 for n in numbers) else text

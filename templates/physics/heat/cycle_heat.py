@@ -110,7 +110,7 @@ class CycleBearing:
     clearance: Array
     """Radial clearance [m]."""
     relieved: bool = False
-    """Whether the film is that of `oil_film_cycle` 3: with the supply's pressure (`relieved_duty`)."""
+    """Whether the film is that of `oil_film_cycle` 1: with the supply's pressure (`relieved_duty`)."""
 
     def fed(self, eta: Array) -> FedDuty:
         """Return the duty at a viscosity [Pa s]."""

@@ -159,7 +159,8 @@ def journal_film_at(
         *(np.asarray(a, float) for a in (So, ratio, pressure, away)), *shape.numbers()
     )
     So, ratio, pressure, away, *numbers = parts
-    solved = (away > 0) | (is_fed(pressure, grooves) & (level == FED))
+    fed = (pressure > 0) | bool(grooves)
+    solved = (away > 0) | (fed & (level == FED))
     film = plain_film(static_film_at(level, np.where(solved | np.isnan(away), np.nan, So), ratio))
     names = [field.name for field in fields(StaticFilm)]
     values = {name: np.array(getattr(film, name), float) for name in names}

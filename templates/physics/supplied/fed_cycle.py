@@ -9,7 +9,7 @@ Orbit, pressure, loss and flow:
                       nowhere else; knows no groove, hole or supply pressure; one case at a time
     supplied          mass-conserving cavities in time, fed by grooves and holes; one case at a time
 
-Two things go beyond `oil_film_cycle` 2 and are asked for by a duty (`FedDuty`): `lift`, what the supply
+Two things go beyond `oil_film_cycle` 1 and are asked for by a duty (`FedDuty`): `lift`, what the supply
 pressure bears at rest in a groove, which level mobility_grooved takes from the load; and `near_holes`, meshes
 of level supplied that follow a hole under the load.
 

@@ -1,4 +1,4 @@
-"""The exact balance of 28 layouts, tests/references/balance_facts.csv, and inputs of `engine` 2."""
+"""The exact balance of 28 layouts, tests/references/balance_facts.csv, and inputs of `engine` 1."""
 
 import csv
 from pathlib import Path

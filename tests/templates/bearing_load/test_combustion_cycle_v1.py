@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from benchmarks.in_line_four import IN_LINE_FOUR
 from templates.bearing_load.combustion_cycle_v1 import CombustionCycle
-from templates.bearing_load.engine_v2 import Engine
+from templates.bearing_load.engine_v1 import Engine
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 
@@ -118,7 +119,7 @@ def test_property_its_curve_is_the_pressure_table_of_an_engine():
         "pressure": {"value": out["gas_pressure"].tolist(), "unit": "bar"},
         "pressure_angle": {"value": out["crank_angle"].tolist(), "unit": "deg"},
     }
-    raw = {**Engine.example, "cylinder_offset": "0 mm", "crank_angle_step": "1 deg", **table}
+    raw = {**IN_LINE_FOUR, "cylinder_offset": "0 mm", "crank_angle_step": "1 deg", **table}
     torque = evaluate(Engine, raw, outputs=["mean_torque"]).outputs["mean_torque"].value
     theta = np.radians(np.arange(0, 720, 0.002))
     p = np.interp(theta, np.radians(out["crank_angle"]), out["gas_pressure"] * 1e5, period=4 * np.pi)

@@ -5,7 +5,7 @@ import pytest
 from balance_facts import PITCH, SPEED, UNITS, degrees, facts, numbers, order_of, sizes
 from nine_cylinders import INPUTS as NINE
 
-from templates.bearing_load.engine_v2 import Engine
+from templates.bearing_load.engine_v1 import Engine
 from templates.bearing_load.flywheel_v1 import Flywheel
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from templates.bearing_load.engine_v3 import Engine
+from templates.bearing_load.engine_v1 import Engine
 from templates.core.language.evaluate import evaluate
 
 KINDS = ("one", "in line", "twin 270", "boxer", "V-twin 45", "V-twin 90", "V", "V12", "split pins")

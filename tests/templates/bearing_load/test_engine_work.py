@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from templates.bearing_load.engine_v3 import Engine
+from templates.bearing_load.engine_v1 import Engine
 from templates.core.language.evaluate import evaluate
 
 OMEGA = 4500 * np.pi / 30

@@ -10,7 +10,7 @@ from templates.core.language.levels import Accuracy, absolute_error, accuracy, n
 from templates.core.language.spec import Text
 from templates.core.language.template import Template, formula, given, profile, shared
 from templates.door import built_in
-from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
+from templates.oil_film.cycle_heat_balance_v1 import CycleHeatBalance
 from templates.oil_film.oil_film_v2 import OilFilm
 from templates.oil_film.slider_bearing_v1 import SliderBearing
 
@@ -105,7 +105,7 @@ class TestTruth:
     def test_property_nothing_is_named_where_nothing_is_measured(self):
         assert truth_of(OilFilm, "map", "density") is None
         assert truth_of(OilFilm, "map", "no_such_output") is None
-        assert truth_of(OilFilmCycle, "mobility", "minimum_film_thickness") is None
+        assert truth_of(CycleHeatBalance, "mobility", "minimum_film_thickness") is None
 
 
 class TestNextLevels:
@@ -136,7 +136,7 @@ class TestNextLevels:
         table()
         assert next_levels(rung("rough", length="200 m"), "size") == ()
         assert next_levels(rung("rough"), "warmth") == ()
-        assert next_levels(OilFilmCycle.from_quantities(OilFilmCycle.example), "power_loss") == ()
+        assert next_levels(CycleHeatBalance.from_quantities(CycleHeatBalance.example), "power_loss") == ()
 
     def test_property_the_film_climbs_to_the_map_and_no_farther(self):
         """`mass_conserving` follows another convention, and errs more."""
@@ -196,7 +196,7 @@ class TestSizes:
 
 class TestReachable:
     def test_property_nothing_beyond_a_default_level_without_errors(self):
-        assert reachable(OilFilmCycle, OilFilmCycle.levels) == ("mobility_short", "mobility")
+        assert reachable(CycleHeatBalance, CycleHeatBalance.levels) == ("mobility_short", "mobility")
         assert reachable(OilFilm, OilFilm.levels) == OilFilm.levels
         assert reachable(OilFilm, ("mass_conserving",)) == ("mass_conserving",)
 

@@ -7,7 +7,7 @@ from seeds import seeded
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.oil_film.cycle_heat_balance_v1 import CycleHeatBalance
-from templates.oil_film.oil_film_cycle_v3 import OilFilmCycle
+from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
 from templates.physics.heat.cycle_heat import gap_cubed
 
 FILM, ETA = "minimum_film_thickness", "effective_viscosity"
@@ -25,7 +25,7 @@ def outputs(raw=None, **options):
 
 
 def of_cycle(eta, raw=None, level="mobility_grooved"):
-    """What oil_film_cycle 3 answers for the same duty at a viscosity [mPa s]."""
+    """What oil_film_cycle 1 answers for the same duty at a viscosity [mPa s]."""
     merged = {**CycleHeatBalance.example, **(raw or {}), "dynamic_viscosity": f"{eta!r} mPa*s"}
     typed = {n: v for n, v in merged.items() if v is not None and n in OilFilmCycle.inputs}
     return {n: one.value for n, one in evaluate(OilFilmCycle, typed, level=level).outputs.items()}
@@ -41,7 +41,7 @@ class TestBalance:
         ],
     )
     def test_second_method_balance_by_hand(self, level, raw):
-        """Loss and flow of oil_film_cycle 3 at the viscosity found heat the oil to the temperature found."""
+        """Loss and flow of oil_film_cycle 1 at the viscosity found heat the oil to the temperature found."""
         found = outputs(raw, level=level)
         film = of_cycle(float(found[ETA]), raw, level)
         for name in (FILM, "power_loss", "side_flow", "maximum_pressure"):

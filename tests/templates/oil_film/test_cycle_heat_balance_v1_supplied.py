@@ -1,4 +1,4 @@
-"""`cycle_heat_balance` 1: level supplied, the film of `oil_film_cycle` 3."""
+"""`cycle_heat_balance` 1: level supplied, the film of `oil_film_cycle` 1."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from scipy.integrate import trapezoid
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.oil_film.cycle_heat_balance_v1 import CycleHeatBalance
-from templates.oil_film.oil_film_cycle_v3 import OilFilmCycle
+from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
 from templates.physics.heat.marched_heat import following
 
 FILM, ETA = "minimum_film_thickness", "effective_viscosity"
@@ -26,7 +26,7 @@ def outputs(raw=None, **options):
 
 
 def of_cycle(eta, level, raw=None):
-    """What oil_film_cycle 3 answers for the same duty at a viscosity [mPa s]."""
+    """What oil_film_cycle 1 answers for the same duty at a viscosity [mPa s]."""
     merged = {**CycleHeatBalance.example, **(raw or {}), "dynamic_viscosity": f"{eta!r} mPa*s"}
     typed = {n: v for n, v in merged.items() if v is not None and n in OilFilmCycle.inputs}
     return {n: one.value for n, one in evaluate(OilFilmCycle, typed, level=level).outputs.items()}
@@ -34,7 +34,7 @@ def of_cycle(eta, level, raw=None):
 
 @pytest.mark.parametrize("level", ["mobility_grooved", pytest.param("supplied", marks=pytest.mark.slow)])
 def test_second_method_balance_by_hand(level):
-    """Loss and flow of oil_film_cycle 3 at the viscosity found heat the oil to the temperature found."""
+    """Loss and flow of oil_film_cycle 1 at the viscosity found heat the oil to the temperature found."""
     found = outputs({"hths_viscosity": None}, level=level)
     film = of_cycle(float(found[ETA]), level)
     for name in (FILM, "power_loss", "side_flow", "maximum_pressure"):

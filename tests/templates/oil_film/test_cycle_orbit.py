@@ -8,7 +8,7 @@ import pytest
 
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
-from templates.oil_film.oil_film_cycle_v3 import OilFilmCycle
+from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
 from templates.oil_film.oil_film_v2 import OilFilm
 from templates.physics.films.film_map import mapped_load
 from templates.physics.films.short_bearing import load_Ocvirk_1952

@@ -1,4 +1,4 @@
-"""The criteria of `oil_film_cycle` 2 and 3, each met and not met, as if the model's error were no matter.
+"""The criteria of `oil_film_cycle`, each met and not met, as if the model's error were no matter.
 
 A table of errors may come to state one, or another: the verdicts with it are not held here.
 """
@@ -9,10 +9,8 @@ import pytest
 
 from templates.core.language import levels
 from templates.core.language.evaluate import evaluate
-from templates.oil_film import oil_film_cycle_v2, oil_film_cycle_v3
+from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
 
-SECOND, THIRD = oil_film_cycle_v2.OilFilmCycle, oil_film_cycle_v3.OilFilmCycle
-VERSIONS = pytest.mark.parametrize("cls", [SECOND, THIRD], ids=["2", "3"])
 RIGID = 231e3 * 0.055 / 48  # MPa
 THIN = {"dynamic_viscosity": "0.02 mPa*s"}
 PUSHED = hypot(14.4, 1.9) * 1e3 / (48 * 18)  # MPa
@@ -28,10 +26,7 @@ EXACT = [
     ("hole_leaves_the_load", {}, {**HOLE, "pin_hole_angle": "180 deg"}, "met", 0, 0.6),
     ("hole_leaves_the_load", {}, HOLE, "not_met", 1, 0.6),
 ]
-VALUES = {
-    SECOND: {"film": 2.88560, "pressure": 74.3887, "thin_film": 0.0145597, "thin_pressure": 659.286},
-    THIRD: {"film": 2.85679, "pressure": 76.0539, "thin_film": 0.0142908, "thin_pressure": 673.886},
-}
+VALUES = {"film": 2.85679, "pressure": 76.0539, "thin_film": 0.0142908, "thin_pressure": 673.886}
 CASES = [
     ("film", {"permissible_film": "2 um"}, "met", "film", 2),
     ("film", {"permissible_film": "3 um"}, "not_met", "film", 3),
@@ -46,32 +41,29 @@ CASES = [
 ]
 
 
-@VERSIONS
 @pytest.mark.parametrize(("name", "changes", "verdict", "value", "limit"), CASES)
-def test_both_verdicts_of_the_film(monkeypatch, cls, name, changes, verdict, value, limit):
-    monkeypatch.setitem(levels._cache, cls, None)
-    result = evaluate(cls, {**cls.example, **changes})
+def test_both_verdicts_of_the_film(monkeypatch, name, changes, verdict, value, limit):
+    monkeypatch.setitem(levels._cache, OilFilmCycle, None)
+    result = evaluate(OilFilmCycle, {**OilFilmCycle.example, **changes})
     judgement = next(one for one in result.criteria if one.name == name)
     assert (judgement.verdict, judgement.is_certain) == (verdict, False)
     warned = judgement.warning in {notice.code for notice in result.warnings}
     assert warned == (verdict == "not_met" and judgement.warning is not None)
-    assert judgement.value == pytest.approx(VALUES[cls][value], rel=2e-5)
+    assert judgement.value == pytest.approx(VALUES[value], rel=2e-5)
     assert judgement.limit == pytest.approx(limit, rel=2e-5)
 
 
-@VERSIONS
 @pytest.mark.parametrize(("name", "limits", "changes", "verdict", "value", "limit"), EXACT)
-def test_both_verdicts_where_the_level_is_no_matter(cls, name, limits, changes, verdict, value, limit):
-    example = {n: v for n, v in cls.example.items() if not (changes and n.startswith("groove"))}
-    result = evaluate(cls, {**example, **changes}, limits=limits)
+def test_both_verdicts_where_the_level_is_no_matter(name, limits, changes, verdict, value, limit):
+    example = {n: v for n, v in OilFilmCycle.example.items() if not (changes and n.startswith("groove"))}
+    result = evaluate(OilFilmCycle, {**example, **changes}, limits=limits)
     judgement = next(one for one in result.criteria if one.name == name)
     assert judgement.verdict == verdict
     assert (judgement.value, judgement.limit) == (pytest.approx(value, abs=1e-9), pytest.approx(limit))
 
 
-@VERSIONS
-def test_every_criterion_has_a_case_of_both_verdicts(cls):
-    declared = {criterion.name for criterion in cls.declared_criteria}
+def test_every_criterion_has_a_case_of_both_verdicts():
+    declared = {criterion.name for criterion in OilFilmCycle.declared_criteria}
     for wanted in ("met", "not_met"):
         shown = {name for name, _, verdict, *_ in CASES if verdict == wanted}
         assert shown | {name for name, _, _, verdict, *_ in EXACT if verdict == wanted} == declared

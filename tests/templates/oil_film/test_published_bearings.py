@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from benchmarks.published_friction import curves, rows
 from templates.core.language.evaluate import evaluate
-from templates.oil_film.oil_film_cycle_v3 import OilFilmCycle
+from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
 
 REFERENCES = Path(__file__).parents[2] / "references"
 

@@ -1,18 +1,19 @@
-"""engine 2: loads of rods, mains and frame against energy, equilibrium, limits and version 1; refusals."""
+"""engine: loads of rods, mains and frame against energy, equilibrium, limits and `flywheel`; refusals."""
 
 import time
 
 import numpy as np
 import pytest
 
+from benchmarks.in_line_four import IN_LINE_FOUR
 from templates.bearing_load.bearing_load_v1 import BearingLoad
-from templates.bearing_load.engine_v2 import Engine
+from templates.bearing_load.engine_v1 import Engine
 from templates.bearing_load.flywheel_v1 import Flywheel
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.physics.engine.engine_curves import areas_of
 
-FOUR = {**Engine.example, "crank_angle_step": "5 deg", "cylinder_offset": "0 mm"}
+FOUR = {**IN_LINE_FOUR, "crank_angle_step": "5 deg", "cylinder_offset": "0 mm"}
 NO_GAS = {"gas_cycle": "none"}
 
 
