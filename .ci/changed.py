@@ -90,7 +90,7 @@ ABOUT = {
         *("app/web/gallery*.py", "app/designs/*.py", "templates/bearing_load/*.py"),
         *("templates/physics/engine/*.py", "cad/cranks/*.py", "cad/models/crankshaft_v2.py"),
     ),
-    "tests/app/test_events_resumed.py": ("app/*event*.py", "app/api/resuming.py"),
+    "tests/app/test_events_resumed.py": ("app/*event*.py", "app/api/event_streams.py"),
     "tests/app/test_evaluate_hostile.py": (
         *("app/calculations/routes/evaluate.py", "app/http/strict_requests.py", "app/http/problems.py"),
     ),

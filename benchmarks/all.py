@@ -1,4 +1,4 @@
-"""What the program costs, each line with its aim: `python -m benchmarks.all [films elements serving shell]`.
+"""Measure what the program costs, with the aims: `python -m benchmarks.all [films elements serving shell]`.
 
 `python -m benchmarks.all kept` prints the table that is kept, without measuring.
 

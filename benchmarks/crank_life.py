@@ -1,4 +1,4 @@
-"""From an engine's loads and a throw's STEP file to the life of its fillets.
+"""Compute the life of a throw's fillets from an engine's loads and the STEP file.
 
     python -m benchmarks.crank_life    # docs/fatigue.md
 

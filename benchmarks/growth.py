@@ -1,4 +1,4 @@
-"""How cost grows with points, mesh, designs, steps, variants and clients: `python -m benchmarks.growth`.
+"""Measure how cost grows with points, mesh, designs, steps, variants and clients.
 
 Takes about three minutes on two idle cores, prints each line, keeps all in benchmarks/results/growth.json and
 draws docs/pictures/growth.svg; `python -m benchmarks.growth draw` draws the picture again from what is kept.

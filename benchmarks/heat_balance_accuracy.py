@@ -1,4 +1,4 @@
-"""How much a heat balance adds to the errors of `oil_film` 2: measured on an ensemble of random bearings.
+"""Measure how much a heat balance adds to the errors of `oil_film` 2, on random bearings.
 
     python -m benchmarks.heat_balance_accuracy     three minutes; prints what the accuracy file states
 

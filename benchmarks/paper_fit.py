@@ -1,4 +1,4 @@
-"""How far the film thickness of `oil_film` 1 is off: the paper's fit against the converged Reynolds film.
+"""Measure the error of the film thickness of `oil_film` 1: the paper's fit against the Reynolds film.
 
     python -m benchmarks.paper_fit
 

@@ -1,4 +1,4 @@
-"""How wrong Petrov's friction is under load: the error of `journal_friction` 1 against the Reynolds solution.
+"""Measure the error of Petrov's friction (`journal_friction` 1) against the Reynolds solution.
 
 python -m benchmarks.petrov            measures; a few seconds
 python -m benchmarks.petrov check      compares the map that it uses with full solutions; a minute

@@ -1,4 +1,4 @@
-"""Draws the README's picture from a running service: the worksheet beside the part that it drives.
+"""Draw the README's picture from a running service: the worksheet beside the part that it drives.
 
     python -m benchmarks.readme_picture
 

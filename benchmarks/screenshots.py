@@ -1,4 +1,4 @@
-"""Draws docs/pictures/{home,template,worksheet,design,shell,throw,report}-{wide,narrow}.png from a service.
+"""Draw docs/pictures/{home,template,worksheet,design,shell,throw,report}-{wide,narrow}.png by a service.
 
     python -m benchmarks.screenshots
 

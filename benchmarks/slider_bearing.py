@@ -1,4 +1,4 @@
-"""How wrong `slider_bearing` 1 is at each level, and what it costs: against pads solved on a finer mesh.
+"""Measure error and cost of each level of `slider_bearing` 1, against pads solved on a finer mesh.
 
 python -m benchmarks.slider_bearing            about a minute
 

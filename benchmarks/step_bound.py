@@ -1,4 +1,4 @@
-"""How often the error of an orbit's smallest gap by the step lies within what is stated: on random duties.
+"""Count how often the stated bound of an orbit's smallest gap holds, on random duties.
 
     python -m benchmarks.step_bound [duties]      two minutes for 400, and as many for grooved ones
 

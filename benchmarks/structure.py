@@ -22,14 +22,27 @@ ROOT = Path(__file__).parents[1]
 APP = ROOT / "app"
 PACKAGES = ("app", "cad", "templates")
 SHORT = 60  # lines; a shorter module that one other imports belongs into that one
-RESOURCE = frozenset({"routes", "schemas", "repository", "service", "tasks", "tables"})
+RESOURCE = frozenset({"routes", "schemas", "bodies", "views", "repository", "service", "tasks", "tables"})
 """The files of a resource: the same names in each folder, however short."""
 
-REASONS: dict[str, str] = {}
+REASONS: dict[str, str] = {
+    "app.calculations.sizes": "memory that any value holds; knows nothing of the cache that asks",
+    "app.calculations.turns": "the rule of turns between clients alone, tested by itself",
+    "app.client.approval_operations": "the calls on one resource, as every resource has them in the client",
+    "app.client.identity_operations": "the calls on one resource, as every resource has them in the client",
+    "app.client.model_operations": "the calls on one resource, as every resource has them in the client",
+    "app.designs.explained": "joins the chain of relations and the sensitivities; neither knows the other",
+    "app.presentation.prose": "a rule of security: what of a user's Markdown becomes HTML",
+    "app.reports.crank_star": "one picture of the report",
+    "app.reports.throw_star": "one picture of the report",
+    "app.workers.remote.client": "Dask's client with an end in time, apart from what uses it",
+    "app.workers.remote.strays": "the rule by which a task counts as lost, tested by itself",
+    "app.worksheets.importing.job": "all that a process of its own imports to read a file of a user",
+}
 """Short modules with a single importer, and why each is a file of its own."""
 
 ENDINGS = re.compile(r"(?:ings?|eds?|ions?|ers?|es|e|s|d)$")
-NOUNS = frozenset({"spring", "string", "bearing"})
+NOUNS = frozenset({"spring", "string", "bearing", "typesetting", "imported_models"})
 """Names that end like a gerund and are nouns of the field."""
 
 

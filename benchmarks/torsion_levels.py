@@ -1,4 +1,4 @@
-"""How good the levels of `cad.analysis` are on random shafts; what cad/analysis/levels.json is read from.
+"""Measure the errors of the levels of `cad.analysis` on random shafts, for cad/analysis/levels.json.
 
     python -m benchmarks.torsion_levels [COUNT] [SEED] [FILE]
 

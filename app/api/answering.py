@@ -1,4 +1,4 @@
-"""How a route waits for an expensive calculation: until it ends, the client leaves, or its time is up."""
+"""Wait in a route for an expensive calculation, until it ends, the client leaves or its time is up."""
 
 from __future__ import annotations
 

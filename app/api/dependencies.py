@@ -11,7 +11,7 @@ from typing import Annotated
 from fastapi import Depends, Header, Query, Request
 
 from app.api.answering import Answering
-from app.api.resuming import Still, always
+from app.api.event_streams import Still, always
 from app.api.services import Services
 from app.api.threads import Threads
 from app.approvals.comments import Comments

@@ -1,4 +1,4 @@
-"""How long an answer waits for its job: a short while, `Prefer: wait=n`, or not at all (`respond-async`)."""
+"""Wait for the job of an answer: a short while, `Prefer: wait=n`, or not at all (`respond-async`)."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 
 from app.approvals.errors import NotReady
 from app.approvals.schemas import Approval, Files, Present, Signed
-from app.designs.stored_results import results_of
+from app.designs.result_records import results_of
 from app.schemas.approval_steps import ORDER
 from app.solids import rows
 from app.storage.tables import ApprovalRow, RevisionRow, canonical_json

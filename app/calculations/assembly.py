@@ -1,4 +1,4 @@
-"""Makes the pool of calculation processes and what uses it; called once by the application."""
+"""Create the pool of calculation processes and the services that use it; called once."""
 
 from __future__ import annotations
 

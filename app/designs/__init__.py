@@ -1,1 +1,1 @@
-"""Designs: the one place where calculation and shape meet."""
+"""Designs combine calculations and shapes."""

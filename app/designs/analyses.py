@@ -1,4 +1,4 @@
-"""Analyses that models of a design declare: what of them relations use, and what is wrong with them.
+"""Analyses that models of a design declare: the outputs that relations use, and their faults.
 
 `"throw": {…, "analyses": {"torsion": {"tolerance": 0.005}}}` lets relations use `throw.torsion.stiffness`.
 Only what a relation, or an iteration, uses is ever computed; an analysis that nobody uses costs nothing.

@@ -1,4 +1,4 @@
-"""The choices that relations test, `film.oil is "SAE 30"`: words of the document, known before anything else.
+"""The choices that relations test, `film.oil is "SAE 30"`: known from the document alone.
 
 A choice follows from nothing. So a test of it is decided when the network is built, and makes no loop where
 the input that a relation sets is one of the same step.

@@ -14,9 +14,9 @@ from app.designs.engine.decision import Climb, ClimbResult, Trial
 from app.designs.engine.verdicts import Verdicts
 from app.designs.graph import build_graph, raise_if
 from app.designs.questions import Reply
-from app.designs.reading import settled, starts
+from app.designs.reader import settled, starts
 from app.designs.schemas.decision import Decision, Tried
-from app.designs.stored_solids import analysed, built
+from app.designs.solid_records import analysed, built
 from app.plain import JsonObject, Raw
 from app.presentation.units import System
 from app.schemas.answers import Quantity

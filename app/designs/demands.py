@@ -1,4 +1,4 @@
-"""The criteria that a design writes: its own, and what it says of those of its templates.
+"""The criteria of a design: its own, and its changes to those of its templates.
 
 A name without a dot is a criterion of the design, which needs `require`. `film.pressure` is the criterion
 `pressure` of the template of step `film`: the design may replace its comparison, words or source, or waive

@@ -1,4 +1,4 @@
-"""Two stored values side by side: whether they differ, by how much, and how they are shown."""
+"""Compare two stored values: whether and how much they differ, and how to show them."""
 
 from __future__ import annotations
 

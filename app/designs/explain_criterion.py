@@ -1,4 +1,4 @@
-"""Where a verdict comes from: verdict ← value ← formula ← inputs, and limit ← who gave it."""
+"""Explain a verdict: verdict ← value ← formula ← inputs, and limit ← its source."""
 
 from __future__ import annotations
 

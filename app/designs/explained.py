@@ -1,4 +1,4 @@
-"""The explanation of a name: the chain behind it, and how much its value changes with what was typed."""
+"""The explanation of a name: the chain behind it, and its sensitivities to typed quantities."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From a document to its network, checked before anything is calculated.
+"""Build the network of a document, and check it before anything is calculated.
 
 Every check returns what it finds; nothing is changed on the way.
 """
@@ -265,7 +265,7 @@ def raise_if(faults: list[Fault]) -> None:
 
 
 def too_many_relations(document: Document) -> Iterator[Fault]:
-    """A fault if the relations of a design are longer together than is read."""
+    """Yield a fault if the relations of a design are longer together than is read."""
     texts = [item for item in _items(document) if isinstance(item, str)]
     required = sum(len(criterion.require or "") for criterion in document.criteria.values())
     if required + sum(map(len, texts)) <= MOST_RELATION_TEXT:
@@ -278,7 +278,7 @@ def too_many_relations(document: Document) -> Iterator[Fault]:
 
 
 def _items(document: Document) -> Iterator[Raw]:
-    """Every value of a document, and every item of those that are lists."""
+    """Return every value of a document, and every item of those that are lists."""
     groups = [document.parameters]
     groups += [group for step in document.steps.values() for group in (step.inputs, step.limits)]
     groups += [model.parameters for model in document.models.values()]
@@ -295,7 +295,7 @@ def has_relation(raw: Raw) -> bool:
 def ordered(
     network: Network, sources: Mapping[Node, tuple[Node, ...]]
 ) -> tuple[tuple[Node, ...], list[Fault]]:
-    """All nodes, each after those from which it follows; or none, and a fault that names the loop."""
+    """Return all nodes, each after those from which it follows; or none, and a fault that names the loop."""
     try:
         return tuple(TopologicalSorter(sources).static_order()), []
     except CycleError as error:
@@ -307,7 +307,7 @@ def ordered(
 
 
 def _named(network: Network, cycle: Sequence[Node]) -> Iterator[str]:
-    """A cycle of nodes (its last is its first) in the names that its relations use."""
+    """Return a cycle of nodes (its last is its first) in the names that its relations use."""
     for node, following in pairwise(cycle):
         if isinstance(node, Cell):
             yield node.name

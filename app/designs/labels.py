@@ -13,7 +13,7 @@ from app.designs import repository
 from app.designs.document import merge
 from app.designs.errors import StaleRevision
 from app.designs.news import note_revision
-from app.designs.reading import read_document
+from app.designs.reader import read_document
 from app.designs.repository import Written
 from app.designs.results import ModelState
 from app.designs.schemas.labels import MOST_TAGS, Labels, Tag, TagUse

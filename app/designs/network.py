@@ -231,7 +231,7 @@ class Subject:
 
     @cached_property
     def references(self) -> Mapping[str, Reference]:
-        """The values that it names, without limits that follow from nothing."""
+        """Return the values that it names, without limits that follow from nothing."""
         if self.block is None:
             return self.demand.uses if self.demand else {}
         limits = self.criterion.limits_by_name
@@ -240,7 +240,7 @@ class Subject:
 
     @cached_property
     def instead(self) -> tuple[tuple[Missing, Subject], ...]:
-        """The comparisons to judge where a value is missing."""
+        """Return the comparisons to judge where a value is missing."""
         every = self.criterion.absent.values()
         return tuple((one, Subject(one.instead, self.block, None)) for one in every if one.instead)
 
@@ -254,7 +254,7 @@ class Subject:
 
 
 def subjects(graph: Graph) -> dict[str, Subject]:
-    """All criteria by their names; one that the design writes again replaces that of a template."""
+    """Return all criteria by their names; one that the design writes again replaces that of a template."""
     by_name: dict[str, Subject] = {}
     for block in graph.blocks.values():
         for criterion in block.cls.declared_criteria:

@@ -1,4 +1,4 @@
-"""News for those who watch a design: its changes, and the progress of its regeneration."""
+"""Events of a design for its subscribers: its changes, and the progress of its regeneration."""
 
 from __future__ import annotations
 

@@ -17,13 +17,13 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph, raise_if
 from app.designs.questions import Reply
-from app.designs.reading import read_document, resolved, starts
+from app.designs.reader import read_document, resolved, starts
 from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, Status
-from app.designs.stored_solids import analysed, built
-from app.designs.variants.calculating import checked
-from app.designs.variants.judging import merged
+from app.designs.solid_records import analysed, built
+from app.designs.variants.checks import checked
 from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available
+from app.designs.variants.verdict import merged
 from app.designs.worksheet import previewed
 from app.plain import JsonObject
 from app.presentation.units import System

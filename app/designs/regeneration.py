@@ -17,14 +17,14 @@ from app.designs.engine.calculate import calculate, resume
 from app.designs.engine.calculation import Calculation
 from app.designs.errors import NotConverged
 from app.designs.graph import Graph, build_graph, raise_if
-from app.designs.naming import named
-from app.designs.reading import starts
+from app.designs.model_failures import named
+from app.designs.reader import starts
 from app.designs.service import REGENERATE
-from app.designs.stored_solids import analysed, built
-from app.designs.variants import stored as variants
-from app.designs.variants.calculating import row_faults
+from app.designs.solid_records import analysed, built
+from app.designs.variants import records as variants
+from app.designs.variants.checks import row_faults
 from app.designs.variants.outcome import Outcome
-from app.designs.variants.settling import Describe, Settling, plain_problem
+from app.designs.variants.solids import Describe, Settling, plain_problem
 from app.designs.variants.together import Available, together
 from app.jobs.service import Completion, Job, JobContext, JobFailed
 from app.plain import Json, JsonObject

@@ -1,4 +1,4 @@
-"""Which revisions of a design are released: the newest one, and those that later ones supersede."""
+"""The released revisions of a design: the newest one, and those that later ones supersede."""
 
 from __future__ import annotations
 

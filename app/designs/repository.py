@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
-from sqlalchemy import bindparam, select
+from sqlalchemy import bindparam, select, tuple_
 from sqlalchemy.orm import Session, defer
 from sqlalchemy.orm.util import identity_key
 
 from app.designs import statements
 from app.designs.errors import DesignReleased, StaleRevision
-from app.designs.filtering import DesignFilter, conditions
+from app.designs.filters import DesignFilter, conditions
 from app.designs.releases import EVER_RELEASED, NEWEST_RELEASED
 from app.designs.results import ModelState
 from app.identity.audit import record
@@ -73,6 +73,13 @@ def locked(session: Session, id: str) -> DesignRow:
     if row is None:
         raise NotFound(f"there is no design {id[:80]!r}")
     return row
+
+
+def heads(session: Session, rows: Sequence[DesignRow]) -> dict[str, RevisionRow]:
+    """Return the newest revision of each design by the design's id, without results; read at once."""
+    places = [(row.id, row.head) for row in rows]
+    query = select(RevisionRow).where(tuple_(RevisionRow.design_id, RevisionRow.number).in_(places))
+    return {row.design_id: row for row in session.scalars(query.options(_LEAN))}
 
 
 def revision(session: Session, id: str, number: int) -> RevisionRow:

@@ -1,4 +1,4 @@
-"""The results of a design as its revision stores them in JSON: answers of steps, parameters of models."""
+"""The stored results of a revision in JSON: results of steps, parameters of models."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much a value of a design, or what a criterion compares, changes with each quantity that its user wrote.
+"""Sensitivities of a design's value or criterion to each quantity that its user typed.
 
 Slopes by central differences, local to the design: 1 + 2 n rows in one array call, at the levels that the
 design itself used. What acts through a solid has a reason instead: each of its values needs its own solid.

@@ -21,13 +21,13 @@ from app.designs.errors import StaleRevision
 from app.designs.explained import explained
 from app.designs.graph import Graph, build_graph, raise_if
 from app.designs.news import note_revision
-from app.designs.reading import read_document, resolved, starts
+from app.designs.reader import read_document, resolved, starts
 from app.designs.repository import Written
 from app.designs.schemas.designs import Design, Explanation, Proposal
 from app.designs.schemas.network import DesignNetwork
-from app.designs.stored_solids import analysed, built
-from app.designs.variants import stored as variants
-from app.designs.variants.calculating import checked
+from app.designs.solid_records import analysed, built
+from app.designs.variants import records as variants
+from app.designs.variants.checks import checked
 from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available
 from app.jobs.service import Jobs

@@ -14,8 +14,8 @@ from app.designs.engine.calculate import calculate
 from app.designs.engine.net import Net
 from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph
-from app.designs.overriding import changed
-from app.designs.reading import starts
+from app.designs.overrides import changed
+from app.designs.reader import starts
 from app.designs.schemas.solution import DesignRoot, DesignSolution, Target
 from app.designs.solving import DesignRoots, Wanted, roots_of_design
 from app.designs.tasks import DesignTask

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from sqlalchemy.orm import Session
 
 from app.designs import releases, repository, tolerances
+from app.designs.result_records import results_of
 from app.designs.schemas.designs import Design, DesignSummary, ModelMeasurements, Revision
-from app.designs.stored_results import results_of
 from app.designs.variants.names import natural
 from app.identity.rows import names
 from app.identity.schemas.principals import Author

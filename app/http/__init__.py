@@ -1,1 +1,1 @@
-"""What every request passes, whatever its resource: hosts, keys, sizes, times, strict reading, problems."""
+"""Checks common to all requests: hosts, keys, sizes, times, strict reading, problems."""

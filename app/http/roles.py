@@ -1,4 +1,4 @@
-"""Which role a route needs: what its declaration says, else by its method; checked before it runs.
+"""The role that a route needs, by its declaration, else by its method; checked before it runs.
 
 A router or a route declares by `dependencies=[needs("author")]`; of several declarations the last one counts.
 """

@@ -13,7 +13,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph
 from app.designs.network import Block, Cell
-from app.designs.reading import starts
+from app.designs.reader import starts
 from app.impact.outcome import Judged, Outcome
 from app.impact.solids import Solids
 from app.reference import Reference

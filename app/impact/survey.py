@@ -10,7 +10,7 @@ from app.calculations.steps import present_caller
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository as designs
 from app.designs.document import Document
-from app.designs.filtering import DesignFilter
+from app.designs.filters import DesignFilter
 from app.designs.labels import key_of
 from app.designs.questions import Reply
 from app.designs.tasks import CatalogueTask

@@ -7,7 +7,7 @@ from fastapi import APIRouter, Depends
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from app.api.dependencies import OneStream, TheJobs
-from app.api.resuming import LastEvent, Whole, as_it_stands, listening
+from app.api.event_streams import LastEvent, Whole, as_it_stands, listening
 from app.http.clients import TheClient
 from app.http.pages import Cursor, Limit, page
 from app.http.roles import needs

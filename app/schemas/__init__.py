@@ -1,1 +1,1 @@
-"""What the Pydantic models of all resources are made of."""
+"""Base classes and types of the Pydantic models of all resources."""

@@ -16,7 +16,7 @@ from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.graph import build_graph
 from app.designs.service import Designs, Saved
-from app.designs.variant_sheets.reading import Units
+from app.designs.variant_sheets.reader import Units
 from app.designs.variant_sheets.units import units_of
 from app.identity.audit import record
 from app.identity.usage import note_bytes

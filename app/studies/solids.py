@@ -19,7 +19,7 @@ from app.designs.engine.net import Refusal
 from app.designs.engine.refusals import refusal_of
 from app.designs.graph import build_graph, raise_if
 from app.designs.network import Graph
-from app.designs.stored_solids import analysed, built
+from app.designs.solid_records import analysed, built
 from app.jobs.service import JobContext
 from app.reference import Reference
 from app.solids.analysis_process import Analysing

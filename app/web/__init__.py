@@ -1,1 +1,1 @@
-"""The pages: what the REST interface says, as an engineer reads it."""
+"""The pages of the service, for engineers."""

@@ -1,4 +1,4 @@
-"""Measured errors of a template's levels as a table: what a level costs, how far off its results may be."""
+"""A table of a template's levels: cost and measured errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Analyses of a design's models and its iterations: lines of their forms, and the change that a form asks."""
+"""Forms for analyses of models and for iterations, and the change that a form requests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The drawing of what drives what: blocks as boxes in columns, one wire for every name that a relation uses.
+"""The diagram of dependencies: blocks as boxes in columns, a line for each name that a relation uses.
 
 A wire runs from the row of a value, at the right of its box, to the row of the relation that uses it, at the
 left of another. Where it passes a column, a lane is kept free for it, so that no wire runs behind a box. What

@@ -1,4 +1,4 @@
-"""The page of a version's impact: a form that asks, how far the job is, and the designs that move."""
+"""The page of a version's impact: a form, the progress of the job, and the affected designs."""
 
 from __future__ import annotations
 

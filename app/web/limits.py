@@ -1,4 +1,4 @@
-"""Fields for what the library gives: limits of criteria, by hand or by a row, and rows that fill an input."""
+"""Fields for library values: limits of criteria, typed or from a row, and rows that fill an input."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The page on which a team brings a model: the form, the wait, the refusal; and which programs draw here."""
+"""The page of a model import: the form, progress, refusal, and the available programs."""
 
 from __future__ import annotations
 

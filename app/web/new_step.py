@@ -1,4 +1,4 @@
-"""The form in which a calculation begins: empty, so that no value of an example is ever taken for the user's.
+"""The form of a new step; it is empty, so that no example value is taken for the user's.
 
 It makes a new design, or a further step of one. Until it is filled in, nothing is saved.
 """

@@ -1,4 +1,4 @@
-"""The values of a design that may be varied, what is calculated of it, and the names in its relations."""
+"""The values of a design that may be varied, its results, and the names in its relations."""
 
 from __future__ import annotations
 

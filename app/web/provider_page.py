@@ -1,4 +1,4 @@
-"""Signing in by the organisation's provider: to it, and back."""
+"""Sign-in by the organisation's provider: the redirect to it, and the way back."""
 
 from __future__ import annotations
 

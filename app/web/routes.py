@@ -1,4 +1,4 @@
-"""The pages that are read. Each asks the REST interface and shows the answer."""
+"""Routes of pages that only show something."""
 
 from __future__ import annotations
 

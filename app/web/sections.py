@@ -1,4 +1,4 @@
-"""The steps of a design as its page shows them; what was written before is not written again.
+"""The steps of a design on its page; steps that are rendered already are reused.
 
 A step takes a page some milliseconds, and a design may have sixty. After a change most are as they were.
 """

@@ -1,4 +1,4 @@
-"""The life of a worksheet as its page shows it: what is done, what comes next, and what is missing for it."""
+"""The states of a worksheet on its page: steps done, the next step, and what it still needs."""
 
 from __future__ import annotations
 

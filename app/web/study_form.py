@@ -1,4 +1,4 @@
-"""The form of a new study: what is varied, by which method, and what is wanted of the rows."""
+"""The form of a new study: varied values, method, and wanted results."""
 
 from __future__ import annotations
 

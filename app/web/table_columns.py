@@ -1,4 +1,4 @@
-"""Columns of a pasted table become texts of fields: proposed by name, shifted by an angle, one cycle each.
+"""Map columns of a pasted table to fields: matched by name, shifted by an angle, one cycle each.
 
 `/tables`: the dialog of a page sends what was pasted and shows the result; nothing is stored.
 """

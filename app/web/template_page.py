@@ -1,4 +1,4 @@
-"""A template's page: what it says of itself, and a form to try it."""
+"""A template's page: its description, and a form to try it."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from app.designs.variant_sheets.csv_files import write_csv
 from app.designs.variant_sheets.grid import LAST_ROW, MOST_COLUMNS, Grid, address, column_of
 from app.designs.variant_sheets.headings import place_named
-from app.designs.variant_sheets.reading import RELATION, RESULTS
+from app.designs.variant_sheets.reader import RELATION, RESULTS
 from app.schemas.problems import Fault
 
 CONTROL = "cell."

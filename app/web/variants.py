@@ -9,8 +9,8 @@ from app.designs.schemas.designs import Design
 from app.designs.schemas.network import DesignNetwork
 from app.designs.schemas.variants import VariantResult, VariantsOut
 from app.designs.variant_sheets.grid import Grid, address, grid_of
-from app.designs.variant_sheets.reading import RELATION, RESULTS
-from app.designs.variant_sheets.writing import page_columns, rows_of
+from app.designs.variant_sheets.reader import RELATION, RESULTS
+from app.designs.variant_sheets.writer import page_columns, rows_of
 from app.designs.variants.names import BASE
 from app.presentation.criteria import Line, line
 from app.presentation.input_text import text_of

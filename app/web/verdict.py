@@ -1,4 +1,4 @@
-"""The verdict as the design page shows it: what governs, what is missing, and the fold line of every step."""
+"""The verdict on the design page: what governs, what is missing, and the summary line of each step."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The addresses of worksheets, and what their forms do: each is a call of the REST interface."""
+"""Routes of the pages of worksheets and of their forms."""
 
 from __future__ import annotations
 

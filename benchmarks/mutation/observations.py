@@ -1,4 +1,4 @@
-"""Which tests run a line, by one run of each test file under coverage, kept from night to night.
+"""Find the tests that run a line, by one run of each test file under coverage, kept between nights.
 
 An observation of a test file holds for a file as long as neither changes, whether the test ran the file or
 not. Lines that run in other processes are not seen; a test file that starts some may run a line all the same.

@@ -1,4 +1,4 @@
-"""Where the code can be mutated, and a random sample of it that stays the same while lines move.
+"""Places where the code can be mutated, and a random sample that stays the same while lines move.
 
 The operators are Cosmic Ray's, and one of our own that drops a call whose result nobody uses. A place is one
 token and one family of operators, such as `+` replaced by any other sign: places are sampled, not mutants,

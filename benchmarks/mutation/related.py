@@ -1,4 +1,4 @@
-"""Which test files are about a file, the nearest first.
+"""Find the test files about a file, the nearest first.
 
 Tests of a whole server that the table in `.ci/changed.py` names for a file come after the nearest ones.
 

@@ -1,4 +1,4 @@
-"""Which files are mutated."""
+"""The files that are mutated."""
 
 from benchmarks.mutation import ROOT
 

@@ -8,7 +8,7 @@ from serving import API, created, paper, patched, problem
 from sqlalchemy import event, text
 
 from app.designs import repository
-from app.designs.filtering import DesignFilter
+from app.designs.filters import DesignFilter
 from app.designs.repository import Written
 from app.designs.results import ModelState
 from app.storage.errors import DatabaseDamaged
@@ -175,3 +175,15 @@ def test_a_wrong_filter_is_refused(http, query, name, right):
     fault = problem(http.get(DESIGNS, params=query), 422, "invalid-inputs")["errors"][0]
     assert fault["name"] == name
     assert right in fault["detail"]
+
+
+def test_the_newest_revisions_of_a_list_are_read_at_once(shelf):
+    calls = []
+    with shelf.read() as session:
+        rows = repository.designs(session, 50, None)
+        event.listen(session.connection(), "before_cursor_execute", lambda *call: calls.append(call[2]))
+        newest = repository.heads(session, rows)
+        numbers = {id: row.number for id, row in newest.items()}
+    assert len(rows) > 1
+    assert numbers == {row.id: row.head for row in rows}
+    assert len(calls) == 1

@@ -6,8 +6,8 @@ import pytest
 from serving import API, created, patched
 
 from app.calculations.bodies import OIL_FILM
-from app.designs import repository, stored_results
-from app.designs.stored_results import Results, results_of
+from app.designs import repository, result_records
+from app.designs.result_records import Results, results_of
 from app.storage.tables import canonical_json
 
 
@@ -23,7 +23,7 @@ def answer(http, film, place):
 
 def test_an_answer_is_the_same_from_what_is_kept(http, film):
     kept = answer(http, film, "revisions/1")
-    stored_results._kept.clear()
+    result_records._kept.clear()
     assert answer(http, film, "revisions/1") == kept
     assert kept["steps"]["film"]["outputs"]["minimum_film_thickness"]["value"] > 0
 
@@ -49,14 +49,14 @@ def test_equal_texts_are_read_once(served, film, monkeypatch):
         row = repository.lean(session, film["id"], 1)
         first = results_of(session, row)
         assert first.steps["film"].outputs
-        monkeypatch.setattr(stored_results, "_read", lambda text: pytest.fail("it was read again"))
+        monkeypatch.setattr(result_records, "_read", lambda text: pytest.fail("it was read again"))
         assert results_of(session, row) is first
 
 
 def test_what_is_kept_is_bounded():
-    size = stored_results._kept.getsizeof
+    size = result_records._kept.getsizeof
     assert size(Results("x" * 100, {}, {}, [], {})) == 100
-    assert stored_results._kept.maxsize == stored_results.KEPT
+    assert result_records._kept.maxsize == result_records.KEPT
 
 
 def test_revisions_are_listed_without_their_steps(http, film):

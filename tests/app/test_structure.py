@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from benchmarks.structure import (
+    REASONS,
     arrows,
     circles,
     graph,
@@ -25,6 +26,15 @@ def test_no_import_points_against_the_layers():
     counted = arrows()
     assert counted.total() > 300
     assert upward(counted) == []
+
+
+def test_no_modules_import_each_other():
+    assert circles(graph()) == []
+
+
+def test_a_short_module_with_one_importer_has_its_reason():
+    short = single_importers(graph())
+    assert sorted(short.keys() - REASONS.keys()) == []
 
 
 def test_what_is_typed_as_any_does_not_grow():

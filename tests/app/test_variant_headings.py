@@ -3,7 +3,7 @@
 import pytest
 
 from app.designs.variant_sheets.grid import grid_of, refuse
-from app.designs.variant_sheets.reading import read_variants
+from app.designs.variant_sheets.reader import read_variants
 from templates.core.errors import InvalidInputs
 
 UNITS = {"width": "mm", "film.radial_load": "N", "film.speed": "rad/s", "pad.speed": "m/s", "film.width": "m"}

@@ -12,8 +12,8 @@ from seeds import examples
 from app.designs.schemas.variants import VariantColumn, VariantsOut
 from app.designs.variant_sheets.csv_files import read_csv, write_csv
 from app.designs.variant_sheets.grid import address, refuse
-from app.designs.variant_sheets.reading import read_variants
-from app.designs.variant_sheets.writing import rows_of, sheet_columns
+from app.designs.variant_sheets.reader import read_variants
+from app.designs.variant_sheets.writer import rows_of, sheet_columns
 from app.designs.variant_sheets.xlsx_files import MOST_UNPACKED, read_xlsx, write_xlsx
 from templates.core.errors import InvalidInputs
 

@@ -6,7 +6,7 @@ import pytest
 from serving import API, created, patched
 
 from app.calculations.bodies import OIL_FILM
-from app.designs import drives, stored_results
+from app.designs import drives, result_records
 from app.web import sections
 
 
@@ -30,7 +30,7 @@ def page(http, design, **query):
 
 
 def forget():
-    for kept in (stored_results._kept, drives._kept, sections._kept):
+    for kept in (result_records._kept, drives._kept, sections._kept):
         kept.clear()
 
 

@@ -8,7 +8,7 @@ from fastapi import APIRouter, Header, Path, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheAnswering, TheJobs, TheStore
-from app.api.stored import UNAVAILABLE, rebuilding
+from app.api.file_answers import UNAVAILABLE, rebuilding
 from app.api.waiting import LATER, accepted, finished
 from app.calculations.array_files import MEDIA_TYPES
 from app.calculations.jobs import ANSWERS, CalculationJobs

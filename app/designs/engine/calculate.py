@@ -1,4 +1,4 @@
-"""Calculate a design: every value that can be known now, what waits for a solid or a job, and what is wrong.
+"""Calculate a design: all values known now, those that wait for a solid or a job, and the faults.
 
 Nothing stops at the first fault, so that a user sees all of them at once. Where rows give values, what
 follows from these is calculated for all rows at once, and a row that is refused has no value there.

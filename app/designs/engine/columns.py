@@ -128,27 +128,27 @@ class RowEstimate:
 
     @classmethod
     def exact(cls, column: Column, axes: int = 0) -> RowEstimate:
-        """A value that is what it is."""
+        """Return a value that is what it is."""
         return cls(Estimate(column.value, axes=axes), column.is_row)
 
     @property
     def value(self) -> Column:
-        """The value."""
+        """Return the value."""
         return Column(self.one.value, self.is_row)
 
     @property
     def error(self) -> Column:
-        """The relative error; 0 if exact, NaN where it is not known."""
+        """Return the relative error; 0 if exact, NaN where it is not known."""
         return Column(self.one.error, self.is_row_error)
 
     @property
     def has_rows(self) -> bool:
-        """Whether anything of it differs from row to row."""
+        """Return whether anything of it differs from row to row."""
         return self.is_row or self.is_row_error
 
     @property
     def is_stated(self) -> bool:
-        """Whether anybody measured the error of the model, known or not."""
+        """Return whether anybody measured the error of the model, known or not."""
         return self.one.is_stated or (not self.has_rows and bool(np.isnan(self.one.error).any()))
 
     @property
@@ -157,7 +157,7 @@ class RowEstimate:
         return max(self.value.rank - self.one.axes, 0)
 
     def padded(self, rank: int) -> Estimate:
-        """As an estimate whose arrays broadcast with those of a larger rank."""
+        """Return an estimate whose arrays broadcast with those of a larger rank."""
         if not (self.is_row or self.is_row_error or self.is_row_scale):
             return self.one
         one, value = self.one, self.value
@@ -167,7 +167,7 @@ class RowEstimate:
         return Estimate(value.padded(rank + one.axes), error, one.is_stated, axes, scale)
 
     def bounds(self) -> tuple[Column, Column]:
-        """Both ends of the band; the value itself where its error is not known."""
+        """Return both ends of the band; the value itself where its error is not known."""
         one = self.one
         error = one.error if isinstance(one.error, float) else np.nan_to_num(one.error, nan=0.0)
         scale = None if one.scale is None else np.nan_to_num(one.scale, nan=0.0)
@@ -176,21 +176,21 @@ class RowEstimate:
         return Column(low, self.has_rows), Column(high, self.has_rows)
 
     def missing(self, count: int) -> Mask:
-        """The rows that have no value at some place."""
+        """Return the rows that have no value at some place."""
         missing: Mask = np.any(np.isnan(self.value.spread(count).reshape(count, -1)), axis=1)
         return missing
 
     def unknown(self, count: int) -> Mask:
-        """The rows whose error is not known at some point."""
+        """Return the rows whose error is not known at some point."""
         unknown: Mask = np.any(np.isnan(self.error.spread(count).reshape(count, -1)), axis=1)
         return unknown
 
     def unstated(self) -> RowEstimate:
-        """The same, its error not stated."""
+        """Return the same, its error not stated."""
         return replace(self, one=replace(self.one, is_stated=False))
 
     def without_error(self, unknown: Mask) -> RowEstimate:
-        """The same, its error not known in some rows, and not stated."""
+        """Return the same, its error not known in some rows, and not stated."""
         if not self.has_rows and unknown.all():
             return replace(self, one=replace(self.one, error=float("nan"), is_stated=False))
         error = np.where(unknown, np.nan, self.error.padded(0) if self.is_row_error else self.one.error)

@@ -1,4 +1,4 @@
-"""Why rows have no values: the faults of array calls, and the points that templates mask in them."""
+"""Reasons of rows without values: the faults of array calls, and the points that templates mask."""
 
 from __future__ import annotations
 

@@ -134,7 +134,7 @@ def rank_of(node: Node, ranks: Mapping[str, int]) -> int:
 
 
 def tolerance_of(graph: Graph, cell: Cell, typed: Mapping[str, Typed]) -> Tolerance | None:
-    """The tolerance that a cell has by its relation; None if it has none.
+    """Return the tolerance that a cell has by its relation; None if it has none.
 
     `typed` are the values of cells as they were read. A zone of ISO 286 is that of its own nominal size:
     where a constant is added, the limits stay and the zone goes.
@@ -154,7 +154,10 @@ def tolerance_of(graph: Graph, cell: Cell, typed: Mapping[str, Typed]) -> Tolera
 
 
 def _term(tree: Node) -> tuple[str, bool] | None:
-    """The only name of a relation, and whether a constant is added to it; None of any other relation."""
+    """Return the only name of a relation, and whether a constant is added to it.
+
+    None of any other relation.
+    """
     match tree:
         case Name(name=name):
             return name, False

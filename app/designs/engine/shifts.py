@@ -1,4 +1,4 @@
-"""How errors of steps reach what follows from them: each uncertain output is shifted to both ends.
+"""Propagate errors of steps to later values: each uncertain output is shifted to both ends.
 
 The error of a step leaves out that of its inputs. So whatever follows from an uncertain output is calculated
 again with that output at the lower and at the upper end of its band, in all rows at once. What cannot be

@@ -295,7 +295,10 @@ Evaluations = Sequence[tuple[Part, Evaluated]]
 
 
 def estimate_rows(step: StepRows, evaluations: Evaluations, member: str) -> RowEstimate | Absent:
-    """The value of an input or output of a step with its error; why there is none, if no row has one."""
+    """Return the value of an input or output of a step with its error.
+
+    Why there is none, if no row has one.
+    """
     found = [(part, estimate_of(evaluated, member)) for part, evaluated in evaluations]
     present = [(part, one) for part, one in found if isinstance(one, Estimate)]
     if not present:
@@ -316,7 +319,7 @@ def estimate_rows(step: StepRows, evaluations: Evaluations, member: str) -> RowE
 def _column(
     step: StepRows, parts: Sequence[tuple[Part, Estimate]], of: Callable[[Estimate], Value], axes: int
 ) -> Column:
-    """One column of all parts; NaN in rows that are refused."""
+    """Return one column of all parts; NaN in rows that are refused."""
     columns: list[tuple[Indices, Column]] = []
     for part, estimate in parts:
         value = of(estimate)
@@ -340,7 +343,7 @@ class Memory:
         self._cache = cache
 
     def evaluation(self, block: Block, raw: Mapping[str, Raw], wanted: tuple[str, ...] | None) -> Evaluation:
-        """The evaluation of a step, kept or computed.
+        """Return the evaluation of a step, kept or computed.
 
         Raises
         ------

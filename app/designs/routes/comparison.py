@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query
 
 from app.api.dependencies import TheDatabase, Units
-from app.designs.comparing import Pair, compare
+from app.designs.comparison import Pair, compare
 from app.designs.schemas.comparison import Comparison
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals

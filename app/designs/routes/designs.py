@@ -27,7 +27,7 @@ from app.api.dependencies import (
 from app.api.waiting import accepted, later, written
 from app.designs import repository, views
 from app.designs.bodies import LONGEST_NOTE, PATCH, CopyIn, DesignIn
-from app.designs.filtering import TEMPLATE, DesignFilter
+from app.designs.filters import TEMPLATE, DesignFilter
 from app.designs.labels import key_of, tags_of
 from app.designs.preview import Previewed
 from app.designs.releases import released_of
@@ -135,10 +135,10 @@ def list_designs(
         rows = repository.designs(session, limit, cursor, wanted)
         ids = [row.id for row in rows]
         labels, released = tags_of(session, ids), released_of(session, ids)
+        newest = repository.heads(session, rows)
 
         def show(row: DesignRow) -> DesignSummary:
-            newest = repository.revision(session, row.id, row.head)
-            return views.listed(row, newest, labels[row.id], released.get(row.id))
+            return views.listed(row, newest[row.id], labels[row.id], released.get(row.id))
 
         return page(DesignList, rows, limit, show, lambda row: row.id)
 

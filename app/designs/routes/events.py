@@ -9,7 +9,7 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import OneStream, TheDatabase, TheJobs
-from app.api.resuming import LastEvent, allowed, identity, listening
+from app.api.event_streams import LastEvent, allowed, identity, listening
 from app.designs.news import Standing, can_resume, standing
 from app.designs.routes.answers import Id
 from app.designs.routes.designs import show_design

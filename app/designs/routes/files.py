@@ -1,4 +1,4 @@
-"""`/designs/{id}/model` and its kin: the newest good model, or that of a revision, in the kind asked for."""
+"""`/designs/{id}/model…`: files of the newest good model, or of that of a revision."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from app.api.dependencies import (
     TheSettings,
     TheStore,
 )
-from app.api.stored import UNAVAILABLE, UNCHANGED, lost
+from app.api.file_answers import UNAVAILABLE, UNCHANGED, lost
 from app.api.waiting import LATER, accepted, accepted_weights, finished
 from app.designs import stamps, views
 from app.designs.routes.answers import Id, Number, Prefer

@@ -1,4 +1,4 @@
-"""`/designs/{id}/labels` and `/tags`: what puts designs in order and touches no revision."""
+"""`/designs/{id}/labels` and `/tags`: labels of designs, which change no revision."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`/designs/{id}/network`: what drives what in a design."""
+"""`/designs/{id}/network`: the dependencies in a design."""
 
 from __future__ import annotations
 

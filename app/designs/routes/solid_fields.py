@@ -9,7 +9,7 @@ from fastapi import APIRouter, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheCatalogues, TheDatabase
-from app.api.stored import UNAVAILABLE, UNCHANGED
+from app.api.file_answers import UNAVAILABLE, UNCHANGED
 from app.api.waiting import LATER
 from app.designs import views
 from app.designs.routes.answers import Id, Number

@@ -27,7 +27,7 @@ from app.api.dependencies import (
     TheVariantDetails,
     Units,
 )
-from app.api.stored import UNAVAILABLE, lost
+from app.api.file_answers import UNAVAILABLE, lost
 from app.api.waiting import LATER, accepted, finished, later, patience, written
 from app.catalogue.catalogues import Catalogues
 from app.designs.bodies import Note
@@ -41,7 +41,7 @@ from app.designs.variants import views
 from app.designs.variants.detail import WantedVariant
 from app.designs.variants.files import STEP, Entry, entries, variant_model
 from app.designs.variants.names import MOST_VARIANTS
-from app.designs.variants.saving import replace_variants as replaced
+from app.designs.variants.save import replace_variants as replaced
 from app.http.archives import MEDIA_TYPE, archived, distinct
 from app.http.attachments import is_at_hand, named, unchanged
 from app.http.clients import TheClient

@@ -7,16 +7,16 @@ from typing import Literal
 
 from app.designs import repository
 from app.designs.graph import build_graph
-from app.designs.reading import read_document, resolved
+from app.designs.reader import read_document, resolved
 from app.designs.schemas.variants import VariantsOut
 from app.designs.service import Designs, Saved
 from app.designs.variant_sheets.csv_files import read_csv, write_csv
 from app.designs.variant_sheets.grid import MOST_FAULTS, Grid, cell_of
-from app.designs.variant_sheets.reading import SheetVariants, read_variants
+from app.designs.variant_sheets.reader import SheetVariants, read_variants
 from app.designs.variant_sheets.units import units_of
-from app.designs.variant_sheets.writing import rows_of, sheet_columns
+from app.designs.variant_sheets.writer import rows_of, sheet_columns
 from app.designs.variant_sheets.xlsx_files import read_xlsx, write_xlsx
-from app.designs.variants.saving import replace_variants
+from app.designs.variants.save import replace_variants
 from app.plain import JsonObject
 from app.storage.idempotency import Once
 from templates.core.errors import Fault, InvalidInputs

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.designs.network import Cell, Network
-from app.designs.variant_sheets.reading import Units
+from app.designs.variant_sheets.reader import Units
 from app.designs.variants.table import places
 from app.reference import Reference
 from templates.core.errors import FaultyText

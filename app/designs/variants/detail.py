@@ -18,7 +18,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.graph import raise_if
 from app.designs.questions import Reply
 from app.designs.schemas.variants import VariantDetail
-from app.designs.stored_solids import analysed, built
+from app.designs.solid_records import analysed, built
 from app.designs.variants.names import BASE
 from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available, together

@@ -11,7 +11,7 @@ from pydantic.config import JsonDict
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheCatalogues, TheDatabase, TheHealing, TheJobs, TheModels, TheStore
-from app.api.stored import UNAVAILABLE, UNCHANGED, StoredFile, lost
+from app.api.file_answers import UNAVAILABLE, UNCHANGED, StoredFile, lost
 from app.api.waiting import LATER, accepted, finished, later, written
 from app.catalogue.routes.templates import Number, listed, versions_of
 from app.catalogue.schemas.templates import TemplateList, TemplateVersions

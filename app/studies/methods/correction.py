@@ -1,4 +1,4 @@
-"""A coarse level of a design, multiplied by the ratios that a fine level showed where it was asked.
+"""A coarse level of a design, corrected by its ratios to a fine level at some places.
 
 The logarithm of the ratio is interpolated between the confirmed rows by ordinary kriging with a smooth
 covariance. Inverse distances would leave the slope at a confirmed row as the coarse level has it. Kriging

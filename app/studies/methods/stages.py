@@ -1,4 +1,4 @@
-"""Stages of a search: what is kept of each, so that a search that was interrupted does not repeat them.
+"""Stages of a search, stored so that an interrupted search does not repeat them.
 
 A search is a pure function of its seed and of the answers it receives. A stage is a part of it whose outcome
 is a few arrays. Whoever stores these, and what the stage asked for, can go on behind it.

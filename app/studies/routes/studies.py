@@ -24,7 +24,7 @@ from app.api.dependencies import (
     Units,
     services_of,
 )
-from app.api.resuming import LastEvent, Whole, as_it_stands, listening
+from app.api.event_streams import LastEvent, Whole, as_it_stands, listening
 from app.api.waiting import written
 from app.calculations.pool import Calculation, CalculationPool
 from app.designs.routes.answers import CHANGED, IfMatch, Prefer, answer_saved, seconds_waited

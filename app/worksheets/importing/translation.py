@@ -1,4 +1,4 @@
-"""From the regions of a sheet to the lines of a worksheet, region by region."""
+"""Translate the regions of a sheet into the lines of a worksheet, region by region."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which level of fidelity answers: the cheapest whose stated errors are within a tolerance.
+"""Choose the level of fidelity: the cheapest whose stated errors are within a tolerance.
 
 One level serves all points of a request: a level that changes from point to point makes steps in a curve, and
 false optima. `per_point` takes the cheapest at each point instead.

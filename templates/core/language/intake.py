@@ -1,4 +1,4 @@
-"""From what a user typed to the SI values of a template; all faults are collected before any is reported."""
+"""Read typed inputs as the SI values of a template; all faults are collected before any is reported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From the statements of a worksheet to what its class is made of; every fault is collected."""
+"""Build the parts of a worksheet's class from its statements; every fault is collected."""
 
 from __future__ import annotations
 

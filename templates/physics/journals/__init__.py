@@ -1,1 +1,1 @@
-"""What a journal bearing does under its film: oil, heat, friction, whirl, limits."""
+"""Properties of a journal bearing: oil, heat, friction, whirl, limits."""

@@ -1,4 +1,4 @@
-"""How a journal moves against its sleeve and its load, and what its load weighs.
+"""Motion of a journal relative to its sleeve and its load, and the size of its load.
 
 References
 ----------

@@ -1,4 +1,4 @@
-"""Which temperature a journal bearing's film has: a mean, that of a heat balance, or none."""
+"""The temperature of a journal bearing's film: a mean, that of a heat balance, or none."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a result keeps a limit that a user may have set."""
+"""Reserves to limits that a user may have set."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What rough faces do to a film: summits in contact, and flow factors."""
+"""Effects of rough faces on a film: contact of summits, and flow factors."""

@@ -1,4 +1,4 @@
-"""Where engine orders meet natural frequencies: critical speeds and the lines of a Campbell diagram.
+"""Critical speeds, where engine orders meet natural frequencies, and the lines of a Campbell diagram.
 
 For `torsional_vibration`. An order is a number of excitations for each turn: a four-stroke engine has whole
 and half orders. Natural frequencies of a chain do not depend on speed: in the diagram they are level.

@@ -1,4 +1,4 @@
-"""From Carter's formula to Ker Wilson's, without a jump where pin and journal begin to overlap.
+"""A smooth transition from Carter's to Ker Wilson's formula where pin and journal begin to overlap.
 
 For `crank_stiffness` 1. The literature chooses by the sign of the overlap and names no width. At overlap 0
 nothing happens to the steel: the webs stiffen steadily as the throw becomes shorter. So the two formulas are

@@ -1,4 +1,4 @@
-"""Where oil enters the film over a cycle, and at what pressure: holes, slots and grooves of either surface.
+"""Oil supply of a film over a cycle: holes, slots and grooves of either surface, and their pressure.
 
 Angles count in the sense of rotation. The axes of frame, sleeve and journal coincide at crank angle 0: a hole
 in the pin counts from the throw, a groove of the rod's bore from the rod's axis.

@@ -1,4 +1,4 @@
-"""Where the journal lies in a film whose viscosity is given at every place: Newton's method with few films.
+"""Position of a journal in a film of given, varying viscosity, by Newton's method with few films.
 
 Unknown is y, a vector along and ahead of the load as long as atanh(eps), so that near the wall a step of 1
 is one of the load's size. What is brought to zero is the logarithm of the force over the load and its angle

@@ -1,4 +1,4 @@
-"""What is read from a forced response: torque, stress and twist of the shafts, heat, angles, speeds.
+"""Results of a forced response: torque, stress and twist of the shafts, heat, angles, speeds.
 
 A vibratory value is half the swing of the curve that all orders make together. Adding their amplitudes gives
 more, by up to a factor of 2.5: they do not peak at one angle.

@@ -12,7 +12,7 @@ from app.designs.calculation_cache import Prepared
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.errors import NotConverged
-from app.designs.naming import named
+from app.designs.model_failures import named
 from app.designs.variants.outcome import Outcome, outcome_of
 from app.jobs.service import JobContext
 from app.plain import JsonObject

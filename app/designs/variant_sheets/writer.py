@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from app.designs.schemas.variants import VariantColumn, VariantResult, VariantsOut
-from app.designs.variant_sheets.reading import FIRST, RELATION, RESULTS
+from app.designs.variant_sheets.reader import FIRST, RELATION, RESULTS
 from app.designs.variant_sheets.values import Shape, shape
 from app.designs.variant_sheets.xlsx_files import number_text
 from app.presentation.criteria import WORDS

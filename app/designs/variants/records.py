@@ -10,9 +10,9 @@ from app.designs import results
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.results import ModelState
-from app.designs.variants.judging import merged
 from app.designs.variants.names import BASE
 from app.designs.variants.outcome import Outcome, single_outputs
+from app.designs.variants.verdict import merged
 from app.plain import JsonObject
 from templates.core.judging.judgement import Judgement
 from templates.core.judging.summary import worst_first

@@ -58,7 +58,7 @@ def resolved(document: Document, catalogues: Catalogues) -> Document:
 
 
 def starts(document: Document) -> dict[Reference, float]:
-    """The SI values with which the iterations of a document begin.
+    """Return the SI values with which the iterations of a document begin.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def starts(document: Document) -> dict[Reference, float]:
 
 
 def settled(results: Mapping[str, list[Mapping[str, Raw]]] | None) -> dict[Reference, float]:
-    """The values [SI] with which the iterations of a revision ended, by its results."""
+    """Return the values [SI] with which the iterations of a revision ended, by its results."""
     rounds = (results or {}).get("iterations", [])
     values = {str(one["through"]): (float(str(one["assumed"])), str(one["unit"])) for one in rounds}
     return {Reference.parse(name): float(unit(scale).to_si(value)) for name, (value, scale) in values.items()}
