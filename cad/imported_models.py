@@ -24,7 +24,6 @@ from typing import Any, ClassVar, Literal
 
 from cad.errors import GeometryError
 from cad.model import STEEL, Box, CadModel, Colour, Dimension, Part
-from cad.part_names import PartNames
 
 Program = Literal["freecad", "creo", "step", "assembly"]
 Role = Literal["", "diameter", "radius", "distance"]
@@ -42,6 +41,8 @@ Sizes = Mapping[str, list[float]]
 """Diameters and distances [mm] of a solid."""
 MOST_PLANES = 300
 """Of a part whose distances between planes are compared, pair by pair."""
+LONGEST_NAME = 100
+"""Of a part, in letters."""
 
 _DRAWN, _PARTS = "as drawn", "parts as drawn"  # no names that a declaration can have
 
@@ -313,3 +314,22 @@ def _plain(value: float) -> float:
 def attribute_of(name: str) -> str:
     """Return the attribute of a parameter: the language reserves many a plain word, such as `build`."""
     return f"of_{name}"
+
+
+class PartNames:
+    """Names of parts as STEP files keep them, each once: printable, without quotes, not empty, not long."""
+
+    def __init__(self) -> None:
+        self._taken, self._numbers = set[str](), dict[str, int]()
+
+    def unique(self, name: str) -> str:
+        """Return the name that is closest to this one, with a number behind it if another part has that."""
+        signs = (sign if sign.isprintable() and sign not in "'\"\\" else " " for sign in name[:LONGEST_NAME])
+        plain = unique = " ".join("".join(signs).split()) or "part"
+        number = self._numbers.get(plain, 1)
+        while unique in self._taken:
+            number += 1
+            unique = f"{plain}_{number}"
+        self._numbers[plain] = number
+        self._taken.add(unique)
+        return unique

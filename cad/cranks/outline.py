@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import acos, cos, dist, pi, sin, sqrt, tan
+from math import acos, cos, dist, pi, remainder, sin, sqrt, tan
 
 from cadquery import Edge, Vector, Wire
 from cadquery.func import segment, wire
@@ -126,3 +126,20 @@ def draw(run: Run, place: Callable[[float, float], Vector]) -> Edge:
 def _on_circle(radius: float, angle: float) -> Point:
     """Return the point at an angle from -x, towards +y."""
     return -radius * cos(angle), radius * sin(angle)
+
+
+def reach(outline: Outline, direction: float) -> float:
+    """Return the farthest point of a web in a direction [rad] from x, counted from the journal's axis."""
+    across = abs(sin(direction)) * outline.half_width
+    along = cos(direction)
+    if outline.rectangular:
+        body = max(outline.tip * along, -outline.half_width * along) + across
+    else:
+        body = outline.half_width + max(outline.throw * along, 0.0)
+    return max(body, _sector(outline, direction)) if outline.counterweight > 0 else body
+
+
+def _sector(outline: Outline, direction: float) -> float:
+    """Return the reach of the counterweight, a sector about -x: of its rim, or of the rim's nearest end."""
+    off = abs(remainder(direction - pi, 2 * pi)) - outline.half_angle
+    return outline.counterweight * (cos(off) if off > 0 else 1.0)

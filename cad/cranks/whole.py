@@ -23,8 +23,8 @@ from math import cos, degrees, pi, remainder, sin
 from cadquery import Shape, Solid, Vector
 from cadquery.func import fuse
 
+from cad.cranks.outline import reach
 from cad.cranks.split_pins import SplitPins
-from cad.cranks.support import reach
 from cad.cranks.throw import End, Throw, bore, fillet_run, turned
 from cad.cranks.volume import drilling, end_volume, fillet, journal, pin, web
 from cad.model import Box

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import templates
-from cad.cranks.outline import Outline
-from cad.cranks.support import reach
+from benchmarks.in_line_four import IN_LINE_FOUR
+from cad.cranks.outline import Outline, reach
 from cad.lists import LONGEST_TEXT, listed, written
 from cad.models.crankshaft_v1 import Crankshaft as OneThrow
 from cad.models.crankshaft_v2 import Crankshaft
@@ -121,7 +121,7 @@ def test_rotating_couple_is_that_of_the_engine() -> None:
         build({**PLAIN, "pin_angles": degrees(*angles)}).step, [k * PITCH for k in range(1, 4)]
     )
     engine = find([Path(templates.__file__).parent], Template).get("engine", 1)
-    without = {name: value for name, value in engine.example.items() if not name.startswith(("web", "count"))}
+    without = {name: value for name, value in IN_LINE_FOUR.items() if not name.startswith(("web", "count"))}
     without |= {"speed": "3000 rpm", "pin_angles": degrees(*angles), "reference_position": "0 mm"}
     unbalance = {"value": [abs(one.unbalance) * 1e3 for one in throws], "unit": "kg*mm"}
     names = "shaking_moment_x", "shaking_moment_y"

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 from templates.physics.cavities import shaped_balance
 from templates.physics.cavities.fed_film import Feed
@@ -202,6 +203,26 @@ class TestLiterature:
             assert value == pytest.approx(row[name], rel=0.02, abs=0.04), name
         for name, value in (("Bxx", B[0, 0]), ("Bxy", B[0, 1]), ("Byy", B[1, 1])):
             assert value == pytest.approx(row[name], rel=0.02, abs=0.1), name
+
+
+class TestJumps:
+    """A bore whose lobes meet in a step, as one of two halves that are offset sideways."""
+
+    @pytest.mark.parametrize("angle", [-1e-13, 0.0, 1e-13, 0.3])
+    def test_second_method_shear_is_the_integral_on_both_sides_of_a_step(self, angle):
+        """∬ dφ dζ/(2 H) of an aligned journal, lobe by lobe; rounding does not say where the step is."""
+        bore, lie = Bore(2, 0.3, angle, 1.0), Lie(np.array([1.2, -0.02]), np.zeros(2))
+        film = shaped_film(shaped_nodes(bore, lie, 0.4, [], 256, 8), bore, lie, [], conserving=False)
+
+        def slope(phi):
+            return 1 / gap(bore, lie, np.array([phi]), np.zeros(1))[0, 0]
+
+        joints = np.sort(bore.joints())
+        halves = (joints + 1e-10, joints + np.pi - 1e-10)
+        exact = sum(quad(slope, *ends, epsrel=1e-10)[0] for ends in zip(*halves, strict=True))
+        assert film.shear == pytest.approx(exact / 2, rel=2e-4)
+        steps = np.diff([gap(bore, lie, joints, np.zeros(1), side)[:, 0] for side in (-1, 1)], axis=0)
+        assert np.abs(steps).min() > 0.5
 
 
 class TestGrooveInTheLoadLine:

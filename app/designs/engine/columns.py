@@ -59,13 +59,22 @@ class Column:
     def spread(self, count: int) -> Array:
         """Return the value of every row; a view, where one value serves all of them."""
         value = np.asarray(self.value, dtype=float)
-        return value if self.is_row else np.broadcast_to(value, (count, *value.shape))
+        if self.is_row:
+            return value
+        return value[None] if count == 1 else np.broadcast_to(value, (count, *value.shape))
 
     def finite_rows(self) -> Mask:
         """Return the rows in which the value is finite at all its places."""
         finite: Mask = np.asarray(np.isfinite(self.value))
         whole: Mask = np.all(finite, axis=tuple(range(1, finite.ndim)))
         return whole
+
+    def unknown_rows(self, count: int) -> Mask:
+        """Return the rows in which the value is NaN at any of its places."""
+        unknown = np.asarray(np.isnan(self.value))
+        if not self.is_row:
+            return np.full(count, unknown.any())
+        return np.any(unknown, axis=tuple(range(1, unknown.ndim))) if unknown.ndim > 1 else unknown
 
     def without(self, refused: Mask) -> Column:
         """Return the column with NaN in the rows that are refused."""
@@ -177,13 +186,11 @@ class RowEstimate:
 
     def missing(self, count: int) -> Mask:
         """Return the rows that have no value at some place."""
-        missing: Mask = np.any(np.isnan(self.value.spread(count).reshape(count, -1)), axis=1)
-        return missing
+        return self.value.unknown_rows(count)
 
     def unknown(self, count: int) -> Mask:
         """Return the rows whose error is not known at some point."""
-        unknown: Mask = np.any(np.isnan(self.error.spread(count).reshape(count, -1)), axis=1)
-        return unknown
+        return self.error.unknown_rows(count)
 
     def unstated(self) -> RowEstimate:
         """Return the same, its error not stated."""

@@ -118,10 +118,16 @@ def _moved_to(nodes: Array, places: Array) -> Array:
 
 
 def gaps(nodes: Nodes, bore: Bore, lie: Lie) -> Gaps:
-    """Return the gap where the balances need it."""
+    """Return the gap where the balances need it.
+
+    Where lobes meet it may jump: there that of the node is the mean of 1/H over the half cells of both sides.
+    """
     phi, zeta = nodes.phi[:-1], nodes.zeta
+    ahead = np.diff(nodes.phi)[:, None]
+    behind = np.roll(ahead, 1, axis=0)
+    sides = behind / gap(bore, lie, phi, zeta, -1) + ahead / gap(bore, lie, phi, zeta)
     return Gaps(
-        gap(bore, lie, phi, zeta),
+        (behind + ahead) / sides if bore.is_lobed else gap(bore, lie, phi, zeta),
         gap(bore, lie, midpoints(nodes.phi), zeta),
         gap(bore, lie, phi, midpoints(zeta)),
     )

@@ -25,6 +25,9 @@ from templates.core.arrays import Array
 _ALONG = np.linspace(-1, 1, 401)
 """Axial places at which the narrowest gap is looked for; with a tilt alone it is at an end."""
 
+_SAME = 1e-11
+"""Angles closer than this [rad] are one: rounding does not say on which side of a joint a node is."""
+
 
 @dataclass(frozen=True)
 class Bore:
@@ -70,12 +73,15 @@ class Bore:
         begin = np.asarray(self.angle + arc * (np.arange(self.lobes) - 0.5), float)
         return begin, begin + arc, begin + arc * self.offset
 
-    def around(self, phi: Array) -> Array:
-        """Return what lobes add to the gap of a centred journal, at angles from the load [-]."""
+    def around(self, phi: Array, side: int = 1) -> Array:
+        """Return what lobes add to the gap of a centred journal, at angles from the load [-].
+
+        Where lobes meet, with side 1 that of the lobe ahead, with −1 that of the lobe behind.
+        """
         if not self.is_lobed:
             return np.zeros_like(phi)
-        arc = 2 * np.pi / self.lobes
-        within = (phi - self.angle + arc / 2) % arc
+        arc, past = 2 * np.pi / self.lobes, side * _SAME
+        within = (phi - self.angle + arc / 2 + past) % arc - past
         return np.asarray(2 * self.excess * np.sin((within - arc * self.offset) / 2) ** 2)
 
     def along(self, zeta: Array) -> Array:
@@ -116,11 +122,14 @@ def directions(phi: Array) -> Array:
     return np.stack([np.cos(phi), np.sin(phi)])
 
 
-def gap(bore: Bore, lie: Lie, phi: Array, zeta: Array) -> Array:
-    """Film thickness over the radial clearance at every angle and axial place, (angles, places) [-]."""
+def gap(bore: Bore, lie: Lie, phi: Array, zeta: Array, side: int = 1) -> Array:
+    """Return the film thickness over the radial clearance at every angle and axial place, (angles, places).
+
+    Where lobes meet, on that side of the joint, see `Bore.around`.
+    """
     x, y = directions(phi)
     e, t = lie.e, lie.tilt
-    aligned = (1 + bore.around(phi) - e[0] * x - e[1] * y)[:, None] + bore.along(zeta)
+    aligned = (1 + bore.around(phi, side) - e[0] * x - e[1] * y)[:, None] + bore.along(zeta)
     return np.asarray(aligned - np.outer(t[0] * x + t[1] * y, zeta))
 
 
