@@ -25,7 +25,6 @@ from app.designs.schemas.designs import (
 )
 from app.designs.schemas.solid_fields import SolidField
 from app.designs.schemas.variants import VariantsOut
-from app.http.roles import routes_of
 from app.identity.principal import acting
 from app.jobs.routes import list_jobs
 from app.jobs.schemas import Job
@@ -84,7 +83,6 @@ QUICK = (
 )
 NO_REFUSAL = Refusal()
 NO_PART = dict.fromkeys(("declare", "add", "name", "value"), "")
-DECIDE = "/api/v1/designs/{id}/decide"
 
 
 async def design_page(
@@ -140,7 +138,6 @@ async def design_page(
         notice=notice,
         verdict=verdict,
         verdict_banner=banner_of(verdict, id),
-        can_decide=_has_route(request, DECIDE),
         toleranced=toleranced(design),
         base=f"/api/v1/designs/{id}",
         painted=painted(steps, parts),
@@ -264,11 +261,6 @@ async def step_section(request: Request, services: PageServices, id: str, name: 
     steps = with_keys([with_fields(block, design, NO_REFUSAL, tables) for block in blocks], revision, design)
     (section,) = sections(steps, banner(revision), name, in_full={name})
     return show(request, "section.html", section=section)
-
-
-def _has_route(request: Request, path: str) -> bool:
-    """Return whether the interface has this path."""
-    return any(getattr(route, "path", None) == path for route in routes_of(request.app))
 
 
 async def _analyses(
