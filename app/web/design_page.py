@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from app.catalogue.routes.templates import list_templates
 from app.catalogue.schemas.templates import Template, TemplateSummary
-from app.designs.previewing import Change
+from app.designs.preview import Previewed
 from app.designs.routes.designs import show_measurements
 from app.designs.routes.revisions import list_revisions
 from app.designs.routes.solid_fields import list_solid_fields
@@ -25,7 +25,6 @@ from app.designs.schemas.designs import (
 )
 from app.designs.schemas.solid_fields import SolidField
 from app.designs.schemas.variants import VariantsOut
-from app.http.roles import routes_of
 from app.identity.principal import acting
 from app.jobs.routes import list_jobs
 from app.jobs.schemas import Job
@@ -84,7 +83,6 @@ QUICK = (
 )
 NO_REFUSAL = Refusal()
 NO_PART = dict.fromkeys(("declare", "add", "name", "value"), "")
-DECIDE = "/api/v1/designs/{id}/decide"
 
 
 async def design_page(
@@ -140,7 +138,6 @@ async def design_page(
         notice=notice,
         verdict=verdict,
         verdict_banner=banner_of(verdict, id),
-        can_decide=_has_route(request, DECIDE),
         toleranced=toleranced(design),
         base=f"/api/v1/designs/{id}",
         painted=painted(steps, parts),
@@ -193,9 +190,9 @@ async def _form(request: Request, services: PageServices, design: Design, refusa
         await described_models(services, design),
     )
     has_parameters = bool(design.parameters)  # only with the worksheet a preview has their values
-    change = Change(id, {}, worksheet=has_parameters, system=units_of(request))
+    change = Previewed(id, {}, worksheet=has_parameters, system=units_of(request))
     has_values = has_parameters or bool(design.models)  # the page shows nothing else of a preview
-    preview = await services.calculate(within, services.previews.quick, change) if has_values else None
+    preview = await services.calculate(within, services.previews.known, change) if has_values else None
     before = await _before(request, services, design)
     tables = await library(services) if templates else []
     verdict = _verdict(revision, design, templates)
@@ -264,11 +261,6 @@ async def step_section(request: Request, services: PageServices, id: str, name: 
     steps = with_keys([with_fields(block, design, NO_REFUSAL, tables) for block in blocks], revision, design)
     (section,) = sections(steps, banner(revision), name, in_full={name})
     return show(request, "section.html", section=section)
-
-
-def _has_route(request: Request, path: str) -> bool:
-    """Return whether the interface has this path."""
-    return any(getattr(route, "path", None) == path for route in routes_of(request.app))
 
 
 async def _analyses(

@@ -21,6 +21,9 @@ from app.web.responses import show
 from app.web.services import PageServices, Refused
 from cad.export import MEDIA_TYPES
 
+REASONS = ("/problems/quarantined", "/problems/unknown-template")
+"""Types of the problems for which a version cannot be used now."""
+
 
 async def revision_page(
     request: Request,
@@ -99,11 +102,8 @@ def _comparable(value: object) -> object:
     return {name: part for name, part in value.plain().items() if name != "from"}
 
 
-REASONS = ("/problems/quarantined", "/problems/unknown-template")
-
-
 def is_unusable(refused: Refused) -> bool:
-    """Return whether the interface refused because a version is quarantined, or its file was taken away."""
+    """Return whether a service refused because a version is quarantined, or its file was taken away."""
     return refused.problem.type in REASONS
 
 

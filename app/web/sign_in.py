@@ -1,7 +1,6 @@
 """Signing in and out, and the page of whoever has: roles, limits, keys.
 
-A session is a matter of browsers alone, so these pages begin and end it themselves; all else they ask the
-interface.
+A session is a matter of browsers alone, so these pages begin and end it themselves.
 """
 
 from __future__ import annotations

@@ -24,6 +24,8 @@ from templates.core.language.meaning import api_name
 from templates.core.units.quantity import read
 from templates.core.units.units import compatible, require_same_kind, unit
 
+router = APIRouter(include_in_schema=False, route_class=StrictRoute)
+
 SHOWN = 5  # rows
 CYCLES = (360.0, 720.0)  # deg
 SAME_ANGLE, SAME_VALUE = 1e-6, 0.01
@@ -220,9 +222,6 @@ def refused(error: InvalidInputs) -> ReadTable:
     """Return the faults of a text that is not a table, as a page shows them."""
     faults = [f"{fault.name}: {fault.detail}" for fault in error.faults]
     return ReadTable(columns=[], first=[], rows=0, faults=faults)
-
-
-router = APIRouter(include_in_schema=False, route_class=StrictRoute)
 
 
 @router.post("/tables", dependencies=[needs("viewer")])

@@ -1,6 +1,6 @@
 """Actions of the forms of the table of variants: cells edited in place, a table pasted, a file uploaded.
 
-Each becomes one `PUT /designs/{id}/variants` of a sheet; where it is refused, the page shows the table as it
+Each saves a sheet, as `PUT /designs/{id}/variants` does; where it is refused, the page shows the table as it
 was given, the message of each faulty cell beside it.
 """
 

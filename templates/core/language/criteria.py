@@ -130,7 +130,7 @@ def notes(evaluated: Evaluated, criterion: Criterion) -> dict[str, str | None]:
 
 
 def level_and_truth(evaluated: Evaluated, output: str | None) -> dict[str, str | None]:
-    """The level of an evaluation, and the solution against which the error of an output was measured."""
+    """Return the level of an evaluation, and the truth against which an output's error was measured."""
     level, table = evaluated.level if isinstance(evaluated.level, str) else None, evaluated.measured
     return {"level": level, "truth": table.truth(level or "", output) if table and output else None}
 

@@ -70,7 +70,7 @@ class Intake:
 
 
 def admitted(cls: type[Calculation], typed: Mapping[str, Typed | str]) -> Intake:
-    """The SI value of every input that was given or has a constant default, and what is wrong with it."""
+    """Return the SI values of inputs that were given or have a constant default, and their faults."""
     intake = Intake()
     for name, declared in cls.inputs.items():
         source = typed.get(name) or (None if isinstance(declared, Derived) else declared.default)
@@ -296,7 +296,7 @@ def check_shapes(self: Calculation) -> None:
 
 
 def _of_different_shapes(self: Calculation, shapes: Iterable[str]) -> list[Fault]:
-    """A fault for each of the arrays that have to go together, with the shapes of all as they were given."""
+    """Return a fault for each of the arrays that must have one shape, with the shapes of all."""
     names = {self.declarations[n].name: np.shape(getattr(self, n)) for n in shapes}
     listed = ", ".join(f"{name} {'×'.join(map(str, shape))}" for name, shape in names.items())
     detail = (

@@ -64,7 +64,7 @@ class Samples:
         return np.flatnonzero(np.isnan(self.miss[:-1]) != np.isnan(self.miss[1:]))
 
     def nearest(self) -> NDArray[np.intp]:
-        """The samples that are nearer to the target than both neighbours on their side of it, in order."""
+        """Return the samples nearer to the target than both neighbours on their side of it, in order."""
         before, here, after = self.miss[:-2], self.miss[1:-1], self.miss[2:]
         side = np.sign(here)
         nearer = (side * before >= side * here) & (side * after >= side * here)

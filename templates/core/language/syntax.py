@@ -39,7 +39,7 @@ def syntax(function: Callable[..., Any]) -> ast.FunctionDef:
 
 
 def attributes_used(function: Callable[..., Any]) -> tuple[str, ...]:
-    """The names x in `self.x` and `getattr(self, "x")` within a method, each once, in order of appearance."""
+    """Return the names x in `self.x` and `getattr(self, "x")` in a method, each once, in order."""
     if isinstance(function, Body):
         return function.uses
     return _in_order(function, _used)

@@ -92,7 +92,7 @@ def amount(value: float, unit: str) -> str:
 
 
 def expression(formula: Formula[Any], symbols: Mapping[str, str], times: str = r"\,") -> str:
-    """The right-hand side of a formula, as LaTeX, with the given symbols (or numbers) for its names."""
+    """Return the right-hand side of a formula as LaTeX, with these symbols or numbers for its names."""
     if formula.latex is not None:
         return formula.latex
     if isinstance(formula.function, Body):
@@ -211,7 +211,7 @@ class Writer:
         return (callable(function) and self._written_out(function, arguments)) or _named(name, arguments)
 
     def _filled_in(self, latex: str, arguments: list[Written]) -> str:
-        """The LaTeX of a physics function with its arguments, in brackets where their places need them."""
+        """Return the LaTeX of a physics function with its arguments, in brackets where needed."""
         shown = latex.replace(r"\,", self.times)
         for place, (_, tightness) in enumerate(arguments):
             mark, bracketed = f"{{{place}}}", rf"\left({{{place}}}\right)"
@@ -223,7 +223,7 @@ class Writer:
         return shown.format(*(text for text, _ in arguments))
 
     def _written_out(self, function: Callable[..., Any], arguments: list[Written]) -> Written | None:
-        """The expression that a function returns, if returning it is all it does and it is a formula."""
+        """Return the expression that a function returns, if it does nothing else and is a formula."""
         try:
             body, parameters = returned(function), syntax(function).args.args
             names = dict(zip((p.arg for p in parameters), arguments, strict=True))

@@ -302,7 +302,7 @@ def rods_share_a_pin(crank: OffsetCrank, layout: Layout, places: Array) -> Truth
 
 @units(None, returns="1")
 def articulated_rods_reach(crank: OffsetCrank) -> Truth:
-    """True if articulated rods are longer than their pins are ever far from the axis of their cylinder."""
+    """Return whether articulated rods are longer than the largest offset of their pins."""
     if not isinstance(crank, ArticulatedCrank):
         return True
     if not (np.isfinite(crank.arm).all() and np.isfinite(crank.r).all()):

@@ -121,7 +121,7 @@ def _timed(order: Array, base: Array, cycle: float) -> Array:
 
 
 def _evenness(intervals: Array) -> list[float]:
-    """By which sets of intervals compare: the smallest first."""
+    """Return the key to sort sets of intervals: the smallest first."""
     return [float(gap) for gap in np.sort(np.round(intervals, 9))]
 
 

@@ -56,7 +56,7 @@ def pressure_rises(gas: GasCycle) -> Truth:
 
 @units(None, "rad", "Pa", returns="1")
 def angles_rise(name: str, angle: Array, p: Array) -> Truth:
-    """True if the angles of a table are one rising list, of as many values as pressures, or not given."""
+    """Return whether the angles of a table are one rising list, as many as pressures, or not given."""
     if name != "table" or np.ndim(angle) == 0:
         return True
     return np.ndim(angle) == 1 and np.shape(p)[-1:] == angle.shape and bool((np.diff(angle) > 0).all())

@@ -180,7 +180,7 @@ def decode(eps: Array, ratio: Array, values: Array) -> dict[str, Array]:
 
 
 def encode_linear(eps: float, forces: Array) -> Array:
-    """The smooth values of stiffness and damping along the line of centres, (8,), of `linear_forces`."""
+    """Return the smooth values, (8,), of stiffness and damping along the line of centres."""
     thin = np.sqrt((1 - eps) / (1 + eps))
     scale = eps / float(np.hypot(*forces[:, 0]))
     K, B = forces[:, 1:3] * scale * thin**_STIFFNESS_SCALE, forces[:, 3:5] * scale * thin**_DAMPING_SCALE

@@ -18,7 +18,7 @@ from templates.core.language.declare import units
 
 @units("m", "m", "m", returns="1", latex=r"\frac{{{0}}}{{\sqrt{{{1}^2+{2}^2}}}}")
 def film_parameter(h: Array, R_1: Array, R_2: Array) -> Array:
-    """Smallest film h over the composite roughness of both surfaces, root mean squares R_1, R_2 [m]."""
+    """Return the smallest film h over the composite roughness of R_1 and R_2 (root mean squares) [m]."""
     roughness = np.hypot(R_1, R_2)
     return np.where(roughness > 0, h / np.where(roughness > 0, roughness, 1.0), np.nan)[()]
 

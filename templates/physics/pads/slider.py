@@ -38,7 +38,7 @@ def _shape(x: Array, a: Array) -> Array:
 
 
 def _moment_near_one(a: Array, power: int) -> Array:
-    """Integral of the pressure's shape times x^power by Gauss points, to rounding for film ratios near 1."""
+    """Return the integral of the pressure's shape times x^power, exact for film ratios near 1."""
     x, weight = np.polynomial.legendre.leggauss(12)
     x, weight = (1 + x) / 2, weight / 2
     near = np.where(_near_one(a), a, 1.0)[..., None]

@@ -62,7 +62,7 @@ def shear_flow_factor(u: Array, gamma: float = 1) -> Array:
 
 
 def mean_gap(u: Array) -> Array:
-    """Mean of the gap over sigma where faces of a normal distribution of heights do not overlap [-]."""
+    """Return the mean gap over sigma of rough, normally distributed faces, where they do not overlap [-]."""
     return u * ndtr(u) + np.exp(-np.square(u) / 2) / np.sqrt(2 * np.pi)
 
 

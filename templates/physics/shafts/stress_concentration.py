@@ -46,7 +46,7 @@ def shoulder_fillet_Pilkey_2008(loading: str, D: Array, d: Array, r: Array) -> A
 
 @units(None, "1", None, returns="1")
 def is_charted(loading: str, slope: Array, K_t: Array) -> Any:
-    """True if the height of a shoulder over its fillet [1] is within the chart, or a K_t [1] is given."""
+    """Return whether the shoulder's height over its fillet [1] is within the chart, or K_t is given."""
     low, high = _CHARTED[loading]
     return ~((slope < low) | (slope > high)) | ~np.isnan(K_t)
 

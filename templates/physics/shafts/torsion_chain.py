@@ -50,14 +50,14 @@ class _Bidiagonal:
 
 @units("kg*m**2", "N*m/rad", None, returns="1")
 def fits(J: Array, k: Array, ends: str) -> bool:
-    """True if inertias J [..., inertia] and stiffnesses k [..., spring], NaN for none, make a chain."""
+    """Return whether J [..., inertia] and k [..., spring], NaN for none, make a chain."""
     springs = np.shape(k)[-1] if np.ndim(k) else 0
     return springs == np.shape(J)[-1] - (ends == FREE)
 
 
 @units("kg*m**2", "N*m/rad", "1", returns="1")
 def manageable(J: Array, k: Array, orders: Array) -> bool:
-    """True if chains [..., inertia] and their tables with orders [..., order] are of a size to calculate."""
+    """Return whether chains [..., inertia] and their tables of orders [..., order] can be calculated."""
     several = np.shape(np.atleast_1d(orders))
     chains = np.broadcast_shapes(np.shape(J)[:-1], np.shape(k)[:-1], several[:-1])
     longest = max(np.shape(J)[-1], several[-1])

@@ -118,7 +118,7 @@ def supply_kind(feeding: Feeding) -> str:
 
 
 def within_bearing(length: Array, W: Array, arc: Array, D: Array) -> Truth:
-    """True if a groove or hole leaves a land at the ends and is no longer than the bearing is around."""
+    """Return whether a groove or hole leaves a land at the ends and goes around once at most."""
     inside = (length <= LONGEST * W) & ~(arc > np.pi * D)
     return np.asarray(np.isnan(length) | inside)[()]
 
