@@ -12,25 +12,24 @@ from app.approvals.comments import Comments
 from app.approvals.service import Approving
 from app.calculations.assembly import Calculations, assemble_calculations
 from app.calculations.cache import results
-from app.calculations.jobs import CALCULATION, SOLUTION, TOLERANCE
+from app.calculations.jobs import CALCULATION, DECISION, IMPACT, PREVIEW, SOLUTION, TOLERANCE, VARIANT
 from app.catalogue.catalogues import Catalogues, TeamCatalogues
 from app.catalogue.check import CheckInProcess
 from app.catalogue.discovery import find_templates
-from app.designs.asking import Asking
+from app.designs import decisions as decisions_of
 from app.designs.calculation_cache import CalculationCache
-from app.designs.decisions import Decisions
 from app.designs.labels import Labelling
-from app.designs.long_answers import LongAnswers
-from app.designs.previewing import Previews
+from app.designs.preview import Previewed, preview
+from app.designs.questions import Asked, Questions, in_a_process
 from app.designs.regeneration import Regeneration
 from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
 from app.designs.solved import solved
-from app.designs.variants.detail import VariantDetails
+from app.designs.variants.detail import WantedVariant, detailed
 from app.http import problems
 from app.http.streams import Streams
 from app.identity.sealer import Sealer
 from app.identity.service import Identity
-from app.impact.service import Impacts
+from app.impact import survey
 from app.imported_models.programs import assembled as assembled_programs
 from app.imported_models.registry import ImportedModelRegistry
 from app.imported_models.service import IMPORT as MODEL_IMPORT
@@ -127,10 +126,14 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
     register_jobs(jobs, builds, analysing, catalogues, calculations, calculation_cache)
     about = database, catalogues, store, jobs, calculations.steps
-    previews, decisions, impacts = Previews(*about), Decisions(*about), Impacts(*about)
-    solving, tolerances = Asking(SOLUTION, solved, *about), Asking(TOLERANCE, analysed, *about)
-    variant_details = VariantDetails(*about)
-    register_answers(jobs, previews, decisions, solving, tolerances, impacts, variant_details)
+    previews = Questions(PREVIEW, Previewed, preview, *about)
+    decisions = Questions(DECISION, decisions_of.Asked, decisions_of.decided, *about)
+    impacts = Questions(IMPACT, survey.Asked, survey.impact, *about, survey.check)
+    solving = Questions(SOLUTION, Asked, in_a_process(SOLUTION, solved), *about)
+    tolerances = Questions(TOLERANCE, Asked, in_a_process(TOLERANCE, analysed), *about)
+    variant_details = Questions(VARIANT, WantedVariant, detailed, *about)
+    for one in (previews, decisions, impacts, solving, tolerances, variant_details):
+        jobs.register(one.kind, one, one.failed, lane=CALCULATION)
     designs = Designs(database, jobs, catalogues, calculation_cache)
     solids = SolidMaking(database, builds, analysing, settings.workers)
     of_studies = StudyServices(
@@ -196,12 +199,6 @@ def data_checks(
         "space": readiness.Space(folder.path, settings.minimum_free_mb),
     }
     return checks if settings.artifacts_url is None else {**checks, "files": readiness.Files(store)}
-
-
-def register_answers(jobs: Jobs, *answering: LongAnswers) -> None:
-    """Let jobs give the answers for which nobody waited."""
-    for one in answering:
-        jobs.register(one.kind, one, one.failed, lane=CALCULATION)
 
 
 def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:

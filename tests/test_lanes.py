@@ -28,7 +28,7 @@ def item(file, *fixtures):
     ("test", "group"),
     [
         (item("tests/web/test_pages.py", "http"), PAGES),
-        (item("tests/app/test_designs.py", "http", "served"), SERVED),
+        (item("tests/app/designs/test_designs.py", "http", "served"), SERVED),
         (item("tests/app/test_jobs.py"), "tests/app/test_jobs.py"),
         (item("tests/physics/test_oil.py"), "tests/physics/test_oil.py"),
         (item("tests/test_lanes.py"), "tests/test_mutation.py"),
@@ -85,10 +85,14 @@ def test_the_quick_cases_of_a_sampled_test_are_spread_over_all(cases, count, qui
         ),
         ("cad/models/crank_throw_v1.py", "tests/cad/test_cranks_random.py", "tests/app/test_crash.py"),
         ("cad/models/bearing_assembly_v1.py", "tests/cad/test_dxf.py", "tests/app/test_crash.py"),
-        ("cad/freecad/admission.py", "tests/app/brought/test_freecad.py", "tests/app/test_crash.py"),
+        ("cad/freecad/admission.py", "tests/app/imported_models/test_freecad.py", "tests/app/test_crash.py"),
         ("templates/oil_film/oil_film_v2.py", changed.CATALOGUE, "tests/cad/test_cranks_random.py"),
         ("app/storage/database.py", "tests/app/test_crash.py", "tests/physics/test_film_map.py"),
-        ("tests/app/serving.py", "tests/app/test_contract_at_length.py", "tests/physics/test_film_map.py"),
+        (
+            "tests/app/serving.py",
+            "tests/app/http/test_contract_at_length.py",
+            "tests/physics/test_film_map.py",
+        ),
         (
             "tests/references/torsional_frequencies.csv",
             "tests/templates/stiffness/test_torsional_vibration_v1.py",

@@ -35,7 +35,7 @@ def test_related_tests_are_few_and_none_of_the_pages():
 
 
 def test_a_server_is_stopped_where_the_table_of_slow_tests_says_so():
-    assert "tests/app/test_stopping.py" in related("app/http/server.py")
+    assert "tests/app/http/test_stopping.py" in related("app/http/server.py")
 
 
 def row(key, outcome="survived", file="templates/core/x.py", text="a = b + c", after="a = b - c"):
@@ -161,7 +161,7 @@ class TestPlaces:
 class TestObservations:
     """Which tests run a line, from what a run of each file wrote."""
 
-    FILE, OTHER, TEST = "app/jobs/turns.py", "app/jobs/leases.py", "tests/app/test_turns.py"
+    FILE, OTHER, TEST = "app/jobs/turns.py", "app/jobs/leases.py", "tests/app/jobs/test_turns.py"
 
     @pytest.fixture
     def source(self, tmp_path, monkeypatch):

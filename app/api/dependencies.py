@@ -18,18 +18,22 @@ from app.approvals.comments import Comments
 from app.approvals.service import Approving
 from app.calculations.steps import Caller, call_as
 from app.catalogue.catalogues import Catalogues
-from app.designs.asking import Asking
-from app.designs.decisions import Decisions
+from app.designs import decisions
 from app.designs.labels import Labelling
-from app.designs.previewing import Previews
+from app.designs.preview import Previewed
+from app.designs.questions import Asked, Questions
+from app.designs.schemas.decision import Decision
+from app.designs.schemas.designs import Preview
 from app.designs.schemas.solution import DesignSolution
+from app.designs.schemas.variants import VariantDetail
 from app.designs.service import Designs
-from app.designs.variants.detail import VariantDetails
+from app.designs.variants.detail import WantedVariant
 from app.http.access import STILL
 from app.http.clients import TheClient
 from app.http.strict_requests import fingerprint
 from app.identity.service import Identity
-from app.impact.service import Impacts
+from app.impact import survey
+from app.impact.schemas import Impact
 from app.imported_models.service import ModelImports
 from app.jobs.service import Jobs
 from app.observation.readiness import Readiness
@@ -77,12 +81,12 @@ TheLabelling = Annotated[Labelling, Depends(_part("labelling"))]
 TheStudies = Annotated[Studies, Depends(_part("studies"))]
 TheImports = Annotated[Imports, Depends(_part("imports"))]
 TheWorksheets = Annotated[Worksheets, Depends(_part("worksheets"))]
-ThePreviews = Annotated[Previews, Depends(_part("previews"))]
-TheDecisions = Annotated[Decisions, Depends(_part("decisions"))]
-TheSolving = Annotated[Asking[DesignSolution], Depends(_part("solving"))]
-TheTolerances = Annotated[Asking[ToleranceAnalysis], Depends(_part("tolerances"))]
-TheVariantDetails = Annotated[VariantDetails, Depends(_part("variant_details"))]
-TheImpacts = Annotated[Impacts, Depends(_part("impacts"))]
+ThePreviews = Annotated[Questions[Previewed, Preview], Depends(_part("previews"))]
+TheDecisions = Annotated[Questions[decisions.Asked, Decision], Depends(_part("decisions"))]
+TheSolving = Annotated[Questions[Asked, DesignSolution], Depends(_part("solving"))]
+TheTolerances = Annotated[Questions[Asked, ToleranceAnalysis], Depends(_part("tolerances"))]
+TheVariantDetails = Annotated[Questions[WantedVariant, VariantDetail], Depends(_part("variant_details"))]
+TheImpacts = Annotated[Questions[survey.Asked, Impact], Depends(_part("impacts"))]
 TheModels = Annotated[Models, Depends(_part("models"))]
 TheModelImports = Annotated[ModelImports, Depends(_part("model_imports"))]
 TheAnalyses = Annotated[Analyses, Depends(_part("analyses"))]

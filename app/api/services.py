@@ -11,16 +11,20 @@ from app.approvals.service import Approving
 from app.calculations.pool import CalculationPool
 from app.calculations.steps import Steps
 from app.catalogue.catalogues import Catalogues
-from app.designs.asking import Asking
-from app.designs.decisions import Decisions
+from app.designs import decisions as decisions_of
 from app.designs.labels import Labelling
-from app.designs.previewing import Previews
+from app.designs.preview import Previewed
+from app.designs.questions import Asked, Questions
+from app.designs.schemas.decision import Decision
+from app.designs.schemas.designs import Preview
 from app.designs.schemas.solution import DesignSolution
+from app.designs.schemas.variants import VariantDetail
 from app.designs.service import Designs
-from app.designs.variants.detail import VariantDetails
+from app.designs.variants.detail import WantedVariant
 from app.http.streams import Streams
 from app.identity.service import Identity
-from app.impact.service import Impacts
+from app.impact import survey
+from app.impact.schemas import Impact
 from app.imported_models.service import ModelImports
 from app.jobs.service import Jobs
 from app.observation.readiness import Readiness
@@ -54,15 +58,15 @@ class Services:
     answering: Answering
     designs: Designs
     labelling: Labelling
-    previews: Previews
-    decisions: Decisions
+    previews: Questions[Previewed, Preview]
+    decisions: Questions[decisions_of.Asked, Decision]
     studies: Studies
     worksheets: Worksheets
     imports: Imports
-    solving: Asking[DesignSolution]
-    tolerances: Asking[ToleranceAnalysis]
-    variant_details: VariantDetails
-    impacts: Impacts
+    solving: Questions[Asked, DesignSolution]
+    tolerances: Questions[Asked, ToleranceAnalysis]
+    variant_details: Questions[WantedVariant, VariantDetail]
+    impacts: Questions[survey.Asked, Impact]
     models: Models
     model_imports: ModelImports
     analyses: Analyses

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from app.calculations.criteria import rendered
-from app.calculations.jobs import DECISION
+from app.catalogue.catalogues import Catalogues
 from app.designs import repository
 from app.designs.document import Document
 from app.designs.engine.calculate import calculate
@@ -13,13 +13,14 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.decision import Climb, ClimbResult, Trial
 from app.designs.engine.verdicts import Verdicts
 from app.designs.graph import build_graph, raise_if
-from app.designs.long_answers import LongAnswers
+from app.designs.questions import Reply
 from app.designs.reader import settled, starts
 from app.designs.schemas.decision import Decision, Tried
 from app.designs.solid_records import analysed, built
-from app.plain import Json, JsonObject, Raw
+from app.plain import JsonObject, Raw
 from app.presentation.units import System
 from app.schemas.answers import Quantity
+from app.storage.database import Database
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_names
 from templates.core.units.quantity import read
 
@@ -58,60 +59,41 @@ def read_budget(raw: Raw) -> float:
     return seconds
 
 
-class Decisions(LongAnswers):
-    """Decides criteria, makes jobs where that takes long, and is the handler of such jobs."""
+def decided(asked: Asked, database: Database, catalogues: Catalogues) -> Reply[Asked, Decision]:
+    """Return the decision as far as its caller waits for it.
 
-    kind = DECISION
+    Raises
+    ------
+    InvalidInputs
+        If a criterion is named that the design does not have.
+    """
+    number, calculation = _calculated(asked, database, catalogues)
+    names = Verdicts(calculation).names()
+    unknown = (name for name in asked.criteria or () if name not in names)
+    raise_if([fault.within("criteria") for fault in unknown_names(unknown, names, "criterion")])
+    if calculation.deferred:
+        decision = _shown(number, asked, _pending(calculation))
+    else:
+        decision = _shown(number, asked, Climb(calculation, asked.criteria, asked.budget).decide())
+    is_whole = decision.stopped != "pending"
+    return Reply(decision, None if is_whole else replace(asked, revision=number))
 
-    def answer(self, asked: Asked, client: str) -> tuple[Decision, str | None]:
-        """Return the decision as far as its caller waits for it, and the job that completes it, if any.
 
-        Raises
-        ------
-        InvalidInputs
-            If a criterion is named that the design does not have.
-        QueueFull
-            Too many calculations, or jobs, are waiting.
-        """
-        decision = self._decided(asked)
-        if decision.stopped != "pending":
-            return decision, None
-        payload = {
-            "design": asked.design,
-            "revision": decision.revision,
-            "budget": asked.budget,
-            "units": asked.units,
-        }
-        return decision, self.queued(payload, asked.criteria, client)
-
-    def calculated(self, payload: JsonObject, body: Json) -> Decision:
-        """Return the decision about the criteria that a job names."""
-        return self._decided(Asked(criteria=body, **payload))
-
-    def _decided(self, asked: Asked) -> Decision:
-        number, calculation = self._calculated(asked)
-        names = Verdicts(calculation).names()
-        unknown = (name for name in asked.criteria or () if name not in names)
-        raise_if([fault.within("criteria") for fault in unknown_names(unknown, names, "criterion")])
-        if calculation.deferred:
-            return _shown(number, asked, _pending(calculation))
-        return _shown(number, asked, Climb(calculation, asked.criteria, asked.budget).decide())
-
-    def _calculated(self, asked: Asked) -> tuple[int, Calculation]:
-        """Return the revision, the newest if none is named, as it was calculated."""
-        with self.database.read() as session:
-            row = (
-                repository.head(session, asked.design)
-                if asked.revision is None
-                else repository.revision(session, asked.design, asked.revision)
-            )
-        document = Document.model_validate(row.document)
-        graph, faults = build_graph(document, self.catalogues)
-        raise_if(faults)
-        assumed = {**starts(document), **settled(row.results)}
-        calculation = calculate(graph, built(self.database), analysed(self.database), assumed)
-        raise_if(calculation.faults)
-        return row.number, calculation
+def _calculated(asked: Asked, database: Database, catalogues: Catalogues) -> tuple[int, Calculation]:
+    """Return the revision, the newest if none is named, as it was calculated."""
+    with database.read() as session:
+        row = (
+            repository.head(session, asked.design)
+            if asked.revision is None
+            else repository.revision(session, asked.design, asked.revision)
+        )
+    document = Document.model_validate(row.document)
+    graph, faults = build_graph(document, catalogues)
+    raise_if(faults)
+    assumed = {**starts(document), **settled(row.results)}
+    calculation = calculate(graph, built(database), analysed(database), assumed)
+    raise_if(calculation.faults)
+    return row.number, calculation
 
 
 def _pending(calculation: Calculation) -> ClimbResult:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph, raise_if
+from app.designs.questions import Reply
 from app.designs.reader import read_document, resolved, starts
 from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, Status
 from app.designs.solid_records import analysed, built
@@ -24,7 +25,7 @@ from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available
 from app.designs.variants.verdict import merged
 from app.designs.worksheet import previewed
-from app.plain import Raw
+from app.plain import JsonObject
 from app.presentation.units import System
 from app.schemas.answers import Shown, Warning
 from app.solids import measures
@@ -37,26 +38,23 @@ from templates.core.judging.judgement import Judgement
 
 @dataclass(frozen=True)
 class Previewed:
-    """The effect of a change; it is incomplete where something depends on deferred steps."""
+    """A change that is to be previewed, and how.
 
-    content: Preview
-    is_whole: bool
+    The patch is one of the newest revision, if none is named. With `worksheet`, the answer has every step as
+    a revision would hold it, its formulas written out.
+    """
+
+    design: str
+    patch: JsonObject
+    worksheet: bool = False
+    system: System = "si"
+    revision: int | None = None
 
 
-def preview(
-    database: Database,
-    catalogues: Catalogues,
-    design: str,
-    patch: Mapping[str, Raw],
-    *,
-    revision: int | None = None,
-    worksheet: bool = False,
-    system: System = "si",
-) -> Previewed:
+def preview(asked: Previewed, database: Database, catalogues: Catalogues) -> Reply[Previewed, Preview]:
     """Return old and new values for a patch of a design; nothing is saved or built.
 
-    The patch is one of the newest revision, if none is named. With `worksheet`, every step as a revision
-    would hold it, its formulas written out.
+    The answer is incomplete where something depends on deferred steps.
 
     Raises
     ------
@@ -66,11 +64,11 @@ def preview(
     """
     with database.read() as session:
         head = (
-            repository.head(session, design)
-            if revision is None
-            else repository.revision(session, design, revision)
+            repository.head(session, asked.design)
+            if asked.revision is None
+            else repository.revision(session, asked.design, asked.revision)
         )
-    changed = resolved(read_document(merge(head.document, patch)), catalogues)
+    changed = resolved(read_document(merge(head.document, asked.patch)), catalogues)
     catalogues = catalogues.with_drafts(_steps_of(changed))  # a preview keeps nothing
     new, mismatched = _calculated(database, catalogues, changed)
     raise_if(new.faults)  # not those of the old one: the change may be to correct it
@@ -88,11 +86,11 @@ def preview(
         },
         warnings=[*_warnings(steps), *tolerances.warnings(changed.model_dump())],
         model_parameters=_model_parameters(old, new, mismatched),
-    ).in_units(system)
-    if worksheet:
-        content.steps, content.parameters = previewed(new, steps, system), _values(new)
+    ).in_units(asked.system)
+    if asked.worksheet:
+        content.steps, content.parameters = previewed(new, steps, asked.system), _values(new)
     is_deferred = old.deferred or new.deferred or any(outcome.is_deferred for outcome in outcomes)
-    return Previewed(content, is_whole=not is_deferred)
+    return Reply(content, replace(asked, revision=head.number) if is_deferred else None)
 
 
 def _steps_of(document: Document) -> list[tuple[str, int]]:

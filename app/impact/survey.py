@@ -8,9 +8,11 @@ from dataclasses import dataclass, field, replace
 from app.calculations.jobs import IMPACT
 from app.calculations.steps import present_caller
 from app.catalogue.catalogues import Catalogues
+from app.designs import repository as designs
 from app.designs.document import Document
 from app.designs.filters import DesignFilter
 from app.designs.labels import key_of
+from app.designs.questions import Reply
 from app.designs.tasks import CatalogueTask
 from app.impact import repository
 from app.impact.bodies import ImpactIn
@@ -41,6 +43,29 @@ class Asked:
     version: int
     body: ImpactIn
     units: System = "si"
+
+
+def check(asked: Asked, database: Database, catalogues: Catalogues) -> None:
+    """Return if there is what is asked about.
+
+    Raises
+    ------
+    UnknownTemplate
+        If there is no such version, or it is a draft with faults.
+    NotFound
+        If a design is named that there is not.
+    """
+    catalogues.to_try(asked.template, asked.version)
+    with database.read() as session:
+        for id in asked.body.designs or ():
+            designs.design(session, id)
+
+
+def impact(asked: Asked, database: Database, catalogues: Catalogues) -> Reply[Asked, Impact]:
+    """Return the impact of a version; a job asks for it, since it takes long."""
+    catalogues.to_try(asked.template, asked.version)
+    drafts = catalogues.with_drafts([(asked.template, asked.version)])
+    return Reply(Survey(asked, database, drafts).impact().in_units(asked.units))
 
 
 @dataclass

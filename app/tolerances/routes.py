@@ -6,7 +6,7 @@ from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheThreads, TheTolerances, Units
 from app.api.waiting import LATER
-from app.designs.asking import Asked
+from app.designs.questions import Asked
 from app.designs.routes.answers import Id, Prefer
 from app.designs.routes.solution import answer_asked
 from app.http.clients import TheClient

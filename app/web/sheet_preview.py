@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from pydantic import JsonValue
 
-from app.designs.previewing import Change
+from app.designs.preview import Previewed
 from app.designs.routes.designs import list_designs
 from app.designs.schemas.designs import Design, DesignSummary, Preview
 from app.presentation import numbers
@@ -53,8 +53,8 @@ async def tried_in(services: PageServices, id: str, sheet: Sheet, checked: Sheet
         design = await services.run(services.designs.show, id)
         name, is_added = _place(design, sheet)
         step = _step(sheet, checked, is_added=is_added)
-        change = Change(id, {"steps": {name: step}}, worksheet=False, system="si")
-        preview, _ = await services.calculate(PATIENCE, services.previews.answer, change, services.client)
+        change = Previewed(id, {"steps": {name: step}}, worksheet=False, system="si")
+        preview, _ = await services.calculate(PATIENCE, services.previews.in_parts, change, services.client)
     except Refused as refused:
         if refused.status not in REFUSED:
             raise

@@ -9,7 +9,7 @@ from urllib.parse import urlencode
 
 from fastapi import Request, Response
 
-from app.designs import asking
+from app.designs import questions
 from app.designs.schemas.designs import Design
 from app.designs.schemas.solution import DesignRoot, DesignSolution
 from app.designs.solved import SolveDesignIn
@@ -115,7 +115,7 @@ async def _solved(
 ) -> Answered[DesignSolution]:
     """Return the solution, or the job that calculates it where the page does not wait so long."""
     body = services.read(SolveDesignIn, question.body())
-    wanted = asking.Asked(
+    wanted = questions.Asked(
         id, body.model_dump_json(exclude_unset=True, by_alias=True), units=units_of(request)
     )
     answer, job = await services.calculate(PATIENCE, services.solving.answer, wanted, services.client)

@@ -9,7 +9,7 @@ from math import inf
 from fastapi import Request, Response
 from pydantic import JsonValue
 
-from app.designs.previewing import Change
+from app.designs.preview import Previewed
 from app.designs.routes.variants import variants_of
 from app.designs.schemas.designs import Design, RevisionWorksheet
 from app.designs.schemas.network import NetworkName
@@ -157,7 +157,9 @@ async def study_form(
     network = await services.run(services.designs.network, id)
     revision = await services.calculate(None, services.reports.worksheet, id, design.revision, "si")
     preview = (
-        await services.calculate(inf, services.previews.answer, Change(id, {}, False, "si"), services.client)
+        await services.calculate(
+            inf, services.previews.in_parts, Previewed(id, {}, False, "si"), services.client
+        )
     )[0]
     places, named = varied(design, network), outputs(network)
     aside = set_aside(design, network, places, present(revision, preview))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from fastapi import Request, Response
 
-from app.designs.asking import Asked
+from app.designs.questions import Asked
 from app.designs.schemas.designs import Design
 from app.presentation import bars
 from app.schemas.answers import Quantity

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Depends, Request, Response
 
 from app.calculations.schemas.evaluations import Output
 from app.catalogue.routes.templates import show_template
-from app.designs.previewing import Change
+from app.designs.preview import Previewed
 from app.designs.routes.revisions import show_revision
 from app.designs.schemas.designs import Design, Preview
 from app.presentation import numbers
@@ -100,8 +100,8 @@ async def _page(
         raise Refused.because(MISSING, f"no step of the design uses {template}")
     preview = None
     try:
-        change = Change(id, _patch(design, template, number), worksheet=False, system=units_of(request))
-        preview = await services.calculate(PATIENCE, services.previews.quick, change)
+        change = Previewed(id, _patch(design, template, number), worksheet=False, system=units_of(request))
+        preview = await services.calculate(PATIENCE, services.previews.known, change)
     except Refused as wrong:
         if wrong.status != ILL_NAMED:
             raise

@@ -121,11 +121,12 @@ def same_solid(case: Case, old: Values, new: Values) -> None:
     inertia = max(abs(value) for measure, value in one.measures.items() if measure.startswith("inertia"))
     for measure, value in one.measures.items():
         along = shift if measure in ("centre_z", "low_z", "high_z") else 0.0
-        least = 1e-9 * inertia if measure.startswith("inertia") else 0.0
+        least = 1e-7 * inertia if measure.startswith("inertia") else 0.0
         if measure.startswith(("centre", "low", "high")):
             least = 1e-5  # [mm], the kernel's boxes are good to some 1e-6
         found = other.measures[measure] - along
-        assert found == pytest.approx(value, rel=1e-9, abs=least), (old, measure)
+        # models draw in steps of 1e-9 mm, and the thinnest wall here has 0.04 mm
+        assert found == pytest.approx(value, rel=1e-7, abs=least), (old, measure)
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case[0]}_v{case[1]}")

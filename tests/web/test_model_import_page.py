@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import expect
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "app" / "brought"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "app" / "imported_models"))
 
 from freecad_files import bush, needs_freecad
 

@@ -40,5 +40,5 @@ async def decide_criteria(
     wanted = body or DecideIn()
     asked = Asked(id, wanted.criteria, read_budget(wanted.budget), units=units)
     seconds = patience(prefer, LONGEST_BUDGET)
-    answer, job = await threads.run_within(seconds, request, decisions.answer, asked, client)
+    answer, job = await threads.run_within(seconds, request, decisions.in_parts, asked, client)
     return accepted(job, answer) if job else written(answer)

@@ -29,7 +29,7 @@ from app.designs import repository, views
 from app.designs.bodies import LONGEST_NOTE, PATCH, CopyIn, DesignIn
 from app.designs.filters import TEMPLATE, DesignFilter
 from app.designs.labels import key_of, tags_of
-from app.designs.previewing import Change
+from app.designs.preview import Previewed
 from app.designs.releases import released_of
 from app.designs.routes.answers import (
     CHANGED,
@@ -204,10 +204,10 @@ async def preview_design(
     prefer: Prefer = None,
 ) -> Response:
     """Preview the effect of a change on outputs and model parameters; nothing is saved."""
-    change = Change(id, noted(body)[0], worksheet, units)
+    change = Previewed(id, noted(body)[0], worksheet, units)
     if within is not None:
-        return written(await threads.run_within(within, request, previews.quick, change))
-    answer, job = await threads.run_within(seconds_waited(prefer), request, previews.answer, change, client)
+        return written(await threads.run_within(within, request, previews.known, change))
+    answer, job = await threads.run_within(seconds_waited(prefer), request, previews.in_parts, change, client)
     return accepted(job, answer) if job else written(answer)
 
 

@@ -7,7 +7,7 @@ from fastapi import APIRouter, Request, Response
 from app.api.dependencies import ExpensiveSteps, TheSolving, TheThreads, Units
 from app.api.threads import Threads
 from app.api.waiting import LATER, accepted, patience, written
-from app.designs.asking import A, Asked, Asking
+from app.designs.questions import A, Asked, Questions
 from app.designs.routes.answers import Id, Prefer
 from app.designs.schemas.solution import DesignSolution
 from app.designs.solved import SolveDesignIn
@@ -43,12 +43,14 @@ async def solve_design(
 
 
 async def answer_asked(
-    asking: Asking[A], asked: Asked, threads: Threads, request: Request, client: str, prefer: str | None
+    questions: Questions[Asked, A],
+    asked: Asked,
+    threads: Threads,
+    request: Request,
+    client: str,
+    prefer: str | None,
 ) -> Response:
-    """Return the answer to a question about a design.
-
-    202 with its job where it takes longer than is waited for.
-    """
-    seconds = patience(prefer, asking.steps.deadline)
-    answer, job = await threads.run_within(seconds, request, asking.answer, asked, client)
+    """Return the answer to a question about a design; 202 with its job where that takes too long."""
+    seconds = patience(prefer, questions.steps.deadline)
+    answer, job = await threads.run_within(seconds, request, questions.answer, asked, client)
     return accepted(job) if answer is None else written(answer)

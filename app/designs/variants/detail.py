@@ -5,26 +5,25 @@ A revision keeps the single outputs of its variants; the curves of 200 variants 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-
-from pydantic import TypeAdapter
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 from app.calculations import rendering
 from app.calculations.criteria import rendered
-from app.calculations.jobs import VARIANT
 from app.calculations.schemas.evaluations import Output
+from app.catalogue.catalogues import Catalogues
 from app.designs import repository
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.graph import raise_if
-from app.designs.long_answers import LongAnswers
+from app.designs.questions import Reply
 from app.designs.schemas.variants import VariantDetail
 from app.designs.solid_records import analysed, built
 from app.designs.variants.names import BASE
 from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available, together
 from app.presentation.units import System
+from app.storage.database import Database
 from app.storage.errors import NotFound
 from templates.core.errors import Fault, InvalidInputs, unknown_names
 from templates.core.judging.summary import worst_first
@@ -47,46 +46,27 @@ class WantedVariant:
     system: System = "si"
 
 
-_WANTED = TypeAdapter(WantedVariant)
+def detailed(
+    wanted: WantedVariant, database: Database, catalogues: Catalogues
+) -> Reply[WantedVariant, VariantDetail]:
+    """Return the variant, unless its caller does not wait so long.
 
-
-class VariantDetails(LongAnswers):
-    """Calculates single variants, makes jobs of those that take long, and is the handler of such jobs."""
-
-    kind = VARIANT
-
-    def answer(self, wanted: WantedVariant, client: str) -> tuple[VariantDetail | None, str | None]:
-        """Return the variant, or the job that calculates it where its caller does not wait so long.
-
-        Raises
-        ------
-        NotFound
-            If there is no such design, revision or variant.
-        InvalidInputs
-            If an output is unknown, or the variant cannot be calculated.
-        QueueFull, TooManyCalculations
-            Too many jobs, or calculations, are waiting.
-        """
-        number, outcome = self._calculated(wanted)
-        if not outcome.is_deferred:
-            return _shown(wanted, number, outcome), None
-        payload = {**vars(wanted), "revision": number, "outputs": list(wanted.outputs)}
-        return None, self.queued(payload, None, client)
-
-    def calculated(self, payload: Mapping[str, object], body: object) -> VariantDetail:
-        """Return the whole answer to what a job holds."""
-        wanted = _WANTED.validate_python(payload)
-        return _shown(wanted, *self._calculated(wanted))
-
-    def _calculated(self, wanted: WantedVariant) -> tuple[int, Outcome]:
-        with self.database.read() as session:
-            number = wanted.revision or repository.head(session, wanted.design).number
-            document = Document.model_validate(repository.document(session, wanted.design, number))
-        own = _alone(document, wanted)
-        available = Available(self.catalogues, built(self.database), analysed(self.database))
-        [outcome] = together(own, available)
-        raise_if(list(outcome.faults))
-        return number, outcome
+    Raises
+    ------
+    NotFound
+        If there is no such design, revision or variant.
+    InvalidInputs
+        If an output is unknown, or the variant cannot be calculated.
+    """
+    with database.read() as session:
+        number = wanted.revision or repository.head(session, wanted.design).number
+        document = Document.model_validate(repository.document(session, wanted.design, number))
+    own = _alone(document, wanted)
+    [outcome] = together(own, Available(catalogues, built(database), analysed(database)))
+    raise_if(list(outcome.faults))
+    if outcome.is_deferred:
+        return Reply(None, replace(wanted, revision=number))
+    return Reply(_shown(wanted, number, outcome))
 
 
 def _alone(document: Document, wanted: WantedVariant) -> Document:

@@ -13,7 +13,7 @@ from app.client import Client
 from app.identity.principal import Principal, acting_as
 from app.identity.service import Changes
 
-sys.path.append(str(Path(__file__).parent / "worksheet_import"))  # mathcad_files
+sys.path.append(str(Path(__file__).parents[1] / "worksheet_import"))  # mathcad_files
 from mathcad_files import define, math, prime, scale
 
 BAR = {"parameters": {"diameter": "27 mm", "length": "43 mm"}, "level": "coarse", "outputs": ["surface"]}

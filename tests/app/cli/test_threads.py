@@ -11,7 +11,7 @@ import victims
 from app.workers.local import LocalProcesses
 from app.workers.threads import ONE_THREAD
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 SHOWN = """
 import os, sys, types
 from app.__main__ import main

@@ -8,7 +8,7 @@ from prometheus_client.parser import text_string_to_metric_families
 from app.observation import metrics
 from app.settings import Settings
 
-PAGE = Path(__file__).parents[2] / "docs" / "operating" / "metrics.md"
+PAGE = Path(__file__).parents[3] / "docs" / "operating" / "metrics.md"
 ROW = re.compile(r"^\| `(\w+)` \| (\w+) \| ([^|]+) \|([^|]*)\| ([^|]+) \| ([^|]+) \|$", re.MULTILINE)
 
 

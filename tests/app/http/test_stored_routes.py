@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-sys.path.append(str(Path(__file__).parent / "worksheet_import"))  # mathcad_files
+sys.path.append(str(Path(__file__).parents[1] / "worksheet_import"))  # mathcad_files
 
 from stored_routes import ROUTES, check_conditions, path_of
 

@@ -17,7 +17,7 @@ from app.cli import demo as demo_command
 from app.cli import demonstration, main, serve
 from app.client import Client
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 def by_command(data):

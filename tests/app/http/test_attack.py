@@ -17,7 +17,7 @@ from sqlalchemy import func, select
 from app.http.roles import needs_of, routes_of
 from app.storage.tables import AuditRow
 
-sys.path.append(str(Path(__file__).parent / "worksheet_import"))  # mathcad_files
+sys.path.append(str(Path(__file__).parents[1] / "worksheet_import"))  # mathcad_files
 from mathcad_files import define, math, prime, scale
 
 DESCRIBED = {f"{method.upper()} {path}" for path, item in description()["paths"].items() for method in item}

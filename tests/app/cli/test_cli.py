@@ -14,7 +14,7 @@ from app.calculations.bodies import OIL_FILM
 from app.cli.main import main
 
 INPUTS = [f"{name}={value}" for name, value in OIL_FILM.items()]
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 def run(*arguments):

@@ -124,8 +124,8 @@ def test_an_impact_that_nobody_waits_for_is_a_job_that_keeps_its_answer(http, be
 
 def test_a_job_that_was_cancelled_calculates_nothing(bearings, served):
     services, cancelled = served.app.state.services, threading.Event()
-    body = services.store.put(b'{"tags": ["impact"]}')
-    payload = {"template": "oil_film", "version": 2, "units": "si", "body": body}
+    question = b'{"template": "oil_film", "version": 2, "body": {"tags": ["impact"]}, "units": "si"}'
+    payload = {"body": services.store.put(question)}
     job = Job(
         "none", "impact", "running", None, None, payload, 1, 0, 0.0, [], None, None, "", ""
     )  # fmt: skip
