@@ -122,7 +122,7 @@ class Questions(Generic[Q, A]):
         self._check(question, self.database, self.catalogues)
         return self.queued(question, client)
 
-    def known(self, question: Q) -> A:
+    def at_once(self, question: Q) -> A:
         """Return the answer as far as it is known while its caller waits; no job is made for the rest."""
         answer = self._reply(question).answer
         assert answer is not None, "a job waits for the whole answer, and a page asks for what has parts"
@@ -157,7 +157,7 @@ class Questions(Generic[Q, A]):
         question = self._asked.validate_python(from_json(self.store.read(job.payload["body"])))
         try:
             with calling(self.steps, job, context, f"job:{job.id}", "jobs"):
-                answer = self.known(question)
+                answer = self.at_once(question)
         except FAILURES as error:
             raise JobFailed(error) from error
         content = answer.model_dump_json(by_alias=True, exclude_unset=True).encode()

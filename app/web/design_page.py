@@ -192,7 +192,7 @@ async def _form(request: Request, services: PageServices, design: Design, refusa
     has_parameters = bool(design.parameters)  # only with the worksheet a preview has their values
     change = Previewed(id, {}, worksheet=has_parameters, system=units_of(request))
     has_values = has_parameters or bool(design.models)  # the page shows nothing else of a preview
-    preview = await services.calculate(within, services.previews.known, change) if has_values else None
+    preview = await services.calculate(within, services.previews.at_once, change) if has_values else None
     before = await _before(request, services, design)
     tables = await library(services) if templates else []
     verdict = _verdict(revision, design, templates)

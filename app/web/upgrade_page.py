@@ -101,7 +101,7 @@ async def _page(
     preview = None
     try:
         change = Previewed(id, _patch(design, template, number), worksheet=False, system=units_of(request))
-        preview = await services.calculate(PATIENCE, services.previews.known, change)
+        preview = await services.calculate(PATIENCE, services.previews.at_once, change)
     except Refused as wrong:
         if wrong.status != ILL_NAMED:
             raise

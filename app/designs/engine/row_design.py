@@ -73,8 +73,8 @@ class RowDesign:
         if wanted not in self._needs:
             if len(self._needs) >= MOST_PREPARED:
                 self._needs.clear()
-            known = self.varied | self.measured.keys()
-            self._needs[wanted] = needs(self.graph, wanted.references, known, wanted.inside)
+            given = self.varied | self.measured.keys()
+            self._needs[wanted] = needs(self.graph, wanted.references, given, wanted.inside)
         return self._needs[wanted]
 
     @cached_property
@@ -115,8 +115,8 @@ class RowDesign:
         if key not in self._prepared:
             if len(self._prepared) >= MOST_PREPARED:
                 self._prepared.clear()
-            due, known = self.needs(wanted), self.measured
-            shared = Calculation(self.graph, known, needs=due, moving=self.moving, levels=dict(pinned))
+            due, given = self.needs(wanted), self.measured
+            shared = Calculation(self.graph, given, needs=due, moving=self.moving, levels=dict(pinned))
             self._prepared[key] = constants(shared)
         shared = self._prepared[key]
         return replace(shared, started=dict(shared.started))  # no row has started at any level yet

@@ -94,14 +94,14 @@ class Shifts:
 
     def upstream(self, references: Iterable[Reference]) -> Upstream:
         """Return the origins of some values, without the errors of their own steps."""
-        return self.known(_joined(map(self._beneath_of, references)))
+        return self.by_error(_joined(map(self._beneath_of, references)))
 
     def behind(self, reference: Reference) -> Upstream:
         """Return the origins of a value for those who use it.
 
         The error of its own step, and those beneath it.
         """
-        return self.known(self._beneath_of(reference) | self._own(reference))
+        return self.by_error(self._beneath_of(reference) | self._own(reference))
 
     def unknown(self, upstream: Upstream) -> Mask:
         """Return the rows in which the error of any output is not known."""
@@ -133,7 +133,7 @@ class Shifts:
             for name, reference in references.items()
         }
 
-    def known(self, origins: Origins) -> Upstream:
+    def by_error(self, origins: Origins) -> Upstream:
         """Return origins by what is known of their errors; those that are exact are left out."""
         if origins == NONE:
             return NOTHING

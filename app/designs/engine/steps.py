@@ -299,10 +299,10 @@ def estimate_rows(step: StepRows, evaluations: Evaluations, member: str) -> RowE
 
     Why there is none, if no row has one.
     """
-    found = [(part, estimate_of(evaluated, member)) for part, evaluated in evaluations]
-    present = [(part, one) for part, one in found if isinstance(one, Estimate)]
+    estimates = [(part, estimate_of(evaluated, member)) for part, evaluated in evaluations]
+    present = [(part, one) for part, one in estimates if isinstance(one, Estimate)]
     if not present:
-        return next((one for _, one in found if isinstance(one, Absent)), Absent())
+        return next((one for _, one in estimates if isinstance(one, Absent)), Absent())
     if not step.has_rows:
         return RowEstimate(present[0][1])
     axes = max(one.axes for _, one in present)

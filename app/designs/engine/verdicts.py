@@ -203,9 +203,9 @@ class Verdicts:
         absent |= self._waiting_limits(block, criterion) if block.related else {}
         if absent:
             return judge(criterion, estimates, absent, noted=more, instead=instead)
-        found = {name: RowEstimate(one) for name, one in estimates.items()}
+        rows = {name: RowEstimate(one) for name, one in estimates.items()}
         along = along_of(evaluated.template, criterion.names)
-        return self._judged(subject, found, along, more, instead)
+        return self._judged(subject, rows, along, more, instead)
 
     def _waiting_limits(self, block: Block, criterion: Criterion) -> dict[str, Absent]:
         """Return the limits whose relations have no value yet.
@@ -221,9 +221,9 @@ class Verdicts:
 
     def _of_design(self, subject: Subject, demand: Demand) -> Judgement:
         """Return a criterion that the design writes itself."""
-        found = {name: self._estimate(reference) for name, reference in demand.uses.items()}
-        estimates = {name: one for name, one in found.items() if isinstance(one, RowEstimate)}
-        absent = {name: one for name, one in found.items() if isinstance(one, Absent)}
+        values = {name: self._estimate(reference) for name, reference in demand.uses.items()}
+        estimates = {name: one for name, one in values.items() if isinstance(one, RowEstimate)}
+        absent = {name: one for name, one in values.items() if isinstance(one, Absent)}
         criterion, along = subject.criterion, self._along(demand)
         more = {"source": criterion.source, "waived": demand.written.waived, **self._stated_by(demand)}
         if absent:
@@ -375,13 +375,13 @@ class Verdicts:
         block = subject.block
         if block is not None and block.is_model:
             return {}
-        found = {
+        values = {
             name: self._inside(reference)
             if block is not None and reference.analysis != LIMITS
             else self._estimate(reference)
             for name, reference in subject.references.items()
         }
-        estimates = {name: one for name, one in found.items() if isinstance(one, RowEstimate)}
+        estimates = {name: one for name, one in values.items() if isinstance(one, RowEstimate)}
         for limit in subject.criterion.limits:
             if limit.name not in estimates and (given := self._limit(subject, limit, estimates)) is not None:
                 estimates[limit.name] = given

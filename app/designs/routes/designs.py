@@ -206,7 +206,7 @@ async def preview_design(
     """Preview the effect of a change on outputs and model parameters; nothing is saved."""
     change = Previewed(id, noted(body)[0], worksheet, units)
     if within is not None:
-        return written(await threads.run_within(within, request, previews.known, change))
+        return written(await threads.run_within(within, request, previews.at_once, change))
     answer, job = await threads.run_within(seconds_waited(prefer), request, previews.in_parts, change, client)
     return accepted(job, answer) if job else written(answer)
 

@@ -56,4 +56,4 @@ def test_property_a_long_chain_of_relations_is_followed():
 def test_an_output_without_an_error_is_not_calculated_again(error):
     """Of an unknown error there is no end either."""
     exact = Shifts(SimpleNamespace(count=1), lambda _: RowEstimate(Estimate(1.0, error)))
-    assert not exact.known(Origins(frozenset({FILM, LOSS}))).uncertain
+    assert not exact.by_error(Origins(frozenset({FILM, LOSS}))).uncertain
