@@ -33,6 +33,7 @@ ABOUT = {
     "tests/app/imported_models/test_assembly_page.py": ("app/imported_models/*.py", *WEB),
     "tests/app/calculations/processes/test_calculations_in_processes.py": (
         "app/*calculations/*.py",
+        "app/pool/*.py",
         "app/*workers/*.py",
     ),
     "tests/app/solids/test_analysis_bore.py": ("app/solids/*.py", "cad/analysis/*.py"),
@@ -135,11 +136,13 @@ ABOUT = {
         "app/*jobs/*.py",
         "app/*workers/*.py",
         "app/calculations/*.py",
+        "app/pool/*.py",
     ),
     "tests/app/designs/test_saves_as_jobs.py": (
         "app/*jobs/*.py",
         "app/designs/*.py",
         "app/calculations/*.py",
+        "app/pool/*.py",
     ),
     "tests/app/worksheets/test_sheet_start.py": ("app/worksheets/*.py", "app/*storage/*.py"),
     "tests/app/studies/test_study_resumes.py": ("app/studies/*.py",),

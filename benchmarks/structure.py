@@ -27,7 +27,7 @@ RESOURCE = frozenset({"routes", "schemas", "bodies", "views", "repository", "ser
 
 REASONS: dict[str, str] = {
     "app.calculations.sizes": "memory that any value holds; knows nothing of the cache that asks",
-    "app.calculations.turns": "the rule of turns between clients alone, tested by itself",
+    "app.pool.turns": "the rule of turns between clients alone, tested by itself",
     "app.client.approval_operations": "the calls on one resource, as every resource has them in the client",
     "app.client.identity_operations": "the calls on one resource, as every resource has them in the client",
     "app.client.model_operations": "the calls on one resource, as every resource has them in the client",

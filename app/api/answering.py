@@ -10,14 +10,14 @@ from fastapi import Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.waiting import accepted, client_left, patience
-from app.calculations.errors import TooManyCalculations
 from app.calculations.jobs import CalculationJobs
 from app.calculations.operations import LARGE, Question, answered, check, checked
-from app.calculations.pool import Calculation, CalculationPool
-from app.calculations.sources import source_of
 from app.catalogue.catalogues import Catalogues
 from app.http.clients import get_client
 from app.http.pace import PiecesResponse
+from app.pool.errors import TooManyCalculations
+from app.pool.pool import Calculation, CalculationPool
+from app.pool.sources import source_of
 from app.workers.errors import JobCancelled
 from templates.core.errors import UnreleasedTemplate
 from templates.core.language.template import Template

@@ -16,7 +16,6 @@ from app.api.services import Services
 from app.api.threads import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import Approving
-from app.calculations.steps import Caller, call_as
 from app.catalogue.catalogues import Catalogues
 from app.designs import decisions
 from app.designs.labels import Labelling
@@ -37,6 +36,7 @@ from app.impact.schemas import Impact
 from app.imported_models.service import ModelImports
 from app.jobs.service import Jobs
 from app.observation.readiness import Readiness
+from app.pool.steps import Caller, call_as
 from app.presentation.units import System
 from app.reports.paper import Press
 from app.reports.service import Reports

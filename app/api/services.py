@@ -8,8 +8,6 @@ from app.api.answering import Answering
 from app.api.threads import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import Approving
-from app.calculations.pool import CalculationPool
-from app.calculations.steps import Steps
 from app.catalogue.catalogues import Catalogues
 from app.designs import decisions as decisions_of
 from app.designs.labels import Labelling
@@ -28,6 +26,8 @@ from app.impact.schemas import Impact
 from app.imported_models.service import ModelImports
 from app.jobs.service import Jobs
 from app.observation.readiness import Readiness
+from app.pool.pool import CalculationPool
+from app.pool.steps import Steps
 from app.reports.paper import Press
 from app.reports.service import Reports
 from app.settings import Settings

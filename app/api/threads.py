@@ -11,7 +11,7 @@ from anyio import CapacityLimiter, to_thread
 from fastapi import Request
 
 from app.api.waiting import client_left
-from app.calculations.steps import Caller, present_caller
+from app.pool.steps import Caller, present_caller
 
 P = ParamSpec("P")
 T = TypeVar("T")

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from functools import partial
 
 from app.calculations.jobs import CALCULATION, CalculationJobs
-from app.calculations.pool import CalculationPool
-from app.calculations.processes import CalculationProcesses
-from app.calculations.steps import Steps
 from app.catalogue.catalogues import Catalogues
 from app.jobs.service import Jobs
 from app.observation import metrics
+from app.pool.pool import CalculationPool
+from app.pool.processes import CalculationProcesses
+from app.pool.steps import Steps
 from app.settings import Settings
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database

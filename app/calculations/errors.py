@@ -1,10 +1,8 @@
 """Errors of calculations, besides the inputs that templates refuse.
 
-QueueFull
- └── TooManyCalculations   as many wait as may
-StepDeferred               an expensive step was not calculated in the time that its caller waits
-InvalidBody                a body that was read in a calculation process is not what the operation takes
-NoArray                    an answer is wanted as an array and does not fit one
+InvalidBody     a body that was read in a calculation process is not what the operation takes
+NoArray         an answer is wanted as an array and does not fit one
+TooManyValues   an answer would hold more values than the service gives at once
 """
 
 from __future__ import annotations
@@ -14,15 +12,6 @@ from typing import Self
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from app.jobs.errors import QueueFull
-
-
-class TooManyCalculations(QueueFull):
-    """The queue of calculations is full; the client may try again after some time [s]."""
-
-    def __str__(self) -> str:
-        return f"Too many calculations are waiting. Try again in {self.retry_after} s."
-
 
 class TooManyValues(Exception):
     """The answer would hold more values than the service gives at once."""
@@ -30,10 +19,6 @@ class TooManyValues(Exception):
 
 class NoArray(Exception):
     """The outputs do not fit one array of numbers."""
-
-
-class StepDeferred(Exception):
-    """An expensive step was not calculated in the time that its caller waits; a job is to do it."""
 
 
 class InvalidBody(Exception):

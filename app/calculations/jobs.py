@@ -13,12 +13,12 @@ from sqlalchemy.orm import Session
 
 from app.calculations.errors import InvalidBody, NoArray, TooManyValues
 from app.calculations.operations import Question, answered
-from app.calculations.pool import Calculation, CalculationPool
-from app.calculations.sources import source_of
 from app.catalogue.catalogues import Catalogues
 from app.jobs import repository
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.plain import Json, JsonObject
+from app.pool.pool import Calculation, CalculationPool
+from app.pool.sources import source_of
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, CannotRebuild

@@ -17,8 +17,8 @@ from app.calculations.array_files import MEDIA_TYPES, Form, npy
 from app.calculations.bodies import Asked, EvaluateIn, SolveIn
 from app.calculations.errors import InvalidBody
 from app.calculations.service import check_evaluate, check_solve, evaluated, run_evaluate, run_solve
-from app.calculations.sources import Source, loaded
 from app.calculations.worksheet import run_worksheet
+from app.pool.sources import Source, loaded
 from app.presentation.units import System
 from app.workers.pieces import Pieces
 from templates.core.language.template import Template

@@ -7,8 +7,8 @@ import numpy as np
 from app.calculations import rendering
 from app.calculations.bodies import EvaluateIn, SolveIn
 from app.calculations.errors import TooManyValues
-from app.calculations.size import points
 from app.plain import JsonObject
+from app.pool.size import points
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.question import read_question
 from templates.core.language.request import read_request, require_points

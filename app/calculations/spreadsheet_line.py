@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from itertools import zip_longest
 
 from app.calculations.rendering import evaluation
-from app.calculations.sources import Source, loaded
 from app.plain import Raw
+from app.pool.sources import Source, loaded
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.language.evaluate import evaluate
 

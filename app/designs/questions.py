@@ -15,15 +15,15 @@ from pydantic import TypeAdapter
 from pydantic_core import from_json, to_json
 from sqlalchemy.orm import Session
 
-from app.calculations.errors import StepDeferred
 from app.calculations.jobs import place_of_answer
-from app.calculations.steps import Steps, begun_steps, calling, in_the_pool
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository
 from app.designs.errors import DesignError
 from app.designs.tasks import DesignTask
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.plain import JsonObject
+from app.pool.errors import StepDeferred
+from app.pool.steps import Steps, begun_steps, calling, in_the_pool
 from app.presentation.units import System
 from app.schemas.answers import Answer
 from app.storage.artifacts import Artifacts

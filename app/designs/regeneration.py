@@ -6,8 +6,6 @@ from collections.abc import Mapping
 
 from sqlalchemy.orm import Session
 
-from app.calculations.pool import Lane
-from app.calculations.steps import Steps, calling
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository
 from app.designs.analyses import measured_unit
@@ -28,6 +26,8 @@ from app.designs.variants.solids import Describe, Settling, plain_problem
 from app.designs.variants.together import Available, together
 from app.jobs.service import Completion, Job, JobContext, JobFailed
 from app.plain import Json, JsonObject
+from app.pool.pool import Lane
+from app.pool.steps import Steps, calling
 from app.reference import Reference
 from app.solids.analysis_process import Analysing
 from app.solids.builds import Builds

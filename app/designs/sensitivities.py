@@ -13,7 +13,6 @@ from functools import cached_property
 
 import numpy as np
 
-from app.calculations.cost import EXPENSIVE
 from app.catalogue.catalogues import Catalogues
 from app.designs.analyses import is_table
 from app.designs.document import Document
@@ -25,6 +24,7 @@ from app.designs.network import Subject
 from app.designs.origins import literals_behind, measures_behind, through_solids
 from app.designs.schemas.designs import Sensitivity
 from app.designs.slopes import Local, Slopes, slope_in, slopes_at
+from app.pool.cost import EXPENSIVE
 from app.presentation.units import System, shown_unit
 from app.reference import Reference
 from templates.core.arrays import Array

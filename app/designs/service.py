@@ -7,8 +7,6 @@ from dataclasses import dataclass, replace
 
 from sqlalchemy.orm import Session
 
-from app.calculations.begun import Begun
-from app.calculations.steps import begun_steps
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, views
 from app.designs.automap import proposals
@@ -32,6 +30,8 @@ from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available
 from app.jobs.service import Jobs
 from app.plain import JsonObject, Raw
+from app.pool.pending_calculations import PendingCalculations
+from app.pool.steps import begun_steps
 from app.presentation.units import System
 from app.reference import Reference
 from app.solids.ages import renew
@@ -71,7 +71,7 @@ class Draft:
     written: Written
     kind: str
     is_deferred: bool
-    begun: Begun | None  # what the job takes over
+    begun: PendingCalculations | None  # what the job takes over
 
 
 class Designs:

@@ -7,10 +7,10 @@ from typing import TypeVar
 
 from pydantic_core import from_json
 
-from app.calculations.sources import Source, loaded, source_of
 from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document
 from app.plain import JsonObject
+from app.pool.sources import Source, loaded, source_of
 from app.storage.tables import canonical_json
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue

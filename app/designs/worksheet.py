@@ -9,17 +9,17 @@ from typing import NamedTuple, Self
 import numpy as np
 from cachetools import LRUCache
 
-from app.calculations.begun import fingerprint
 from app.calculations.cache import results as cache
-from app.calculations.cost import EXPENSIVE
-from app.calculations.errors import StepDeferred
 from app.calculations.rendering import identity
 from app.calculations.schemas.evaluations import UsedInput, WorkedFormula
-from app.calculations.steps import evaluated_step
 from app.calculations.worksheet import formulas
 from app.designs.engine.calculation import Calculation
 from app.designs.schemas.designs import PreviewedStep, Revision, RevisionStep, RevisionWorksheet
 from app.plain import JsonObject, Raw
+from app.pool.cost import EXPENSIVE
+from app.pool.errors import StepDeferred
+from app.pool.pending_calculations import fingerprint
+from app.pool.steps import evaluated_step
 from app.presentation.units import System
 from templates.core.catalogue.finding import Catalogue
 from templates.core.catalogue.loading import is_outside

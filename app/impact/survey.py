@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from app.calculations.jobs import IMPACT
-from app.calculations.steps import present_caller
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository as designs
 from app.designs.document import Document
@@ -21,6 +20,7 @@ from app.impact.process import Compared, compared
 from app.impact.schemas import DesignImpact, Impact
 from app.impact.severity import rank
 from app.impact.task import Batch, DesignAt, missing, uses
+from app.pool.steps import present_caller
 from app.presentation.units import System
 from app.schemas.answers import Version
 from app.storage.database import Database

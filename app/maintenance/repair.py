@@ -12,13 +12,13 @@ from typing import TypeVar, TypeVarTuple
 from app.calculations.errors import InvalidBody, NoArray, TooManyValues
 from app.calculations.jobs import CALCULATION, place_of_answer, question_of
 from app.calculations.operations import answered
-from app.calculations.sources import source_of
 from app.catalogue.catalogues import Catalogues, loaded
 from app.imported_models.programs import Programs, assembled
 from app.imported_models.registry import ImportedModelRegistry
 from app.jobs import repository as jobs
 from app.maintenance.check import Findings, Say
 from app.maintenance.rows import Named
+from app.pool.sources import source_of
 from app.settings import Settings
 from app.solids import analysis_rows as analyses
 from app.solids.analysis_process import Analysing

@@ -103,7 +103,7 @@ RELEASES = """
 
 def broken_worksheets(connection: sqlite3.Connection) -> Iterator[str]:
     """Yield released worksheets whose text or results are not those of the release, a sentence each."""
-    from app.calculations.sources import SheetSource  # templates, which the other checks do without
+    from app.pool.sources import SheetSource  # templates, which the other checks do without
     from app.worksheets.examination import as_released
 
     if not _has_table(connection, "worksheet_version"):

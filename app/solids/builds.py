@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterable, Mapping
 
 from sqlalchemy.orm import Session
 
-from app.calculations.sources import FileSource, Source, loaded, source_of
 from app.imported_models.programs import Programs
+from app.pool.sources import FileSource, Source, loaded, source_of
 from app.solids import measures, rows
 from app.solids.ages import is_fresh, renew
 from app.solids.shapes import built_by_another, shape_of

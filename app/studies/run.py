@@ -17,13 +17,13 @@ from typing import TypeVar
 import numpy as np
 from sqlalchemy.orm import Session
 
-from app.calculations.pool import Calculation, CalculationPool
-from app.calculations.steps import Steps
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository as designs
 from app.designs.document import Document
 from app.jobs.service import Completion, Job, JobContext, JobFailed, JobRests, Jobs
 from app.plain import JsonObject
+from app.pool.pool import Calculation, CalculationPool
+from app.pool.steps import Steps
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, CannotRebuild

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from app.calculations.steps import calling
 from app.designs import repository as designs
 from app.designs.bodies import LONGEST_NOTE
 from app.designs.service import Designs
 from app.plain import JsonObject
+from app.pool.steps import calling
 from app.storage.idempotency import Once
 from app.studies.bodies import StudyIn
 from app.studies.relations import words

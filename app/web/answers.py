@@ -12,10 +12,10 @@ from starlette.responses import Response
 
 from app.api.answering import to_try
 from app.calculations.bodies import Asked
-from app.calculations.cost import EXPENSIVE
 from app.calculations.operations import OPERATIONS, Question
 from app.calculations.routes.evaluations import show_evaluation
 from app.http.pace import PiecesResponse
+from app.pool.cost import EXPENSIVE
 from app.presentation.units import System
 from app.schemas.problems import Problem
 from app.web.services import PageServices, Refused

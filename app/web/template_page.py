@@ -8,11 +8,11 @@ from fastapi import Request, Response
 from pydantic import JsonValue
 
 from app.calculations.bodies import EvaluateIn
-from app.calculations.cost import estimated_seconds, writing_seconds
 from app.calculations.schemas.evaluations import CalculatedBy, Output, Worksheet
 from app.catalogue.routes.templates import list_template_versions, show_accuracy, show_template
 from app.catalogue.schemas.declarations import properties
 from app.catalogue.schemas.templates import Template
+from app.pool.cost import estimated_seconds, writing_seconds
 from app.presentation.criteria import line
 from app.presentation.input_text import value_of
 from app.presentation.units import System

@@ -11,11 +11,11 @@ from fastapi import Request, Response
 from pydantic import JsonValue
 
 from app.calculations.bodies import SolveIn
-from app.calculations.cost import solving_seconds
 from app.calculations.schemas.evaluations import Solution
 from app.catalogue.routes.templates import show_template
 from app.catalogue.schemas.declarations import Declared, properties
 from app.catalogue.schemas.templates import Template
+from app.pool.cost import solving_seconds
 from app.presentation.input_text import text_of, value_of
 from app.web.answers import Answered, TemplateQuestion, calculated, stored
 from app.web.places import PlaceOption, suggested

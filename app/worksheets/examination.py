@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from app.calculations.sources import SheetSource, class_of
+from app.pool.sources import SheetSource, class_of
 from templates.core.catalogue.digests import digest as digest_of
 from templates.core.catalogue.golden import record
 from templates.core.checking.golden import differences

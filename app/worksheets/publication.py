@@ -8,9 +8,9 @@ import time
 from collections.abc import Sequence
 from typing import Literal
 
-from app.calculations.sources import SheetSource, class_of
 from app.catalogue.catalogues import Catalogues
 from app.catalogue.sheets import Key, ReleasedSheet, Sheets
+from app.pool.sources import SheetSource, class_of
 from app.storage.database import Database
 from app.storage.errors import NotFound
 from app.storage.tables import WorksheetVersionRow as Row

@@ -13,9 +13,9 @@ from typing import TypeVar, TypeVarTuple
 
 from sqlalchemy.orm import Session
 
-from app.calculations.pool import CalculationPool
 from app.catalogue.catalogues import Catalogues
 from app.identity.audit import record
+from app.pool.pool import CalculationPool
 from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.storage.identity import now

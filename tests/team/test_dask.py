@@ -9,7 +9,7 @@ import victims
 from dask_processes import Network, process_in, until_gone
 from patience import patient, until
 
-from app.calculations.sources import source_of
+from app.pool.sources import source_of
 from app.settings import Settings
 from app.solids.builds import build_in_worker
 from app.workers.base import Limits

@@ -18,15 +18,15 @@ from app.api.dependencies import Units, services_of
 from app.api.waiting import LATER
 from app.calculations.array_files import NPY, Form, npy
 from app.calculations.bodies import EvaluateIn, SolveIn
-from app.calculations.cost import EXPENSIVE, estimated_seconds, is_quick, solving_seconds, writing_seconds
 from app.calculations.operations import LARGE, OPERATIONS, Question
 from app.calculations.schemas.evaluations import Evaluation, Solution, Worksheet
 from app.calculations.service import evaluated, run_evaluate, run_solve
-from app.calculations.size import points
 from app.calculations.worksheet import run_worksheet
 from app.catalogue.routes.templates import Id, Number
 from app.http.roles import needs
 from app.http.strict_requests import PlainRoute, StrictRequest
+from app.pool.cost import EXPENSIVE, estimated_seconds, is_quick, solving_seconds, writing_seconds
+from app.pool.size import points
 from app.presentation.units import System
 from app.schemas.problems import Responses, refusals
 from app.workers.pieces import Pieces

@@ -10,13 +10,13 @@ from pydantic.config import JsonDict
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheCatalogues, services_of
-from app.calculations.cost import EXPENSIVE, estimated_seconds
-from app.calculations.sources import source_of
 from app.calculations.spreadsheet_line import MOST_INPUTS, MOST_POINTS, csv_of
 from app.catalogue.routes.templates import Id, Number
 from app.http.clients import TheClient
 from app.http.strict_requests import StrictRoute
 from app.plain import Raw
+from app.pool.cost import EXPENSIVE, estimated_seconds
+from app.pool.sources import source_of
 from app.schemas.problems import refusals
 from app.studies.routes.studies import calculated_in_pool
 from templates.core.errors import Fault, InvalidInputs

@@ -11,8 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.calculations.errors import StepDeferred
-from app.calculations.size import points, spanned
 from app.designs.engine.calculation import DEFERRED, Analysed, Calculation, Measured
 from app.designs.engine.columns import Column, stacked
 from app.designs.engine.refusals import Refusal, refusal_of_text
@@ -20,6 +18,8 @@ from app.designs.engine.relations import limit_operations, limit_values, related
 from app.designs.engine.steps import memory, step_rows
 from app.designs.network import Block, Cell, Graph, Node, Solid, SolidAnalysis
 from app.plain import Raw
+from app.pool.errors import StepDeferred
+from app.pool.size import points, spanned
 from app.reference import Reference
 from cad.model import CadModel
 from templates.core.arrays import Array

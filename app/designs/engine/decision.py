@@ -15,11 +15,11 @@ from typing import Literal
 
 import numpy as np
 
-from app.calculations.cost import estimated_seconds
 from app.designs.engine.calculate import recalculated
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import Verdicts
 from app.designs.network import Block
+from app.pool.cost import estimated_seconds
 from app.reference import Reference
 from templates.core.judging.judgement import Judgement
 from templates.core.judging.summary import worst_first

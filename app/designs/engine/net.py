@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
-from app.calculations.cost import array_seconds
 from app.catalogue.catalogues import Catalogues
 from app.designs.analyses import measured_unit
 from app.designs.document import Document
@@ -24,6 +23,7 @@ from app.designs.engine.table import Table
 from app.designs.engine.verdicts import JudgedColumn
 from app.designs.graph import build_graph, raise_if
 from app.designs.network import Graph, Subject, subjects
+from app.pool.cost import array_seconds
 from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import unknown_names

@@ -15,13 +15,13 @@ from operator import or_
 
 import numpy as np
 
-from app.calculations.cost import EXPENSIVE, estimated_seconds
 from app.designs.engine.calculate import following, recalculated
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.columns import Column, RowEstimate
 from app.designs.engine.needs import is_member
 from app.designs.network import Block, Cell
 from app.plain import Raw
+from app.pool.cost import EXPENSIVE, estimated_seconds
 from app.reference import Reference
 from templates.core.arrays import Mask
 from templates.core.judging.judging import Absent

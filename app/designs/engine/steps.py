@@ -17,14 +17,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.calculations.begun import fingerprint
 from app.calculations.cache import Cache, results
-from app.calculations.size import shape
-from app.calculations.steps import evaluated_step
 from app.designs.engine.columns import Column, Indices, RowEstimate, scattered
 from app.designs.engine.refusals import Refusal, is_of_all_rows, masked, refusal_of
 from app.designs.network import Block
 from app.plain import Raw
+from app.pool.pending_calculations import fingerprint
+from app.pool.size import shape
+from app.pool.steps import evaluated_step
 from templates.core.arrays import Mask
 from templates.core.errors import InvalidInputs
 from templates.core.judging.bands import Estimate

@@ -10,13 +10,13 @@ from operator import or_
 import numpy as np
 from numpy.typing import NDArray
 
-from app.calculations.size import spanned
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.columns import Column, RowEstimate
 from app.designs.engine.relations import limit_operations, limit_values
 from app.designs.engine.shifts import Shifts, Upstream
 from app.designs.engine.steps import Evaluations, estimate_rows
 from app.designs.network import LIMITS, Block, Demand, Subject, subjects
+from app.pool.size import spanned
 from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import FaultyText, listed

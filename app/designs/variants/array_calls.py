@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from app.calculations.errors import StepDeferred
 from app.designs.engine.calculation import DEFERRED, Prepared
 from app.designs.engine.steps import memory
 from app.designs.network import Block, Graph
 from app.plain import Raw
+from app.pool.errors import StepDeferred
 from templates.core.arrays import Array
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import Evaluation, answers_at_level

@@ -26,7 +26,6 @@ from app.api.dependencies import (
 )
 from app.api.event_streams import LastEvent, Whole, as_it_stands, listening
 from app.api.waiting import written
-from app.calculations.pool import Calculation, CalculationPool
 from app.designs.routes.answers import CHANGED, IfMatch, Prefer, answer_saved, seconds_waited
 from app.designs.schemas.designs import Design
 from app.http.attachments import MemoryFile, disposition
@@ -35,6 +34,7 @@ from app.http.pages import Cursor, Limit, page
 from app.http.paths import register_id
 from app.http.strict_requests import PreconditionRequired, StrictRoute
 from app.plain import Json
+from app.pool.pool import Calculation, CalculationPool
 from app.presentation.spreadsheets import XLSX
 from app.schemas.problems import Responses, refusals
 from app.storage import event_log

@@ -2,8 +2,8 @@
 
 import pytest
 
-from app.calculations.cost import EXPENSIVE, estimated_seconds, solving_seconds
 from app.catalogue.discovery import find_templates
+from app.pool.cost import EXPENSIVE, estimated_seconds, solving_seconds
 
 CATALOGUE = find_templates(())
 FILM = CATALOGUE.get("oil_film", 2)

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from app.calculations.processes import CalculationProcesses, is_light
+from app.pool.processes import CalculationProcesses, is_light
 from app.workers.errors import JobCancelled
 from app.workers.pool import WarmProcesses
 

@@ -6,8 +6,8 @@ from concurrent.futures import wait
 import pytest
 from test_workers import eventually
 
-from app.calculations.errors import TooManyCalculations
-from app.calculations.pool import CalculationPool
+from app.pool.errors import TooManyCalculations
+from app.pool.pool import CalculationPool
 from app.workers.base import Limits
 from app.workers.errors import JobCancelled
 

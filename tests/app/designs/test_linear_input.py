@@ -9,13 +9,13 @@ from starlette.requests import cookie_parser
 from app.api.waiting import patience
 from app.calculations.bodies import OIL_FILM, EvaluateIn
 from app.calculations.curves import _NUMBER, LONGEST_LINE, read_curves
-from app.calculations.size import points
 from app.designs.document import Document, merge
 from app.designs.graph import MOST_RELATION_TEXT, Catalogues, Graph, build_graph
 from app.designs.routes.files import _accepted
 from app.http import problems
 from app.http.heads import _plain_cookies
 from app.http.pages import page_of
+from app.pool.size import points
 from app.presentation import numbers
 from app.presentation.input_text import text_of, value_of
 from app.reports.cells import clean

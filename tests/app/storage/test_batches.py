@@ -9,7 +9,7 @@ import pytest
 import victims
 from patience import patient
 
-from app.calculations.sources import source_of
+from app.pool.sources import source_of
 from app.solids.builds import build_in_worker
 from app.workers import local
 from app.workers.base import Limits

@@ -8,7 +8,7 @@ import pytest
 import victims
 from patience import patient, until
 
-from app.calculations.sources import FileSource, SheetSource
+from app.pool.sources import FileSource, SheetSource
 from app.solids.builds import build_in_worker
 from app.workers import local
 from app.workers.base import Limits, shares_process

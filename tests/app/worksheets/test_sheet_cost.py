@@ -1,6 +1,6 @@
 """What a worksheet will cost is known before: many equations leave the event loop of the server."""
 
-from app.calculations.cost import EXPENSIVE, array_seconds, estimated_seconds, is_quick, solving_seconds
+from app.pool.cost import EXPENSIVE, array_seconds, estimated_seconds, is_quick, solving_seconds
 from templates.core.sheets import read
 
 GIVEN = 'given F [1] "load" (example 2)\n'

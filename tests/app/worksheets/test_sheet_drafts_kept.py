@@ -3,7 +3,7 @@
 from contextlib import nullcontext
 from types import SimpleNamespace
 
-from app.calculations.sources import loaded
+from app.pool.sources import loaded
 from app.worksheets import publication
 
 TEXT = '# Draft {}\ngiven F [kN] "load" (example 1 kN)\np [kN] = 2 * F "double"'

@@ -9,7 +9,7 @@ import pytest
 from seeds import seeded
 
 import benchmarks
-from app.calculations.sources import SheetSource, loaded, source_of
+from app.pool.sources import SheetSource, loaded, source_of
 from templates.core.catalogue import golden
 from templates.core.catalogue.digests import digest, release_file
 from templates.core.checking.check import faults_of

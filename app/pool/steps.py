@@ -15,13 +15,13 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from typing import TypeVar, TypeVarTuple
 
-from app.calculations.begun import Begun, fingerprint
-from app.calculations.cost import EXPENSIVE, estimated_seconds
-from app.calculations.errors import StepDeferred
-from app.calculations.pool import Calculation, CalculationPool, Lane
-from app.calculations.sources import Source, loaded, source_of
 from app.jobs.service import Job, JobContext
 from app.plain import Raw
+from app.pool.cost import EXPENSIVE, estimated_seconds
+from app.pool.errors import StepDeferred
+from app.pool.pending_calculations import PendingCalculations, fingerprint
+from app.pool.pool import Calculation, CalculationPool, Lane
+from app.pool.sources import Source, loaded, source_of
 from app.workers.errors import JobCancelled
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.template import Template
@@ -39,11 +39,13 @@ class Steps:
 
     pool: CalculationPool
     deadline: float
-    left: dict[str, Begun] = field(default_factory=dict)  # calculations that wait for their job, by job
+    left: dict[str, PendingCalculations] = field(
+        default_factory=dict
+    )  # calculations that wait for their job, by job
 
-    def begun(self) -> Begun:
+    def begun(self) -> PendingCalculations:
         """Return a place for the calculations that one request begins and does not wait for."""
-        return Begun(self.pool, self.left)
+        return PendingCalculations(self.pool, self.left)
 
     def drop(self, job: str) -> None:
         """End what was left to a job that nobody has begun."""
@@ -61,7 +63,7 @@ class Caller:
 
     steps: Steps
     client: str
-    begun: Begun
+    begun: PendingCalculations
     lane: Lane = "answers"
     left: threading.Event = field(default_factory=threading.Event)  # nobody waits for the result any longer
     report: Reporter | None = None
@@ -160,7 +162,7 @@ def in_the_pool(key: Hashable, function: Callable[[*Ts], T], *args: *Ts) -> T:
     return function(*args) if caller is None else caller.calculated(key, function, *args)
 
 
-def begun_steps() -> Begun | None:
+def begun_steps() -> PendingCalculations | None:
     """Return the calculations that the caller of this context has begun and does not wait for."""
     caller = _caller.get()
     return caller.begun if caller else None

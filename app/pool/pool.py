@@ -12,8 +12,8 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any, Literal, TypeVarTuple
 
-from app.calculations.errors import TooManyCalculations
-from app.calculations.turns import Turns, first, last_of_the_greediest
+from app.pool.errors import TooManyCalculations
+from app.pool.turns import Turns, first, last_of_the_greediest
 from app.workers.base import Limits, Worker
 from app.workers.errors import JobCancelled
 from templates.core.progress import Reporter

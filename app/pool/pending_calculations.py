@@ -6,12 +6,12 @@ import json
 from collections.abc import Hashable, Mapping
 from hashlib import sha256
 
-from app.calculations.pool import Calculation, CalculationPool
 from app.plain import Raw
+from app.pool.pool import Calculation, CalculationPool
 from templates.core.units.quantity import Typed
 
 
-class Begun:
+class PendingCalculations:
     """Calculations that a request has begun and left; a job takes them over, or they are cancelled.
 
     Parameters
@@ -22,7 +22,7 @@ class Begun:
         What was left to jobs, by job; all requests share it.
     """
 
-    def __init__(self, pool: CalculationPool, left: dict[str, Begun]) -> None:
+    def __init__(self, pool: CalculationPool, left: dict[str, PendingCalculations]) -> None:
         self._pool, self._left = pool, left
         self._calculations: dict[Hashable, Calculation] = {}
         self._job: str | None = None

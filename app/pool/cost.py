@@ -1,7 +1,7 @@
 """Estimate how long a calculation will take, from measured costs of the levels and the number of points.
 
 An order of magnitude, known before anything is calculated, and rather too high than too low: what is
-expensive leaves the server's process (see `app.calculations.pool`).
+expensive leaves the server's process (see `app.pool.pool`).
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from app.calculations.size import arrays, spanned
 from app.plain import Raw
+from app.pool.size import arrays, spanned
 from templates.core.errors import InvalidInputs
 from templates.core.language.body import Body
 from templates.core.language.climbing import reachable

@@ -1,0 +1,21 @@
+"""Errors of the pool.
+
+QueueFull
+ └── TooManyCalculations   as many wait as may
+StepDeferred               an expensive step was not calculated in the time that its caller waits
+"""
+
+from __future__ import annotations
+
+from app.jobs.errors import QueueFull
+
+
+class TooManyCalculations(QueueFull):
+    """The queue of calculations is full; the client may try again after some time [s]."""
+
+    def __str__(self) -> str:
+        return f"Too many calculations are waiting. Try again in {self.retry_after} s."
+
+
+class StepDeferred(Exception):
+    """An expensive step was not calculated in the time that its caller waits; a job is to do it."""
