@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import ExitStack, closing
 from typing import TYPE_CHECKING
 
-from app.api.answering import Answering
+from app.api.expensive_answers import Answering
 from app.api.services import Services
 from app.api.threads import Threads
 from app.approvals.comments import Comments
@@ -23,7 +23,7 @@ from app.designs.preview import Previewed, preview
 from app.designs.questions import Asked, Questions, in_a_process
 from app.designs.regeneration import Regeneration
 from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
-from app.designs.solved import solved
+from app.designs.solution import solved
 from app.designs.variants.detail import WantedVariant, detailed
 from app.http import problems
 from app.http.streams import Streams

@@ -31,7 +31,7 @@ REASONS: dict[str, str] = {
     "app.client.approval_operations": "the calls on one resource, as every resource has them in the client",
     "app.client.identity_operations": "the calls on one resource, as every resource has them in the client",
     "app.client.model_operations": "the calls on one resource, as every resource has them in the client",
-    "app.designs.explained": "joins the chain of relations and the sensitivities; neither knows the other",
+    "app.designs.explanation": "joins the chain of relations and the sensitivities; neither knows the other",
     "app.presentation.prose": "a rule of security: what of a user's Markdown becomes HTML",
     "app.reports.crank_star": "one picture of the report",
     "app.reports.throw_star": "one picture of the report",

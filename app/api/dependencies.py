@@ -10,8 +10,8 @@ from typing import Annotated
 
 from fastapi import Depends, Header, Query, Request
 
-from app.api.answering import Answering
 from app.api.event_streams import Still, always
+from app.api.expensive_answers import Answering
 from app.api.services import Services
 from app.api.threads import Threads
 from app.approvals.comments import Comments

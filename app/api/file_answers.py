@@ -12,7 +12,7 @@ from fastapi.responses import FileResponse
 from starlette.datastructures import Headers
 from starlette.types import Message, Receive, Scope, Send
 
-from app.api.waiting import finished
+from app.api.responses import finished
 from app.http import problems
 from app.http.attachments import is_at_hand, unchanged
 from app.http.problem_kinds import REBUILDING

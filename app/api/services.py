@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.api.answering import Answering
+from app.api.expensive_answers import Answering
 from app.api.threads import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import Approving

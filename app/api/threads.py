@@ -10,7 +10,7 @@ from typing import ParamSpec, TypeVar
 from anyio import CapacityLimiter, to_thread
 from fastapi import Request
 
-from app.api.waiting import client_left
+from app.api.responses import client_left
 from app.pool.steps import Caller, present_caller
 
 P = ParamSpec("P")

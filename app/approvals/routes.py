@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Header, Path, Response
 
 from app.api.dependencies import TheApproving, TheComments, TheOnce
-from app.api.waiting import written
+from app.api.responses import written
 from app.approvals.comments import shown
 from app.approvals.schemas import ApprovalIn, Approvals, Comment, CommentIn, CommentList, Released
 from app.designs.routes.answers import Id, Number

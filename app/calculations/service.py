@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.calculations import rendering
+from app.calculations import json_values
 from app.calculations.bodies import EvaluateIn, SolveIn
 from app.calculations.errors import TooManyValues
 from app.plain import JsonObject
@@ -20,7 +20,7 @@ MOST_VALUES = 2_000_000  # in one answer: some 40 MB of JSON
 
 def run_evaluate(cls: type[Template], body: EvaluateIn) -> JsonObject:
     """Evaluate a template, as `evaluated`."""
-    return rendering.evaluation(evaluated(cls, body))
+    return json_values.evaluation(evaluated(cls, body))
 
 
 def evaluated(cls: type[Template], body: EvaluateIn) -> Evaluation:
@@ -116,4 +116,4 @@ def run_solve(cls: type[Template], body: SolveIn) -> JsonObject:
         level=body.level,
         tolerance=body.tolerance,
     )
-    return rendering.solution(solution)
+    return json_values.solution(solution)

@@ -7,7 +7,7 @@ import io
 from collections.abc import Mapping, Sequence
 from itertools import zip_longest
 
-from app.calculations.rendering import evaluation
+from app.calculations.json_values import evaluation
 from app.plain import Raw
 from app.pool.sources import Source, loaded
 from templates.core.errors import Fault, InvalidInputs

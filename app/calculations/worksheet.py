@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container
 
-from app.calculations import rendering
+from app.calculations import json_values
 from app.calculations.bodies import EvaluateIn
 from app.calculations.schemas.evaluations import Worksheet
 from app.calculations.service import evaluated
@@ -30,7 +30,7 @@ def run_worksheet(cls: type[Template], body: EvaluateIn, system: System) -> Json
 def worksheet(evaluation: Evaluation, system: System) -> JsonObject:
     """Return an evaluation as `evaluate` answers it, in the system's units, with its formulas."""
     written = formulas(evaluation.template, system, evaluation.outputs)
-    answer = {**rendering.evaluation(evaluation), "formulas": written}
+    answer = {**json_values.evaluation(evaluation), "formulas": written}
     return answer if system == "si" else Worksheet.model_validate(answer).in_units(system).plain()
 
 

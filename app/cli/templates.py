@@ -67,9 +67,9 @@ def evaluate_command(
         lines = "\n".join(f"  {fault.name}: {fault.detail}" for fault in error.faults)
         raise click.ClickException(f"{cls.id} version {cls.version} refuses:\n{lines}") from None
     if as_json:
-        from app.calculations import rendering
+        from app.calculations import json_values
 
-        click.echo(json.dumps(rendering.evaluation(evaluation), indent=2, ensure_ascii=False))
+        click.echo(json.dumps(json_values.evaluation(evaluation), indent=2, ensure_ascii=False))
         return
     for name, answer in evaluation.outputs.items():
         click.echo(f"{name:32} {_result(answer)}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from app.calculations import rendering
+from app.calculations import json_values
 from app.calculations.criteria import rendered
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
@@ -78,9 +78,9 @@ def steps(calculation: Calculation, criteria: Sequence[Judgement]) -> dict[str, 
 def _step(calculation: Calculation, block: Block, criteria: Sequence[Judgement]) -> JsonObject:
     relations = {n: cell.raw for n, cell in block.cells.items() if cell.relations}
     if block.name not in calculation.evaluations:
-        return {"template": rendering.identity(block.cls), "relations": relations, "state": "pending"}
+        return {"template": json_values.identity(block.cls), "relations": relations, "state": "pending"}
     evaluation = calculation.evaluations[block.name]
-    answer = rendering.evaluation(evaluation)
+    answer = json_values.evaluation(evaluation)
     remember(answer, evaluation)
     del answer["seconds"]  # equal revisions are equal
     answer["warnings"] = _warnings(evaluation, block, criteria)

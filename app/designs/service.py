@@ -16,7 +16,7 @@ from app.designs.drives import network
 from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
 from app.designs.errors import StaleRevision
-from app.designs.explained import explained
+from app.designs.explanation import explained
 from app.designs.graph import Graph, build_graph, raise_if
 from app.designs.news import note_revision
 from app.designs.reader import read_document, resolved, starts

@@ -10,7 +10,7 @@ import numpy as np
 from cachetools import LRUCache
 
 from app.calculations.cache import results as cache
-from app.calculations.rendering import identity
+from app.calculations.json_values import identity
 from app.calculations.schemas.evaluations import UsedInput, WorkedFormula
 from app.calculations.worksheet import formulas
 from app.designs.engine.calculation import Calculation

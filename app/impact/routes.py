@@ -6,7 +6,7 @@ from fastapi import APIRouter, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheImpacts, TheJobs, TheStore, Units
-from app.api.waiting import LATER, accepted, finished
+from app.api.responses import LATER, accepted, finished
 from app.calculations.routes.evaluations import stored_answer
 from app.catalogue.routes.templates import Id, Number
 from app.designs.routes.answers import Prefer

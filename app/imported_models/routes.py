@@ -8,7 +8,7 @@ from fastapi import APIRouter, Depends, Query, Request, Response
 
 from app.api.dependencies import TheDatabase, TheModelImports, TheOnce, TheStore, TheThreads
 from app.api.file_answers import UNCHANGED, StoredFile
-from app.api.waiting import LATER, accepted
+from app.api.responses import LATER, accepted
 from app.catalogue.routes.templates import Number
 from app.http.strict_requests import MODEL_TYPES, StrictRoute, require_model
 from app.imported_models.programs import SET_CREO

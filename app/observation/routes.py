@@ -7,7 +7,7 @@ from fastapi.responses import PlainTextResponse
 from prometheus_client import CONTENT_TYPE_LATEST
 
 from app.api.dependencies import TheDatabase, TheJobs, TheReadiness
-from app.api.waiting import written
+from app.api.responses import written
 from app.http import problems
 from app.http.problem_kinds import NOT_READY
 from app.http.roles import needs, public

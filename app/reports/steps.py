@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import NotRequired, TypedDict, TypeVar
 
-from app.calculations.rendering import identity
+from app.calculations.json_values import identity
 from app.calculations.schemas.evaluations import CalculatedBy, Output, UsedInput, WorkedFormula
 from app.catalogue.catalogues import Catalogues
 from app.catalogue.sheets import ReleasedSheet

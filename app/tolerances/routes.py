@@ -5,7 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheThreads, TheTolerances, Units
-from app.api.waiting import LATER
+from app.api.responses import LATER
 from app.designs.questions import Asked
 from app.designs.routes.answers import Id, Prefer
 from app.designs.routes.solution import answer_asked

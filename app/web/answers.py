@@ -10,7 +10,7 @@ from pydantic import TypeAdapter
 from pydantic_core import to_json
 from starlette.responses import Response
 
-from app.api.answering import to_try
+from app.api.expensive_answers import to_try
 from app.calculations.bodies import Asked
 from app.calculations.operations import OPERATIONS, Question
 from app.calculations.routes.evaluations import show_evaluation

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from fastapi import Request, Response
 
-from app.api.waiting import finished
+from app.api.responses import finished
 from app.catalogue.catalogues import Catalogues
 from app.http.roles import AUTHOR
 from app.presentation.input_text import text_of, value_of

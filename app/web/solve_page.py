@@ -12,7 +12,7 @@ from fastapi import Request, Response
 from app.designs import questions
 from app.designs.schemas.designs import Design
 from app.designs.schemas.solution import DesignRoot, DesignSolution
-from app.designs.solved import SolveDesignIn
+from app.designs.solution import SolveDesignIn
 from app.presentation import numbers
 from app.presentation.input_text import value_of
 from app.web.answers import Answered, stored

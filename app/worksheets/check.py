@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
 
-from app.calculations import rendering
+from app.calculations import json_values
 from app.catalogue.schemas.templates import Template as TemplateAnswer
 from app.presentation.prose import html_of
 from app.worksheets.examination import LONGEST_TITLE, title_of
@@ -135,7 +135,7 @@ def _example(cls: type[Template]) -> _Example:
 
 def _values(evaluation: Evaluation) -> dict[str, _Result]:
     """Return inputs and outputs of an evaluation by name, as answers hold them."""
-    answer = rendering.evaluation(evaluation)
+    answer = json_values.evaluation(evaluation)
     return {name: _shown(**shown) for name, shown in {**answer["inputs"], **answer["outputs"]}.items()}
 
 

@@ -19,7 +19,7 @@ import httpx
 import numpy as np
 from pydantic_core import to_json
 
-from app.calculations import rendering
+from app.calculations import json_values
 from app.calculations.array_files import NPY, npy
 from app.calculations.bodies import OIL_FILM
 from app.designs.bodies import PAPER
@@ -206,7 +206,10 @@ def large_arrays(server: Server, folder: Path) -> list[Figure]:
     inputs = {**OIL_FILM, "radial_load": {"value": loads, "unit": "kN"}}
     result = evaluate(OilFilm, inputs, outputs=["minimum_film_thickness"])
     result.inputs.clear()  # the echo is what was sent
-    forms = {"JSON": (lambda: to_json(rendering.evaluation(result)), None), NPY: (lambda: npy(result), 10.0)}
+    forms = {
+        "JSON": (lambda: to_json(json_values.evaluation(result)), None),
+        NPY: (lambda: npy(result), 10.0),
+    }
     return [
         Figure(
             f"10⁶ values as {name}",

@@ -10,7 +10,7 @@ import pytest
 from openpyxl import load_workbook
 from serving import API, HANG, created, problem
 
-from app.designs.explain import DEEPEST
+from app.designs.parameter_explanation import DEEPEST
 from app.http.heads import LONGEST_HEAD, MOST_FIELDS, MOST_HEADERS
 from tests.app.hostile_texts import EVERY
 

@@ -5,7 +5,7 @@ import json
 import pytest
 from pydantic_core import to_json
 
-from app.calculations import rendering
+from app.calculations import json_values
 from app.catalogue.discovery import find_templates
 from app.designs import worksheet as worksheets
 from app.designs.schemas.designs import Revision, RevisionStep
@@ -24,7 +24,7 @@ def templates():
 def stored(evaluation, **changed):
     """A step as the database holds it."""
     kept = record(evaluation.template)
-    answer = {**rendering.evaluation(evaluation), "relations": {}, "record": vars(kept), **changed}
+    answer = {**json_values.evaluation(evaluation), "relations": {}, "record": vars(kept), **changed}
     del answer["seconds"]
     return json.loads(to_json(answer))
 

@@ -13,9 +13,9 @@ from fastapi import APIRouter, Header, Request, Response
 from pydantic_core import to_json
 from starlette.concurrency import run_in_threadpool
 
-from app.api.answering import to_try
 from app.api.dependencies import Units, services_of
-from app.api.waiting import LATER
+from app.api.expensive_answers import to_try
+from app.api.responses import LATER
 from app.calculations.array_files import NPY, Form, npy
 from app.calculations.bodies import EvaluateIn, SolveIn
 from app.calculations.operations import LARGE, OPERATIONS, Question

@@ -9,7 +9,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheAnswering, TheJobs, TheStore
 from app.api.file_answers import UNAVAILABLE, rebuilding
-from app.api.waiting import LATER, accepted, finished
+from app.api.responses import LATER, accepted, finished
 from app.calculations.array_files import MEDIA_TYPES
 from app.calculations.jobs import ANSWERS, CalculationJobs
 from app.calculations.schemas.evaluations import AnyCalculation

@@ -9,7 +9,7 @@ from typing import Annotated
 from fastapi import Header, Path, Query, Response
 from starlette.concurrency import run_in_threadpool
 
-from app.api.waiting import LONGEST, finished, later, patience, written
+from app.api.responses import LONGEST, finished, later, patience, written
 from app.designs.schemas.designs import Design, MappedDesign, Proposal
 from app.designs.service import Designs, Saved
 from app.jobs.service import Jobs

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheDecisions, TheThreads, Units
-from app.api.waiting import accepted, later, patience, written
+from app.api.responses import accepted, later, patience, written
 from app.designs.bodies import DecideIn
 from app.designs.decisions import LONGEST_BUDGET, Asked, read_budget
 from app.designs.routes.answers import Id, Prefer

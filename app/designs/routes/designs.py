@@ -24,7 +24,7 @@ from app.api.dependencies import (
     get_once,
     services_of,
 )
-from app.api.waiting import accepted, later, written
+from app.api.responses import accepted, later, written
 from app.designs import repository, views
 from app.designs.bodies import LONGEST_NOTE, PATCH, CopyIn, DesignIn
 from app.designs.filters import TEMPLATE, DesignFilter

@@ -21,7 +21,7 @@ from app.api.dependencies import (
     TheStore,
 )
 from app.api.file_answers import UNAVAILABLE, UNCHANGED, lost
-from app.api.waiting import LATER, accepted, accepted_weights, finished
+from app.api.responses import LATER, accepted, accepted_weights, finished
 from app.designs import stamps, views
 from app.designs.routes.answers import Id, Number, Prefer
 from app.designs.routes.title_blocks import TheTitleBlock, TitleBlock

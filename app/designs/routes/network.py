@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Response
 
 from app.api.dependencies import TheDesigns
-from app.api.waiting import written
+from app.api.responses import written
 from app.designs.schemas.network import DesignNetwork
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals

@@ -7,7 +7,7 @@ from starlette.requests import Request
 from starlette.routing import Match
 from starlette.types import Scope
 
-from app.api.waiting import accepted_weights
+from app.api.responses import accepted_weights
 from app.designs.variant_sheets.service import Kind
 from app.http.strict_requests import StrictRoute
 from app.presentation.spreadsheets import XLSX

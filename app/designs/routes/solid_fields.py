@@ -10,7 +10,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheCatalogues, TheDatabase
 from app.api.file_answers import UNAVAILABLE, UNCHANGED
-from app.api.waiting import LATER
+from app.api.responses import LATER
 from app.designs import views
 from app.designs.routes.answers import Id, Number
 from app.designs.routes.files import ThePlainFileRequest

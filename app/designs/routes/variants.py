@@ -28,7 +28,7 @@ from app.api.dependencies import (
     Units,
 )
 from app.api.file_answers import UNAVAILABLE, lost
-from app.api.waiting import LATER, accepted, finished, later, patience, written
+from app.api.responses import LATER, accepted, finished, later, patience, written
 from app.catalogue.catalogues import Catalogues
 from app.designs.bodies import Note
 from app.designs.document import Overrides, Word

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from app.calculations import rendering
+from app.calculations import json_values
 from app.calculations.criteria import rendered
 from app.calculations.schemas.evaluations import Output
 from app.catalogue.catalogues import Catalogues
@@ -111,5 +111,5 @@ def _outputs(calculation: Calculation) -> Iterator[tuple[str, Output]]:
             waiting = calculation.graph.computed(block) or tuple(block.cls.formulas)
             yield from ((f"{block.name}.{name}", Output(value=None, reason=WAITS)) for name in waiting)
         else:
-            shown = rendering.outputs(evaluation.outputs)
+            shown = json_values.outputs(evaluation.outputs)
             yield from ((f"{block.name}.{name}", Output.model_validate(one)) for name, one in shown.items())

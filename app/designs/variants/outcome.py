@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from app.calculations import rendering
+from app.calculations import json_values
 from app.designs import results
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
@@ -144,7 +144,7 @@ def single_outputs(calculation: Calculation) -> dict[str, JsonObject]:
     shown: dict[str, JsonObject] = {}
     for step, evaluation in calculation.evaluations.items():
         answers = {n: a for n, a in evaluation.outputs.items() if not isinstance(a.value, np.ndarray)}
-        shown |= {f"{step}.{name}": _without_nan(one) for name, one in rendering.outputs(answers).items()}
+        shown |= {f"{step}.{name}": _without_nan(one) for name, one in json_values.outputs(answers).items()}
     return shown
 
 

@@ -10,7 +10,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheAnalyses, TheCatalogues, TheHealing, TheJobs, TheStore, Units
 from app.api.file_answers import UNAVAILABLE, UNCHANGED, StoredFile, lost
-from app.api.waiting import accepted, finished, later, written
+from app.api.responses import accepted, finished, later, written
 from app.catalogue.routes.templates import Number
 from app.http import problems
 from app.http.clients import TheClient

@@ -12,7 +12,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheCatalogues, TheDatabase, TheHealing, TheJobs, TheModels, TheStore
 from app.api.file_answers import UNAVAILABLE, UNCHANGED, StoredFile, lost
-from app.api.waiting import LATER, accepted, finished, later, written
+from app.api.responses import LATER, accepted, finished, later, written
 from app.catalogue.routes.templates import Number, listed, versions_of
 from app.catalogue.schemas.templates import TemplateList, TemplateVersions
 from app.http import problems

@@ -25,7 +25,7 @@ from app.api.dependencies import (
     services_of,
 )
 from app.api.event_streams import LastEvent, Whole, as_it_stands, listening
-from app.api.waiting import written
+from app.api.responses import written
 from app.designs.routes.answers import CHANGED, IfMatch, Prefer, answer_saved, seconds_waited
 from app.designs.schemas.designs import Design
 from app.http.attachments import MemoryFile, disposition

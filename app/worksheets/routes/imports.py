@@ -8,7 +8,7 @@ from fastapi import APIRouter, Depends, Query, Request, Response
 
 from app.api.dependencies import TheImports, TheOnce, TheStore, TheThreads, TheWorksheets
 from app.api.file_answers import UNCHANGED, StoredFile
-from app.api.waiting import LATER, accepted
+from app.api.responses import LATER, accepted
 from app.http.strict_requests import SHEET_TYPES, StrictRoute, require_sheet
 from app.schemas.problems import refusals
 from app.storage.errors import NotFound

@@ -12,7 +12,7 @@ from fastapi.responses import PlainTextResponse
 from pydantic.config import JsonDict
 
 from app.api.dependencies import TheOnce, TheThreads, TheWorksheets
-from app.api.waiting import written
+from app.api.responses import written
 from app.http.clients import TheClient
 from app.http.pages import Cursor, Limit, page
 from app.http.paths import register_id

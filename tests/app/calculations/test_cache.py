@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from app.calculations import rendering
+from app.calculations import json_values
 from app.calculations.cache import Cache
 from app.calculations.sizes import size_of
 from app.catalogue.discovery import find_templates
@@ -130,7 +130,7 @@ def test_a_step_without_a_record_is_calculated_once(film, monkeypatch):
     kept = Cache(16)
     monkeypatch.setattr("app.designs.worksheet.cache", kept)
     outputs = tuple(film.formulas)[:1]
-    step = RevisionStep.model_validate(rendering.evaluation(evaluate(film, film.example, outputs=outputs)))
+    step = RevisionStep.model_validate(json_values.evaluation(evaluate(film, film.example, outputs=outputs)))
     first = _evaluated(film, step)
     assert kept.size > 1000
     monkeypatch.setattr("app.designs.worksheet.evaluated_step", None)

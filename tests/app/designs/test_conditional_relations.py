@@ -10,7 +10,7 @@ from row_designs import spread as nearby
 from app.designs.document import Document
 from app.designs.engine.calculate import calculate
 from app.designs.engine.verdicts import Verdicts
-from app.designs.explained import explained
+from app.designs.explanation import explained
 from app.designs.graph import build_graph
 
 THIN = "= if film.minimum_film_thickness < 3 um then 22 mm else 20 mm"

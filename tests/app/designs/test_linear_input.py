@@ -6,7 +6,7 @@ import pytest
 from scaling import LIMIT, assert_constant, assert_linear, times
 from starlette.requests import cookie_parser
 
-from app.api.waiting import patience
+from app.api.responses import patience
 from app.calculations.bodies import OIL_FILM, EvaluateIn
 from app.calculations.curves import _NUMBER, LONGEST_LINE, read_curves
 from app.designs.document import Document, merge

@@ -9,7 +9,7 @@ from row_designs import CATALOGUES, CURVES, calculated, ref
 from app.designs import sensitivities as module
 from app.designs.document import Document
 from app.designs.engine.calculate import calculate
-from app.designs.explained import explained
+from app.designs.explanation import explained
 from app.designs.graph import build_graph
 from app.designs.slopes import Local, slope_in, slopes_at
 from app.storage.errors import NotFound

@@ -10,7 +10,7 @@ from app.designs.document import Document
 from app.designs.graph import Catalogues
 from app.designs.schemas.solution import DesignSolution
 from app.designs.service import resolved
-from app.designs.solved import solved
+from app.designs.solution import solved
 from app.designs.tasks import DesignTask
 from cad.catalogue import models
 from templates.core.errors import InvalidInputs, Unreachable

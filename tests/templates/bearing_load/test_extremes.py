@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from seeds import seeded
 
-from app.calculations import rendering
+from app.calculations import json_values
 from templates.bearing_load.bearing_load_v1 import BearingLoad
 from templates.bearing_load.flywheel_v1 import Flywheel
 from templates.core.errors import InvalidInputs
@@ -19,7 +19,7 @@ WILD = (0, -1, 1e-3, 1e3, 1e-9, 1e9, 1e-150, 1e150, 1e300)
 def answered(cls, raw):
     """The answer as JSON, which takes neither NaN nor infinity; or the names of what is refused."""
     try:
-        return json.loads(json.dumps(rendering.evaluation(evaluate(cls, raw)), allow_nan=False))["outputs"]
+        return json.loads(json.dumps(json_values.evaluation(evaluate(cls, raw)), allow_nan=False))["outputs"]
     except InvalidInputs as refusal:
         faults = refusal.faults
     assert faults
@@ -80,10 +80,10 @@ class TestSingleExtremes:
     def test_property_default_that_does_not_exist_is_not_shown(self, cls):
         """No suction, no exhaust pressure; and null for the point of an array at which there is none."""
         raw = {n: v for n, v in cls.example.items() if n not in ("suction_pressure", "exhaust_pressure")}
-        reported = rendering.evaluation(evaluate(cls, {**raw, "gas_cycle": "none"}))
+        reported = json_values.evaluation(evaluate(cls, {**raw, "gas_cycle": "none"}))
         assert "exhaust_pressure" not in reported["inputs"]
         some = {**raw, "suction_pressure": {"value": [1, -1], "unit": "bar"}}
-        reported = json.loads(json.dumps(rendering.evaluation(evaluate(cls, some)), allow_nan=False))
+        reported = json.loads(json.dumps(json_values.evaluation(evaluate(cls, some)), allow_nan=False))
         assert reported["inputs"]["exhaust_pressure"]["value"] == [1, None]
 
     @BOTH

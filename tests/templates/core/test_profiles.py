@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from declared import codes
 
-from app.calculations import rendering
+from app.calculations import json_values
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.core.language.solve import solve
@@ -77,7 +77,7 @@ class TestProfiles:
         np.testing.assert_array_equal(moment.value, [[0, 2, 4], [np.nan] * 3, [np.nan] * 3])
         assert [bool(reason) for reason in moment.reasons] == [False, True, True]
         assert "length must be" in moment.reasons[1]
-        shown = rendering.outputs({"moment": moment})["moment"]
+        shown = json_values.outputs({"moment": moment})["moment"]
         assert shown["value"] == [[0, 2, 4], None, None]
         assert json.loads(json.dumps(shown))["reasons"] == list(moment.reasons)
 
@@ -87,7 +87,7 @@ class TestProfiles:
         many = {"masses": {"value": [[1, 2], [9, 1], [3, 3]], "unit": "kg"}}
         answer = evaluate(Chain, many).outputs["sums_of_masses"]
         assert [bool(reason) for reason in answer.reasons] == [False, True, False]
-        shown = rendering.outputs({"sums": answer})["sums"]
+        shown = json_values.outputs({"sums": answer})["sums"]
         assert shown["value"] == [[[2, 3], [3, 4]], None, [[6, 6], [6, 6]]]
         limits = evaluate(Chain, {"masses": ["1 kg"], "limit": ["1 kg", "2 kg"]})
         assert limits.outputs["sums_of_masses"].value.shape == (2, 1, 1)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from app.catalogue.catalogues import Catalogues
+from app.designs.criterion_explanation import explain_any
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import Verdicts
-from app.designs.explain_criterion import explain_any
 from app.designs.schemas.designs import Explanation
 from app.designs.sensitivities import Asked, sensitivities
 from app.presentation.units import System

@@ -8,8 +8,8 @@ from app.calculations.criteria import criterion as rendered
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import Verdicts
-from app.designs.explain import Explainer, explain, full_name, model_parameters, shown
 from app.designs.network import Subject
+from app.designs.parameter_explanation import Explainer, explain, full_name, model_parameters, shown
 from app.plain import JsonObject
 from app.reference import Reference
 from app.storage.errors import NotFound

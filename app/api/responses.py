@@ -1,4 +1,4 @@
-"""Wait for the job of an answer: a short while, `Prefer: wait=n`, or not at all (`respond-async`)."""
+"""Responses of routes whose work may become a job: 202 with the job, and how long the client waits."""
 
 from __future__ import annotations
 

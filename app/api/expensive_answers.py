@@ -9,7 +9,7 @@ from contextlib import suppress
 from fastapi import Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from app.api.waiting import accepted, client_left, patience
+from app.api.responses import accepted, client_left, patience
 from app.calculations.jobs import CalculationJobs
 from app.calculations.operations import LARGE, Question, answered, check, checked
 from app.catalogue.catalogues import Catalogues

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.calculations import rendering
+from app.calculations import json_values
 from app.designs.analyses import measured_unit
 from app.designs.engine.calculation import Calculation
 from app.designs.network import Block, Cell, Solid, SolidAnalysis
@@ -90,7 +90,7 @@ class Explainer:
         paper = formula_on_paper(cls, declared)
         because = [self.of(Reference(head, None, used)) for used in paper.pop("uses")]
         del paper["name"]
-        return {"kind": kind, "template": rendering.identity(cls), **paper, "because": because}
+        return {"kind": kind, "template": json_values.identity(cls), **paper, "because": because}
 
     def _value(self, reference: Reference) -> JsonObject | None:
         """Return the value with its unit; null while it waits for a solid or is not set."""

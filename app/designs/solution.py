@@ -17,7 +17,7 @@ from app.designs.graph import build_graph
 from app.designs.overrides import changed
 from app.designs.reader import starts
 from app.designs.schemas.solution import DesignRoot, DesignSolution, Target
-from app.designs.solving import DesignRoots, Wanted, roots_of_design
+from app.designs.solution_search import DesignRoots, Wanted, roots_of_design
 from app.designs.tasks import DesignTask
 from app.designs.variants.table import applied
 from app.reference import Reference
