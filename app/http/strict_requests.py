@@ -213,7 +213,7 @@ class PlainRoute(StrictRoute):
     dependencies but the role that it needs.
     """
 
-    def __init__(self, path: str, endpoint: Callable[..., Awaitable[Response]], **options: Any) -> None:
+    def __init__(self, path: str, endpoint: Callable[..., Awaitable[Response]], **options: Json) -> None:
         super().__init__(path, endpoint, **options)
         declared = self.dependant
         self._in_path = [_Parameter("path", field) for field in declared.path_params]
