@@ -72,7 +72,7 @@ def test_every_step_has_its_verdicts(name):
 def test_the_torques_of_all_throws_are_that_of_the_engine(name):
     """Two ways to the engine's torque: cylinder 1 repeated where each fires, and the throws' own loads."""
     result = calculated(name)
-    values = result.values
+    values = {name: column.value for name, column in result.values.items()}
     one = values["gas_torque"] + values["inertia_torque"]
     fires = np.rint(result.value(IGNITION) * one.size / (4 * np.pi)).astype(int)
     each = [np.roll(one, shift - fires[0]) for shift in fires]
@@ -85,10 +85,10 @@ def test_the_torques_of_all_throws_are_that_of_the_engine(name):
 @pytest.mark.parametrize("name", ENGINES)
 def test_the_moment_swings_as_forced_torsion_says(name):
     result = calculated(name)
-    moment = result.values["life.moment_1"]
+    moment = result.values["life.moment_1"].value
     swing = (moment.max() - moment.min()) / 2
     assert swing == pytest.approx(output(result, "torsion", "largest_torque")[4], rel=1e-9)
-    assert moment.mean() == pytest.approx(result.values["front_torque"].mean(), rel=1e-9)
+    assert moment.mean() == pytest.approx(result.values["front_torque"].value.mean(), rel=1e-9)
 
 
 BORES = [80.0, 84.0, 86.0, 90.0]  # mm
@@ -102,7 +102,7 @@ def test_a_wider_bore_adds_gas_force_alone(name):
     across it the tangent of the rod's angle of it.
     """
     results = [calculated(name, bore=bore) for bore in ("86 mm", "90 mm")]
-    narrow, wide = (result.values for result in results)
+    narrow, wide = ({name: column.value for name, column in result.values.items()} for result in results)
     largest = np.abs(narrow["gas_torque"]).max()
     assert wide["gas_torque"] == pytest.approx((90 / 86) ** 2 * narrow["gas_torque"], abs=1e-9 * largest)
     assert wide["inertia_torque"] == pytest.approx(narrow["inertia_torque"], abs=1e-9 * largest)

@@ -252,7 +252,7 @@ def test_the_name_is_sent_as_the_service_reads_it(served, monkeypatch):
         client.auto_map(client.create({"name": "named"}).id)
         assert set(heard) == {"name:design office 7"}
     with Client(served.url) as client:
-        client.create({"name": "named too"})
+        client.auto_map(client.create({"name": "named too"}).id)
     assert heard[-1] == f"name:{user_at_host()}"
     with httpx.Client(base_url=served.url, timeout=patient(60), trust_env=False) as plain:
         answer = plain.post("/api/v1/designs", json={"name": "x"}, headers={HEADER: "a" * 101})

@@ -233,6 +233,7 @@ def test_paths_and_methods_of_clients_make_no_new_figures(http):
     http.get("/static/nope")
     http.request("PROPFIND", "/healthz")
     http.get("/first-unknown")
+    http.get("/metrics")
     before = set(figures(http))
     for number in range(5):
         http.get(f"/unknown{number}")

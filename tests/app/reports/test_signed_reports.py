@@ -192,7 +192,7 @@ def test_what_is_no_report_is_refused(room):
         read_block(b"%PDF-1.7 nothing")
     writer = pypdf.PdfWriter()
     writer.add_blank_page(100, 100)
-    with pytest.raises(NotReport, match=r"carries no attachment approval\.json"):
+    with pytest.raises(NotReport, match=r"has no attachment approval\.json"):
         read_block(written(writer))
 
 
