@@ -34,7 +34,6 @@ REASONS: dict[str, str] = {
     "app.designs.explanation": "joins the chain of relations and the sensitivities; neither knows the other",
     "app.presentation.prose": "a rule of security: what of a user's Markdown becomes HTML",
     "app.reports.crank_star": "one picture of the report",
-    "app.reports.throw_star": "one picture of the report",
     "app.workers.remote.client": "Dask's client with an end in time, apart from what uses it",
     "app.workers.remote.strays": "the rule by which a task counts as lost, tested by itself",
     "app.worksheets.importing.job": "all that a process of its own imports to read a file of a user",

@@ -36,8 +36,8 @@ def named_files(connection: Rows) -> Iterator[Named]:
         for key, output in connection.execute(surfaces):
             surface = json.loads(output)
             yield Named(surface["sha256"], surface["size"], key, "surface")
-    for id, payload, result in connection.execute(CALCULATIONS):
-        yield from _files_of_calculation(id, json.loads(payload), result)
+    for id, payload, result in connection.execute("SELECT id, payload, result FROM job"):
+        yield from _files_of_question(id, json.loads(payload), result)
     if _has_table(connection, "study"):
         for id, sha in connection.execute(STUDIES):
             yield Named(sha, None, id, "rows")
@@ -49,8 +49,6 @@ def _files_that_were_sent(connection: Rows) -> Iterator[Named]:
         if _has_table(connection, table):
             yield from (Named(sha, None, id, kind) for id, sha in connection.execute(query))
 
-
-CALCULATIONS = "SELECT id, payload, result FROM job WHERE kind IN ('calculation', 'preview')"
 
 STUDIES = """
     SELECT id, table_sha256 FROM study WHERE table_sha256 IS NOT NULL
@@ -66,7 +64,10 @@ SENT = (("worksheet_version", IMPORTS, "import"), ("brought_model", BROUGHT, "mo
 """Files that users sent: the table that names them, by which query, and their kind."""
 
 
-def _files_of_calculation(id: str, payload: dict[str, str], result: str | None) -> Iterator[Named]:
+def _files_of_question(id: str, payload: dict[str, str], result: str | None) -> Iterator[Named]:
+    """Yield the question and the answer of a job, of whatever kind, that keeps them as files."""
+    if "body" not in payload:
+        return
     yield Named(payload["body"], None, id, "body")
     if result is not None:
         yield Named(result.rpartition("sha256=")[2], None, id, "answer")
