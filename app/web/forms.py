@@ -19,7 +19,8 @@ from pydantic import JsonValue, TypeAdapter
 
 from app.designs.schemas.designs import Design
 from app.http.access import FORM_TOKEN
-from app.http.strict_requests import FORM_TYPES, BodyTooLarge, NotForm, check_type
+from app.http.limits import BodyTooLarge
+from app.http.strict_requests import FORM_TYPES, NotForm, check_type
 from app.presentation.input_text import text_of, value_of
 from app.web.session import check_form_token
 

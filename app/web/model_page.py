@@ -8,7 +8,7 @@ from fastapi import Request, Response
 
 from app.api.responses import finished
 from app.catalogue.catalogues import Catalogues
-from app.http.roles import AUTHOR
+from app.http.access import AUTHOR
 from app.presentation.input_text import text_of, value_of
 from app.schemas.problems import Problem
 from app.schemas.values import Given

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheIdentity, services_of
-from app.http.roles import public
+from app.http.access import public
 from app.identity.oidc import Begun, Provider, ProviderRefused, begin
 from app.web.responses import go, show
 from app.web.session import keep_signed_in

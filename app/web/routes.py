@@ -23,7 +23,7 @@ from app.designs.routes.designs import (
 )
 from app.designs.routes.labels import list_tags
 from app.designs.schemas.designs import State
-from app.http.roles import needs
+from app.http.access import needs
 from app.identity.routes.audit import list_audit, show_head
 from app.presentation.criteria import line
 from app.solids.routes.models import list_model_versions, list_models

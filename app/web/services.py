@@ -23,10 +23,10 @@ from app.api.services import Services
 from app.calculations.errors import InvalidBody
 from app.designs.routes.designs import noted
 from app.designs.service import Saved
-from app.http import nul
-from app.http.clients import TheClient
+from app.http.access import TheClient
 from app.http.problem_kinds import TABLE
 from app.http.problems import refusal
+from app.http.strict_requests import refuse_nul_in
 from app.schemas.problems import Problem
 from app.storage.idempotency import Once
 
@@ -157,7 +157,7 @@ class PageServices(Services):
             If nothing was saved.
         """
         with refusals():
-            nul.refuse_in({**patch, "note": note})
+            refuse_nul_in({**patch, "note": note})
             change, noted_as = noted({**patch, **({"note": note} if note.strip() else {})})
         return await self.save(self.labelling.change, id, change, noted_as, tag_of(revision), self.once)
 
@@ -220,7 +220,7 @@ class PageServices(Services):
             With everything that is wrong.
         """
         with refusals():
-            nul.refuse_in(body)
+            refuse_nul_in(body)
             try:
                 return TypeAdapter(kind).validate_python(body)
             except ValidationError as error:

@@ -12,8 +12,7 @@ import secrets
 
 from fastapi import Request, Response
 
-from app.http.access import FORM_TOKEN, SIGN_IN
-from app.http.clients import COOKIE, PRINCIPAL, is_session
+from app.http.access import COOKIE, FORM_TOKEN, PRINCIPAL, SIGN_IN, is_session
 from app.http.guard import CrossSite
 from app.identity.principal import ANONYMOUS
 

@@ -12,8 +12,7 @@ from fastapi import APIRouter, Depends, Path, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheIdentity, services_of
-from app.http.access import SIGN_IN
-from app.http.roles import needs, public
+from app.http.access import SIGN_IN, needs, public
 from app.identity.errors import NotSignedIn
 from app.identity.keys import key_prefix
 from app.identity.routes import principals as routes

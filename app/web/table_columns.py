@@ -15,7 +15,7 @@ from fastapi import APIRouter
 from starlette.concurrency import run_in_threadpool
 
 from app.calculations.tables import TableColumn, read_table
-from app.http.roles import needs
+from app.http.access import needs
 from app.http.strict_requests import StrictRoute
 from app.reference import Reference
 from app.schemas.tables import ChosenColumn, PastedTable, ReadColumn, ReadTable, TableField

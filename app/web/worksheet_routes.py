@@ -9,7 +9,7 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Query, Request, Response
 from pydantic import JsonValue
 
-from app.http.roles import needs
+from app.http.access import needs
 from app.web.forms import fields, forms_only
 from app.web.responses import go
 from app.web.routes import Id, Text

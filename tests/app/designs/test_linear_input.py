@@ -13,7 +13,7 @@ from app.designs.document import Document, merge
 from app.designs.graph import MOST_RELATION_TEXT, Catalogues, Graph, build_graph
 from app.designs.routes.files import _accepted
 from app.http import problems
-from app.http.heads import _plain_cookies
+from app.http.limits import _plain_cookies
 from app.http.pages import page_of
 from app.pool.size import points
 from app.presentation import numbers

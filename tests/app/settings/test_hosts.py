@@ -9,7 +9,7 @@ from fastapi import FastAPI, Request
 from pydantic import ValidationError
 
 from app.http import guard, problems
-from app.http.clients import COOKIE, HEADER, TheClient
+from app.http.access import COOKIE, HEADER, TheClient
 from app.main import create_app
 from app.settings import Settings
 from app.settings.hosts import Authority, Hosts, is_loopback, parse
