@@ -60,7 +60,7 @@ class EventRow(Base):
 
 
 class CounterRow(Base):
-    """A number that only grows, whatever the wall clock does; see `app.storage.identity`, `ownership`."""
+    """A number that only grows, whatever the wall clock does; see `app.storage.clock`, `ownership`."""
 
     __tablename__ = "counter"
 

@@ -15,7 +15,7 @@ from app.designs.routes.files import _accepted
 from app.http import problems
 from app.http.limits import _plain_cookies
 from app.http.pages import page_of
-from app.pool.size import points
+from app.pool.cost import points
 from app.presentation import numbers
 from app.presentation.input_text import text_of, value_of
 from app.reports.cells import clean
