@@ -62,7 +62,7 @@ from app.storage.errors import DatabaseUnavailable
 from app.studies.routes.studies import router as studies
 from app.studies.routes.tables import router as study_tables
 from app.tolerances.routes import router as tolerances
-from app.web import assembly as pages
+from app.web import site as pages
 from app.worksheets.routes.imports import router as worksheet_imports
 from app.worksheets.routes.worksheets import router as written_worksheets
 

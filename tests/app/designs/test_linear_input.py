@@ -21,7 +21,7 @@ from app.presentation.input_text import text_of, value_of
 from app.reports.cells import clean
 from app.reports.routes import REPORTS, _wanted
 from app.solids.routes.models import BuildIn
-from app.web.forms import kept, patch_of
+from app.web.shared.forms import kept, patch_of
 from cad.lists import listed
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import MOST_SUGGESTED, Fault, InvalidInputs, excerpt, unknown_name, unknown_names
