@@ -10,7 +10,7 @@ from cad.errors import GeometryError
 from cad.regenerate import Build, as_text, regenerate_class
 from templates.core.errors import InvalidInputs
 
-CLS = models().get("plain_bearing", 3)
+CLS = models().get("plain_bearing", 1)
 BARE = {
     "inner_diameter": "48 mm", "wall": "2.4 mm", "width": "24 mm", "oil_hole_diameter": "0 mm",
     "oil_groove_width": "0 mm", "tang_width": "0 mm", "relief_depth": "0 mm", "inner_chamfer": "0 mm",

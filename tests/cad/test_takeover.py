@@ -86,7 +86,7 @@ CASES: list[Case] = [
     ("crankshaft", 1, short_mains, one_throw),
     ("crankshaft", 2, lambda cls, rng: test_crankshaft_2_random.sample(rng), as_it_is),
     ("plain_bearing", 1, anywhere, plain_shell),
-    ("plain_bearing", 2, test_bearing_parts.sample, as_it_is),
+    ("plain_bearing", 1, test_bearing_parts.sample, as_it_is),
 ]
 
 
