@@ -1,4 +1,4 @@
-"""Half shells of a plain bearing, in their housing or free, or a full bush; see the class below.
+"""Plain bearing: half shells, in their housing or free, or a full bush; see the class below.
 
 Parameters and rules are in `cad.shells`.
 """
@@ -42,7 +42,7 @@ def is_fitted(state: str) -> Truth:
 
 
 class PlainBearing(ShellRules):
-    """Half shells of a plain bearing, upper, lower or both, in their housing or free; or a full bush.
+    """Plain bearing: a pair of half shells, one of them, or a full bush; in the housing or free.
 
     z is along the shaft, the joint in the plane y = 0, the crown of the upper shell at +y. The upper shell
     has the oil groove and the oil hole, the lower one is plain. Back and lining are bodies of their own, the

@@ -11,11 +11,9 @@ Test = TypeVar("Test", bound=Callable[..., object])
 Model = tuple[str, int]  # id, version
 
 SHAFTS = (("crankshaft", 1), ("crankshaft", 2), ("crankshaft", 3))
-EARLIER = (("plain_bearing", 1),)
-"""Versions whose solids the next version draws too, by the same code."""
-LARGE = (*SHAFTS, ("bearing_assembly", 1), *EARLIER)
+LARGE = (*SHAFTS, ("bearing_assembly", 1))
 """To build, mesh or draw one takes as long as all others together. What they consist of, throws, shells and
-housings, are models of their own, in the quick lane; so is a later version."""
+housings, are models of their own, in the quick lane."""
 
 BALLS = ("deep_groove_bearing", 1)
 """To draw one takes as long as all other models in the quick lane together."""

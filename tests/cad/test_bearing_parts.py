@@ -23,7 +23,6 @@ NEW = [
     ("thrust_washer", 1),
     ("flanged_bush", 1),
     ("plain_bearing", 1),
-    ("plain_bearing", 1),
     ("bearing_housing", 1),
     ("bearing_assembly", 1),
     ("connecting_rod", 1),
@@ -45,13 +44,10 @@ LIMITS = {  # what a random set must reach: the least share of 300 that makes a 
 HOSTILE_VALUES = (math.nan, math.inf, -math.inf, -1.0, -1e-3, 0.0, 1e-12, 1e-9, 1e-7, 1e-6, 1e9, 1e300)
 BAD = (*HOSTILE_VALUES[:5], 1e9, 1e300)
 
-BY_DEFAULT = {("plain_bearing", 1): {"oil_groove_width", "tang_width"}}
-"""Sizes that a version refuses by name where both are its defaults; `plain_bearing` 1 has others."""
-
 EVERY = [pytest.param(models().get(*one), id=f"{one[0]}_v{one[1]}") for one in NEW]
 BEARING = pytest.param(models().get("deep_groove_bearing", 1), id="deep_groove_bearing_v1")
-QUICK = [one for one in EVERY if one.id not in ("bearing_assembly_v1", "plain_bearing_v1")]
-"""An assembly consists of two of the others; the next version of the shells covers version 2."""
+QUICK = [one for one in EVERY if one.id != "bearing_assembly_v1"]
+"""An assembly consists of two of the others."""
 
 
 def sample(cls: type[CadModel], rng: np.random.Generator) -> dict[str, Any]:
@@ -92,7 +88,7 @@ def drawn(cls: type[CadModel], given: dict[str, Any]) -> bool:
     """Whether a solid was made of it, each of its dimensions as asked; refusals name what was given."""
     if named := refused(cls, given):
         assert named <= set(cls.inputs)
-        assert named & set(given) or named == BY_DEFAULT.get((cls.id, cls.version))
+        assert named & set(given)
         return False
     model, result = cls.from_si(given), regenerate(cls.id, cls.version, given)
     for name, value in result.dimensions.items():

@@ -199,7 +199,7 @@ def parameters(draw: st.DrawFn, cls: type[CadModel]) -> dict[str, Value]:
 QUICK = settings(max_examples=15, suppress_health_check=list(HealthCheck))
 
 
-@slow_for(*LARGE, BALLS, ("plain_bearing", 1), ("plain_bearing", 1))  # test_bearing_parts.py has random ones
+@slow_for(*LARGE, BALLS, ("plain_bearing", 1))  # test_bearing_parts.py has random ones
 @QUICK
 @given(data=st.data())
 def test_any_parameters_give_a_checked_solid_or_are_refused(

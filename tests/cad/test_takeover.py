@@ -1,6 +1,6 @@
 """Every parameter set of a superseded model has an equal in the newest version, which draws the same solid.
 
-This file goes with `crankshaft` 1 and 2 and `plain_bearing` 1 and 2.
+This file goes with `crankshaft` 1 and 2.
 """
 
 from collections.abc import Callable, Mapping
@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import test_bearing_parts
 import test_cranks_random
 import test_crankshaft_2_random
 from seeds import seeded
@@ -23,23 +22,12 @@ ENDS = {
     "front_length": "nose_length", "front_diameter": "nose_diameter", "rear_length": "flange_thickness",
     "rear_diameter": "flange_diameter",
 }  # fmt: skip
-NONE_OF_A_PLAIN_SHELL = (
-    "lining_thickness", "tang_width", "relief_depth", "inner_chamfer", "outer_chamfer", "flange_diameter",
-    "crush_height",
-)  # fmt: skip
 
 
 def one_throw(values: Mapping[str, Any]) -> Values:
     """Return the equal of a `crankshaft` 1: its timing end as nose, its other end as flange without bolts."""
     kept = {ENDS.get(name, name): value for name, value in values.items()}
     return {**kept, "pin_angles": [0.0], "bolt_hole_diameter": 0.0}
-
-
-def plain_shell(values: Mapping[str, Any]) -> Values:
-    """Return the equal of a `plain_bearing` 1: a shell of one material, all round or the upper half."""
-    kept = {name: value for name, value in values.items() if name != "shell"}
-    shells = {"half": "upper", "full": "full"}[values["shell"]]
-    return {**kept, "shells": shells, **dict.fromkeys(NONE_OF_A_PLAIN_SHELL, 0.0)}
 
 
 def as_it_is(values: Mapping[str, Any]) -> Values:
@@ -55,38 +43,10 @@ def short_mains(cls: type[CadModel], rng: np.random.Generator) -> Values:
     return given
 
 
-def anywhere(cls: type[CadModel], rng: np.random.Generator) -> Values:
-    """Return parameters of a plain bearing in all of their ranges, or by shares of the bore."""
-    wide = bool(rng.random() < 0.3)
-    d = 10 ** rng.uniform(-3, np.log10(5))
-
-    def length(name: str, low: float, high: float) -> float:
-        if not wide:
-            return float(d * low * (high / low) ** rng.random())
-        bounds = cls.inputs[name].meaning.domain_si
-        least = max(bounds.ge, 1e-5)
-        return float(least * (bounds.le / least) ** rng.random())
-
-    given: Values = {"inner_diameter": d, "shell": str(rng.choice(["half", "full"]))}
-    if rng.random() < 0.8:
-        given["wall"] = length("wall", 0.03, 2)
-    if rng.random() < 0.8:
-        given["width"] = length("width", 0.1, 3)
-    for name, low, high in (("oil_hole_diameter", 0.02, 0.8), ("oil_groove_width", 0.02, 1)):
-        if rng.random() < 0.7:
-            given[name] = 0.0 if rng.random() < 0.2 else length(name, low, high)
-    if rng.random() < 0.7:
-        wall = given.get("wall", 0.05 * d)
-        given["oil_groove_depth"] = 0.0 if rng.random() < 0.3 else float(wall * rng.uniform(0.01, 0.9))
-    return given
-
-
 Case = tuple[str, int, Callable[[type[CadModel], np.random.Generator], Values], Callable[[Values], Values]]
 CASES: list[Case] = [
     ("crankshaft", 1, short_mains, one_throw),
     ("crankshaft", 2, lambda cls, rng: test_crankshaft_2_random.sample(rng), as_it_is),
-    ("plain_bearing", 1, anywhere, plain_shell),
-    ("plain_bearing", 1, test_bearing_parts.sample, as_it_is),
 ]
 
 

@@ -63,7 +63,7 @@ def shelf(database):
         ({"template": "plain_bearing"}, ["main SHELL"]),
         ({"template": "plain_bearings"}, []),
         ({"template": "plain_bearing/1"}, ["main SHELL"]),
-        ({"template": "plain_bearing/1"}, []),
+        ({"template": "plain_bearing/2"}, []),
         ({"name": "main", "state": "current", "template": "oil_film"}, ["Main bearing"]),
     ],
 )
