@@ -8,8 +8,8 @@ what it found is attached to the revision. Generator expressions, comprehensions
 Python 3.11) and lambdas count as functions; a generator or coroutine that goes on counts no second time. The
 writer thread of the database is included; HTTP, the queue and starting a process are not.
 
-The design is the paper's film (`oil_film` 1) with a full bush (`plain_bearing`) whose width and bore follow from
-it. It is changed a few times before, so that every cache is warm, and each time to a width that is new.
+The design is the paper's film (`oil_film` 1) with a full bush, a `plain_bearing`, whose width and bore follow
+from it. It is changed a few times before, so that every cache is warm, and each time to a width that is new.
 """
 
 from __future__ import annotations

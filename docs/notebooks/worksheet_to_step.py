@@ -65,8 +65,8 @@ axes.grid(alpha=0.3)
 # ## The shells
 #
 # The model `plain_bearing` takes the bore from the calculation: the bearing diameter of the film. Whatever
-# is not given has a default that fits: a pair of half shells with linings. A parameter out of its range would be
-# refused by name before anything is drawn.
+# is not given has a default that fits: a pair of half shells with linings. A parameter out of its range would
+# be refused by name before anything is drawn.
 
 # %%
 film = oil_film(**{**bearing, "bearing_width": f"{width} mm"})
@@ -91,7 +91,7 @@ place = Path(tempfile.mkdtemp()) / "main_bearing.step"
 place.write_bytes(build.step)
 print(f"{place.name}: {len(build.step)} bytes, {1e3 * build.measures['mass']:.1f} g")
 for name, value in build.dimensions.items():
-    print(f"{name:24} {value:8.4f} mm")
+    print(f"{name:24} {value:8.4f} {plain_bearing.inputs[name].meaning.unit}")
 
 # %% [markdown]
 # These dimensions were measured on the file, not copied from the request:
