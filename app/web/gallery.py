@@ -58,7 +58,6 @@ GALLERY = {
                 "parameters": {
                     "inner_diameter": "= film.bearing_diameter",
                     "width": "= film.bearing_width",
-                    "shell": "half",
                 },
             },
         },
