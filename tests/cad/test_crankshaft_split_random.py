@@ -1,4 +1,4 @@
-"""Random and hostile split pins of `crankshaft` 3: a checked solid, or a refusal by name before drawing."""
+"""Random and hostile split pins of `crankshaft` 1: a checked solid, or a refusal by name before drawing."""
 
 import math
 from typing import Any
@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 from seeds import seeded
-from test_crankshaft_2_random import sample
+from test_crankshaft_random import sample
 
-from cad.models.crankshaft_v3 import Crankshaft
+from cad.models.crankshaft_v1 import Crankshaft
 from cad.regenerate import as_text, regenerate
 from templates.core.errors import InvalidInputs
 
@@ -54,7 +54,7 @@ def drawn(given: dict[str, Any]) -> bool:
     if named := refused(given):
         assert named & set(given)
         return False
-    model, result = Crankshaft.from_si(given), regenerate("crankshaft", 3, given)
+    model, result = Crankshaft.from_si(given), regenerate("crankshaft", 1, given)
     for name, value in result.dimensions.items():
         declared = Crankshaft.inputs[name]
         wanted = np.asarray(declared.meaning.scale.from_si(getattr(model, declared.attribute)))

@@ -1,4 +1,4 @@
-"""Random and hostile parameters of `crankshaft` 2: a checked solid, or a refusal by name before drawing."""
+"""Random and hostile parameters of `crankshaft` 1: a checked solid, or a refusal by name before drawing."""
 
 import math
 from typing import Any
@@ -9,7 +9,7 @@ from seeds import seeded
 from test_cranks_random import HOSTILE as HOSTILE_THROWS
 from test_cranks_random import MAY_BE_NONE, RANGES
 
-from cad.models.crankshaft_v2 import Crankshaft
+from cad.models.crankshaft_v1 import Crankshaft
 from cad.regenerate import as_text, regenerate
 from templates.core.errors import InvalidInputs
 
@@ -18,7 +18,6 @@ ENDS = {
     "flange_diameter": (0.4, 3), "bolt_hole_diameter": (0.02, 0.4), "bolt_circle_diameter": (0.5, 2.5),
     "bolt_hole_depth": (0.05, 0.8),
 }  # fmt: skip
-SHARED = {name: bounds for name, bounds in RANGES.items() if name in Crankshaft.inputs}
 COMMON = (0.0, math.pi / 2, math.pi, 2 * math.pi / 3, -math.pi / 2, 3 * math.pi)
 
 D = 0.055
@@ -61,7 +60,7 @@ def sample(rng: np.random.Generator) -> dict[str, Any]:
     angles = [rng.choice(COMMON) if rng.random() < 0.5 else rng.uniform(-7, 12) for _ in range(count)]
     chosen: dict[str, Any] = {"journal_diameter": size, "pin_angles": [float(a) for a in angles]}
     chosen["web_shape"] = rng.choice(["obround", "rectangular"]).item()
-    for name, (low, high) in {**SHARED, **ENDS}.items():
+    for name, (low, high) in {**RANGES, **ENDS}.items():
         if name != "counterweight_radius" and rng.random() < 0.4:
             none = name in MAY_BE_NONE and rng.random() < 0.3
             chosen[name] = 0.0 if none else size * low * (high / low) ** rng.random()
@@ -91,7 +90,7 @@ def drawn(given: dict[str, Any]) -> bool:
     if named := refused(given):
         assert named & set(given)
         return False
-    model, result = Crankshaft.from_si(given), regenerate("crankshaft", 2, given)
+    model, result = Crankshaft.from_si(given), regenerate("crankshaft", 1, given)
     for name, value in result.dimensions.items():
         declared = Crankshaft.inputs[name]
         wanted = np.asarray(declared.meaning.scale.from_si(getattr(model, declared.attribute)))
@@ -107,6 +106,31 @@ def solids_among(sets: int, seed: int) -> int:
 
 def test_property_some_random_crankshafts() -> None:
     assert 2 < solids_among(10, seed=5) < 10
+
+
+def short_mains(rng: np.random.Generator) -> dict[str, Any]:
+    """Random parameters [SI] of one throw, its main journals shorter than two fillets."""
+    given = {**sample(rng), "pin_angles": [0.0]}
+    given["counterweight_radius"] = float(np.max(given.get("counterweight_radius", 0.0)))
+    given["journal_length"] = given["journal_diameter"] * 10 ** rng.uniform(-2, 0)
+    given["fillet"] = given["journal_length"] * rng.uniform(0.51, 0.89)
+    return given
+
+
+def test_property_one_throw_takes_mains_shorter_than_two_fillets() -> None:
+    """Each main then has one fillet; between two throws it has two, which do not fit."""
+    rng = np.random.default_rng(8)
+    accepted = [given for given in (short_mains(rng) for _ in range(60)) if not refused(given)]
+    assert len(accepted) > 5
+    assert all(map(drawn, accepted[:3]))
+    between = {"pin_angles": [0.0, math.pi / 2]}
+    assert all({"fillet", "journal_length"} <= refused({**given, **between}) for given in accepted)
+
+
+@pytest.mark.slow
+def test_property_many_shafts_of_one_throw_with_short_mains() -> None:
+    rng = np.random.default_rng(seeded(9))
+    assert sum(drawn(short_mains(rng)) for _ in range(300)) > 20
 
 
 @pytest.mark.slow
