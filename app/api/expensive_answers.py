@@ -13,7 +13,7 @@ from app.api.responses import accepted, client_left, patience
 from app.calculations.jobs import CalculationJobs
 from app.calculations.operations import LARGE, Question, answered, check, checked
 from app.catalogue.catalogues import Catalogues
-from app.http.clients import get_client
+from app.http.access import get_client
 from app.http.pace import PiecesResponse
 from app.pool.errors import TooManyCalculations
 from app.pool.pool import Calculation, CalculationPool

@@ -11,7 +11,7 @@ from app.calculations.routes.evaluations import stored_answer
 from app.catalogue.routes.templates import Id, Number
 from app.designs.routes.answers import Prefer
 from app.http import problems
-from app.http.clients import TheClient
+from app.http.access import TheClient
 from app.http.pace import PiecesResponse
 from app.http.problem_kinds import INTERNAL
 from app.http.strict_requests import StrictRoute

@@ -18,7 +18,7 @@ from app.designs.schemas.designs import Preview
 from app.designs.schemas.solution import DesignSolution
 from app.designs.schemas.variants import VariantDetail
 from app.http import problems
-from app.http.clients import TheClient
+from app.http.access import TheClient
 from app.http.pace import PiecesResponse
 from app.http.problem_kinds import INTERNAL
 from app.impact.schemas import Impact
