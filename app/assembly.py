@@ -17,12 +17,11 @@ from app.catalogue.catalogues import Catalogues, TeamCatalogues
 from app.catalogue.check import CheckInProcess
 from app.catalogue.discovery import find_templates
 from app.designs import decisions as decisions_of
-from app.designs.calculation_cache import CalculationCache
 from app.designs.labels import Labelling
 from app.designs.preview import Previewed, preview
 from app.designs.questions import Asked, Questions, in_a_process
 from app.designs.regeneration import Regeneration
-from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
+from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, CalculationCache, Designs
 from app.designs.solution import solved
 from app.designs.variants.detail import WantedVariant, detailed
 from app.http import problems
@@ -161,7 +160,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
         threads=Threads(),
         answering=Answering(calculations.pool, calculations.jobs, settings.calculation_deadline),
         designs=designs,
-        labelling=Labelling(designs),
+        labelling=Labelling(database),
         previews=previews,
         decisions=decisions,
         studies=studies,
