@@ -27,8 +27,7 @@ from app.designs.schemas.solution import DesignSolution
 from app.designs.schemas.variants import VariantDetail
 from app.designs.service import Designs
 from app.designs.variants.detail import WantedVariant
-from app.http.access import STILL
-from app.http.clients import TheClient
+from app.http.access import STILL, TheClient
 from app.http.strict_requests import fingerprint
 from app.identity.service import Identity
 from app.impact import survey

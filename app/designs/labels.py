@@ -21,10 +21,10 @@ from app.designs.service import Designs, Saved
 from app.identity.audit import record
 from app.plain import JsonObject, Raw
 from app.schemas.bounds import Bounded
+from app.storage.clock import now
 from app.storage.idempotency import Once
-from app.storage.identity import now
 from app.storage.tables import DesignRow, DesignTagRow, RevisionRow
-from app.storage.upserts import upsert
+from app.storage.units import upsert
 from templates.core.errors import Fault, InvalidInputs
 
 MOST_LISTED = 500

@@ -20,11 +20,10 @@ from app.designs.results import ModelState
 from app.identity.audit import record
 from app.identity.principal import acting
 from app.plain import JsonObject
+from app.storage.clock import new_id, now
 from app.storage.errors import NotFound
-from app.storage.identity import new_id, now
-from app.storage.statements import Row, Values
 from app.storage.tables import DesignRow, RevisionModelRow, RevisionRow, canonical_json
-from app.storage.upserts import upsert_values
+from app.storage.units import Row, Values, upsert_values
 
 _LEAN = defer(RevisionRow.results)
 _LEAN_REVISION = (

@@ -30,14 +30,13 @@ from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available
 from app.jobs.service import Jobs
 from app.plain import JsonObject, Raw
-from app.pool.pending_calculations import PendingCalculations
-from app.pool.steps import begun_steps
+from app.pool.steps import PendingCalculations, begun_steps
 from app.presentation.units import System
 from app.reference import Reference
-from app.solids.ages import renew
+from app.solids.rows import renew
+from app.storage.clock import now
 from app.storage.database import Database, Unit
 from app.storage.idempotency import Once
-from app.storage.identity import now
 from templates.core.errors import Fault
 
 REGENERATE, REGENERATE_SLOWLY = "regenerate", "regenerate_and_analyse"

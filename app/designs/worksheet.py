@@ -18,8 +18,7 @@ from app.designs.schemas.designs import PreviewedStep, Revision, RevisionStep, R
 from app.plain import JsonObject, Raw
 from app.pool.cost import EXPENSIVE
 from app.pool.errors import StepDeferred
-from app.pool.pending_calculations import fingerprint
-from app.pool.steps import evaluated_step
+from app.pool.steps import evaluated_step, fingerprint
 from app.presentation.units import System
 from templates.core.catalogue.finding import Catalogue
 from templates.core.catalogue.loading import is_outside

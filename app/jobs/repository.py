@@ -21,12 +21,10 @@ from app.jobs.schemas import State
 from app.jobs.turns import ALL_KINDS, LANES, UNFINISHED, Lane, next_turn
 from app.observation import logs
 from app.plain import JsonObject
-from app.storage.clock import operated, present
-from app.storage.identity import new_id, now
+from app.storage.clock import new_id, now, operated, present
 from app.storage.locks import lock
-from app.storage.statements import Statement
 from app.storage.tables import Base, JobRow, canonical_json
-from app.storage.units import repeatable
+from app.storage.units import Statement, repeatable
 
 _JOBS = Base.metadata.tables[JobRow.__tablename__]
 _ADDED = Statement(

@@ -11,10 +11,10 @@ from sqlalchemy.orm import Session
 from app.identity import usage
 from app.solids.outputs import Outputs, StoredOutput
 from app.solids.questions import Question, in_order
+from app.storage.clock import now
 from app.storage.errors import NotFound
-from app.storage.identity import now
 from app.storage.tables import AnalysisRow
-from app.storage.upserts import upsert
+from app.storage.units import upsert
 from cad.analysis.kinds import STRESSES, SURFACE
 
 

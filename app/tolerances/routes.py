@@ -9,8 +9,7 @@ from app.api.dependencies import TheTolerances, Units
 from app.api.responses import LATER, patience
 from app.designs.questions import Asked
 from app.designs.routes.answers import Id, Prefer
-from app.http.clients import TheClient
-from app.http.roles import needs
+from app.http.access import TheClient, needs
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
 from app.tolerances.bodies import ToleranceIn

@@ -23,11 +23,9 @@ from app.calculations.schemas.evaluations import Evaluation, Solution, Worksheet
 from app.calculations.service import evaluated, run_evaluate, run_solve
 from app.calculations.worksheet import run_worksheet
 from app.catalogue.routes.templates import Id, Number
-from app.http.clients import get_client
-from app.http.roles import needs
+from app.http.access import get_client, needs
 from app.http.strict_requests import PlainRoute, StrictRequest
-from app.pool.cost import EXPENSIVE, estimated_seconds, is_quick, solving_seconds, writing_seconds
-from app.pool.size import points
+from app.pool.cost import EXPENSIVE, estimated_seconds, is_quick, points, solving_seconds, writing_seconds
 from app.presentation.units import System
 from app.schemas.problems import Responses, refusals
 from app.workers.pieces import Pieces

@@ -15,7 +15,7 @@ from app.designs.schemas.decision import Decision
 from app.designs.schemas.designs import Preview
 from app.designs.schemas.solution import DesignSolution
 from app.designs.schemas.variants import VariantDetail
-from app.http.clients import TheClient
+from app.http.access import TheClient
 from app.impact.schemas import Impact
 from app.schemas.problems import refusals
 from app.tolerances.schemas import ToleranceAnalysis

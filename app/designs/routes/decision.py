@@ -11,8 +11,7 @@ from app.designs.bodies import DecideIn
 from app.designs.decisions import LONGEST_BUDGET, Asked, read_budget
 from app.designs.routes.answers import Id, Prefer
 from app.designs.schemas.decision import Decision
-from app.http.clients import TheClient
-from app.http.roles import needs
+from app.http.access import TheClient, needs
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
 

@@ -55,9 +55,8 @@ from app.designs.schemas.designs import (
 )
 from app.designs.schemas.labels import MOST_TAGS, Tag
 from app.designs.service import Saved
-from app.http.clients import TheClient, get_client
+from app.http.access import TheClient, get_client, needs
 from app.http.pages import Cursor, Limit, page
-from app.http.roles import needs
 from app.http.strict_requests import PlainRoute, StrictRequest, StrictRoute
 from app.plain import JsonObject
 from app.schemas.problems import refusals

@@ -11,8 +11,7 @@ from app.designs.questions import Asked
 from app.designs.routes.answers import Id, Prefer
 from app.designs.schemas.solution import DesignSolution
 from app.designs.solution import SolveDesignIn
-from app.http.clients import TheClient
-from app.http.roles import needs
+from app.http.access import TheClient, needs
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
 

@@ -43,9 +43,9 @@ from app.designs.variants.detail import WantedVariant
 from app.designs.variants.files import STEP, Entry, entries, variant_model
 from app.designs.variants.names import MOST_VARIANTS
 from app.designs.variants.save import replace_variants as replaced
+from app.http.access import TheClient
 from app.http.archives import MEDIA_TYPE, archived, distinct
 from app.http.attachments import is_at_hand, named, unchanged
-from app.http.clients import TheClient
 from app.http.strict_requests import StrictRoute
 from app.jobs.service import Jobs
 from app.presentation.units import System
