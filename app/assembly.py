@@ -15,14 +15,13 @@ from app.calculations.questions import EVALUATION
 from app.catalogue.catalogues import Catalogues, TeamCatalogues
 from app.catalogue.check import CheckInProcess
 from app.catalogue.discovery import find_templates
-from app.designs.calculation_cache import CalculationCache
 from app.designs.decisions import DECISIONS
 from app.designs.labels import Labelling
 from app.designs.preview import PREVIEWS
 from app.designs.questions import in_a_process
 from app.designs.regeneration import Regeneration
 from app.designs.schemas.solution import DesignSolution
-from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
+from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, CalculationCache, Designs
 from app.designs.solution import solved
 from app.designs.variants.detail import VARIANT_DETAILS
 from app.http import problems
@@ -164,7 +163,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
         threads=Threads(),
         evaluations=evaluations,
         designs=designs,
-        labelling=Labelling(designs),
+        labelling=Labelling(database),
         previews=previews,
         decisions=decisions,
         studies=studies,

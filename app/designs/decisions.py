@@ -13,15 +13,15 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.decision import Climb, ClimbResult, Trial
 from app.designs.engine.verdicts import Verdicts
 from app.designs.errors import DesignError
-from app.designs.graph import build_graph, raise_if
+from app.designs.graph import build_graph, raise_if, settled, starts
 from app.designs.questions import settled as settled_question
-from app.designs.reader import settled, starts
 from app.designs.schemas.decision import Decision, Tried
-from app.designs.solid_records import analysed, built
 from app.plain import JsonObject, Raw
 from app.pool.questions import DECISION, Kind, Reply, json_answer, json_form
 from app.presentation.units import System
 from app.schemas.answers import Quantity
+from app.solids.analysis_rows import analysed
+from app.solids.rows import built
 from app.storage.database import Database
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_names
 from templates.core.units.quantity import read

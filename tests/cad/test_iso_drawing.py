@@ -12,6 +12,7 @@ from ezdxf.document import Drawing
 from ezdxf.math import is_point_in_polygon_2d
 from PIL import ImageFont
 from slow_models import DRAWN
+from undivided import TWO_THROWS
 
 from benchmarks.drawings import SIZES, latest, sized
 from cad.catalogue import models
@@ -343,12 +344,9 @@ def test_a_rod_is_cut_across_its_shank(rod: Build, font: ImageFont.FreeTypeFont)
 @pytest.mark.slow  # test_pmi.py reads counted lengths in the quick lane
 def test_lengths_that_repeat_are_given_once_and_counted() -> None:
     """ISO 129-1: a shaft of two throws has 3 journals, 2 pins, 4 webs; its overall length is the solid's."""
-    model = models().get("crankshaft", 2)
-    angles = {"value": [0, 180], "unit": "deg"}
-    texts = as_text(
-        model.from_quantities({**model.example, "pin_angles": angles, "counterweight_radius": "0 mm"})
-    )
-    build = regenerate_from_text(model.id, 2, {**texts, "pin_length": "32 mm ±0.1 mm"})
+    model = models().get("crankshaft", 1)
+    texts = as_text(model.from_quantities({**TWO_THROWS, "counterweight_radius": "0 mm"}))
+    build = regenerate_from_text(model.id, 1, {**texts, "pin_length": "32 mm ±0.1 mm"})
     drawing = read(derive(build.step, "dxf"))
     result = labels(drawing)
     assert (result["journal_length"], result["web_thickness"]) == ("3×26", "4×18")

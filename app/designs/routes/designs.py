@@ -163,7 +163,7 @@ async def change_design(
     A new name alone keeps all results: nothing is calculated.
     """
     patch, note = noted(body)
-    change = services_of(request).labelling.change
+    change = services_of(request).designs.change
     return await _saved(request, prefer, idempotency_key, partial(change, id, patch, note, if_match))
 
 

@@ -18,13 +18,14 @@ from app.designs.engine.calculation import Calculation
 from app.designs.errors import DesignError
 from app.designs.graph import raise_if
 from app.designs.questions import settled
+from app.designs.results import Outcome
 from app.designs.schemas.variants import VariantDetail
-from app.designs.solid_records import analysed, built
 from app.designs.variants.names import BASE
-from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available, together
 from app.pool.questions import VARIANT, Kind, Reply, json_answer, json_form
 from app.presentation.units import System
+from app.solids.analysis_rows import analysed
+from app.solids.rows import built
 from app.storage.database import Database
 from app.storage.errors import NotFound
 from templates.core.errors import Fault, InvalidInputs, unknown_names

@@ -171,7 +171,7 @@ def _document(
             },
             "crankshaft": {
                 "id": "crankshaft",
-                "version": 2,
+                "version": 1,
                 "parameters": {**_CRANKSHAFT, **shaft},
                 "analyses": gallery_train.analyses(),
             },
