@@ -6,7 +6,7 @@ age in the unit of work that counts on it, or learns there that it is gone.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import lru_cache
 from operator import itemgetter
 from typing import NamedTuple
@@ -18,6 +18,7 @@ from app.identity import usage
 from app.identity.principal import ACTING, BUILT_IN
 from app.plain import JsonObject
 from app.storage.clock import now, operated
+from app.storage.database import Database
 from app.storage.tables import (
     ApprovalRow,
     ArtifactRow,
@@ -28,6 +29,8 @@ from app.storage.tables import (
     variant_of,
 )
 from app.storage.units import Row, Statement, upsert_values
+from cad.model import CadModel
+from cad.regenerate import build_key
 
 _BUILDS = Base.metadata.tables[BuildRow.__tablename__]
 _ARTIFACTS = Base.metadata.tables[ArtifactRow.__tablename__]
@@ -77,6 +80,19 @@ def measures(session: Session, key: str) -> Mapping[str, float] | None:
     for (measured,) in _MEASURED.run(session, {"of": key}):
         return dict(measured["measures"])
     return None
+
+
+def built(database: Database) -> Callable[[CadModel], Mapping[str, float] | None]:
+    """Return a look-up of what built models measure.
+
+    A step may take minutes: so it is looked up when it is asked for, and no connection is held meanwhile.
+    """
+
+    def measured(shape: CadModel) -> Mapping[str, float] | None:
+        with database.read() as session:
+            return measures(session, build_key(shape))
+
+    return measured
 
 
 def artifact(session: Session, key: str, kind: str) -> Artifact | None:

@@ -159,7 +159,7 @@ class PageServices(Services):
         with refusals():
             refuse_nul_in({**patch, "note": note})
             change, noted_as = noted({**patch, **({"note": note} if note.strip() else {})})
-        return await self.save(self.labelling.change, id, change, noted_as, tag_of(revision), self.once)
+        return await self.save(self.designs.change, id, change, noted_as, tag_of(revision), self.once)
 
     async def cancel(self, job: str) -> None:
         """Cancel a job; one that has ended meanwhile is left as it is.
