@@ -124,10 +124,11 @@ def _meaning(network: Network, kinds: Mapping[str, Kind], name: str, reference: 
     """Return the unit in which a value is shown, and its words."""
     if cell := network.parameters.get(name):
         typed = None if cell.relations else read_any(cell.raw).unit
-        return Described(typed or f"{kinds[name].base:~C}" or "1", name.replace("_", " "))
+        return Described(typed or kinds[name].unit, name.replace("_", " "), kinds[name])
     block = network.blocks[reference.block]
     declared = block.cls.inputs.get(reference.member) or block.cls.formulas.get(reference.member)
-    return Described(network.unit_of(reference), declared.meaning.words if declared else name)
+    words = declared.meaning.words if declared else name
+    return Described(network.unit_of(reference), words, network.kind_of(reference))
 
 
 def fault_of(name: str, error: FaultyText) -> Fault:

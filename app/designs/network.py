@@ -22,7 +22,7 @@ from templates.core.judging.criterion import Criterion as Judged
 from templates.core.judging.limits import GivenLimit
 from templates.core.language.spec import Choice, Declaration, Formula, Input
 from templates.core.language.template import Template
-from templates.core.units.operations import Kind
+from templates.core.units.nodes import Kind, kind_of
 from templates.core.units.relation import Relation
 
 LIMITS = "limits"  # where a reference has the name of an analysis, if it means a limit: film.limits.pressure
@@ -198,6 +198,15 @@ class Network:
         """Return the declared unit of a name inside a block."""
         declared = _declared(self.blocks[reference.block], reference)
         return declared.meaning.unit if declared else measured_unit(reference)
+
+    def accepted(self, reference: Reference) -> str:
+        """Return the unit by which it is known what may be typed for a name inside a block."""
+        declared = _declared(self.blocks[reference.block], reference)
+        return declared.meaning.accepted if declared else measured_unit(reference)
+
+    def kind_of(self, reference: Reference) -> Kind:
+        """Return the kind of a name inside a block, under that name."""
+        return kind_of(self.accepted(reference), str(reference))
 
 
 def limits_of(cls: type[Template]) -> dict[str, Limit]:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from app.calculations.criteria import rendered
 from app.calculations.schemas.evaluations import Output
 from app.catalogue.catalogues import Catalogues
@@ -16,6 +14,7 @@ from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph, raise_if
+from app.designs.parameter_explanation import shown
 from app.designs.questions import Reply
 from app.designs.reader import read_document, resolved, starts
 from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, Status
@@ -164,12 +163,7 @@ def _warnings(steps: Mapping[str, RevisionStep]) -> list[Warning]:
 def _values(new: Calculation) -> dict[str, Shown]:
     """Return the values of the design's parameters in SI, without those that wait for a solid."""
     names = (name for name in new.graph.parameters if name in new.values)
-    return {
-        name: Shown(
-            value=np.asarray(new.values[name].value).tolist(), unit=f"{new.graph.kinds[name].base:~C}" or "1"
-        )
-        for name in names
-    }
+    return {name: Shown(**shown(new.values[name].value, new.graph.kinds[name].unit)) for name in names}
 
 
 def _model_parameters(

@@ -13,7 +13,9 @@ from app.impact.schemas import MarginLost, OutputMoved, ParameterMoved, VerdictM
 from app.reference import Reference
 from app.schemas.answers import Quantity
 from templates.core.arrays import Array
-from templates.core.units.units import Value, compatible, unit
+from templates.core.units.conformity import misfit
+from templates.core.units.nodes import kind_of
+from templates.core.units.units import Value, unit
 
 SAME = 1e-9
 """Relative change below which two values are the same: far above the rounding of array calls, 3e-15."""
@@ -124,7 +126,7 @@ def _outputs(before: Outcome, after: Outcome) -> Iterator[tuple[str, float]]:
 def _is_one_kind(before: Outcome, after: Outcome, name: str) -> bool:
     """Return whether both versions measure the same by a name, in whatever units."""
     one, other = before.units[name], after.units[name]
-    return one == other or compatible(unit(one).base, unit(other).base)
+    return one == other or misfit(kind_of(one), unit(other), one) is None
 
 
 def change_size(old: Value, new: Value) -> float:

@@ -18,9 +18,9 @@ from app.storage.tables import canonical_json
 from templates.core.errors import FaultyText
 from templates.core.language.spec import Choice, Curve, Input, Table
 from templates.core.language.template import Template
+from templates.core.units.nodes import kind_of
 from templates.core.units.quantity import read, read_any
 from templates.core.units.relation import is_relation
-from templates.core.units.units import unit
 
 Quantities = Mapping[Reference, float]
 """Values [SI] of the places that are left open."""
@@ -65,7 +65,7 @@ class _Opening:
         if not isinstance(typed.si, float):
             return raw
         self.values[Reference(name)] = typed.si
-        return {"open": f"{unit(typed.unit).base:~C}"}
+        return {"open": kind_of(typed.unit).unit}
 
     def inputs(self, block: str, values: Mapping[str, Raw], cls: type[Template] | None) -> dict[str, Raw]:
         """Return the inputs of a step, or the parameters of a model."""
@@ -76,7 +76,7 @@ class _Opening:
         if declared is None or isinstance(declared, (Choice, Curve, Table)) or _is_written_out(raw):
             return raw
         try:
-            typed = read(raw, declared.meaning.unit)
+            typed = read(raw, declared.meaning.accepted)
         except FaultyText:
             return raw
         if not isinstance(typed.si, float):

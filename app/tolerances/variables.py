@@ -42,7 +42,7 @@ def varied(graph: Graph, behind: Collection[Cell]) -> tuple[list[Varied], list[W
     for cell in graph.cells():
         if cell.relations or not is_toleranced(cell.raw) or isinstance(cell.declared, Choice):
             continue
-        typed = read(cell.raw, cell.declared.meaning.unit) if cell.declared else read_any(cell.raw)
+        typed = read(cell.raw, cell.declared.meaning.accepted) if cell.declared else read_any(cell.raw)
         factor = _factor(cell, typed)
         reason = factor if isinstance(factor, str) else None if cell in behind else APART
         if isinstance(factor, Factor) and reason is None:

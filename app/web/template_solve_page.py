@@ -24,7 +24,7 @@ from app.web.services import PageServices
 from app.web.solution import PATIENCE, Drawing, Reply, ShownRoot, replied
 from app.web.template_page import inputs_of, typed_in
 from templates.core.language import template as language
-from templates.core.units.quantity import read as read_quantity
+from templates.core.units.quantity import read_any, read_beside
 from templates.core.units.units import unit
 
 FIELDS = ("unknown", "low", "high", "output", "value")
@@ -156,7 +156,8 @@ def _drawing(question: Question, solution: Solution) -> Drawing | None:
     curve = solution.curve
     if curve is None or curve.y.unit is None:
         return None
-    typed = read_quantity(value_of(question.typed["value"]), curve.y.unit)
-    wanted = float(np.asarray(unit(curve.y.unit).from_si(typed.si)))
+    scale, raw = unit(curve.y.unit), value_of(question.typed["value"])
+    typed = read_beside(raw, scale.text) if scale.difference else read_any(raw)
+    wanted = float(np.asarray(scale.from_si(typed.si)))
     roots = [*solution.roots, *solution.touching]
     return Drawing(question.typed["unknown"], question.typed["output"], wanted, curve, roots, solution.jumps)

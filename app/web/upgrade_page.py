@@ -20,7 +20,8 @@ from app.web.forms import Patch, fields, forms_only
 from app.web.responses import go, show, units_of
 from app.web.routes import Id, Text
 from app.web.services import PageServices, Refused, ThePageServices
-from templates.core.units.units import compatible, unit
+from templates.core.errors import FaultyText
+from templates.core.units.units import require_same_kind, unit
 
 router = APIRouter(include_in_schema=False)
 forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
@@ -149,9 +150,11 @@ def _in_unit_of(old: Output | AnalysisOutput, new: Output | AnalysisOutput) -> s
     value, given, wanted = old.value, old.unit, new.unit
     if not isinstance(value, float) or not given or not wanted or given == wanted:
         return numbers.in_line(old)
-    if not compatible(unit(given).base, unit(wanted).base):
+    try:
+        scale = require_same_kind(given, wanted)
+    except FaultyText:
         return numbers.in_line(old)
-    return numbers.in_line(Quantity(value=float(unit(wanted).from_si(unit(given).to_si(value))), unit=wanted))
+    return numbers.in_line(Quantity(value=float(unit(wanted).from_si(scale.to_si(value))), unit=wanted))
 
 
 def _parameters(preview: Preview) -> list[Moved]:

@@ -232,10 +232,15 @@ class Net:
         """Return the declared unit of a place, an output or a measure; of a parameter the unit as written."""
         if cell := self.graph.parameters.get(str(reference)):
             typed = None if cell.relations else read_any(cell.raw).unit
-            return typed or f"{self.graph.kinds[str(reference)].base:~C}" or "1"
+            return typed or self.graph.kinds[str(reference)].unit
         raise_if(list(self.design.faults([reference], {})))
         is_inside = is_member(self.graph, reference)
         return self.graph.unit_of(reference) if is_inside else measured_unit(reference)
+
+    def accepted(self, reference: Reference) -> str:
+        """Return the unit by which it is known what may be typed for a name."""
+        is_inside = str(reference) not in self.graph.parameters and is_member(self.graph, reference)
+        return self.graph.accepted(reference) if is_inside else self.unit(reference)
 
     def nominal(self, reference: Reference) -> Value:
         """Return the value [SI] of a name as the document has it.

@@ -43,7 +43,7 @@ def with_places(document: Document, graph: Graph, varied: Collection[Reference])
 
 def _unit(graph: Graph, reference: Reference) -> str:
     """Return the unit of a parameter that a relation sets."""
-    return f"{graph.kinds[str(reference)].base:~C}" or "1"
+    return graph.kinds[str(reference)].unit
 
 
 def _placeholder(declared: Input) -> Raw:
