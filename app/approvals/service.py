@@ -15,9 +15,9 @@ from app.identity.errors import RoleNeeded
 from app.identity.principal import acting
 from app.schemas.approval_steps import Step
 from app.storage.artifacts import Artifacts
+from app.storage.clock import now
 from app.storage.database import Database
 from app.storage.idempotency import Once
-from app.storage.identity import now
 from app.storage.tables import ApprovalRow, RevisionRow
 
 

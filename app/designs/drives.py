@@ -13,9 +13,8 @@ from cachetools import LRUCache
 from app.catalogue.catalogues import Catalogues
 from app.catalogue.team import Snapshot
 from app.designs.analyses import measured_names, measured_unit
-from app.designs.graph import build_graph
+from app.designs.graph import build_graph, read_document, resolved
 from app.designs.network import LIMITS, Block, Cell, Graph
-from app.designs.reader import read_document, resolved
 from app.designs.schemas.network import DesignNetwork, NetworkBlock, NetworkName, NetworkRelation
 from app.plain import Raw
 from app.reference import Reference

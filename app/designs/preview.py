@@ -13,24 +13,25 @@ from app.designs.document import Document, merge
 from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
-from app.designs.graph import build_graph, raise_if
+from app.designs.errors import DesignError
+from app.designs.graph import build_graph, raise_if, read_document, resolved, starts
 from app.designs.parameter_explanation import shown
-from app.designs.questions import Reply
-from app.designs.reader import read_document, resolved, starts
+from app.designs.results import Outcome
 from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, Status
-from app.designs.solid_records import analysed, built
 from app.designs.variants.checks import checked
-from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available
 from app.designs.variants.verdict import merged
 from app.designs.worksheet import previewed
 from app.plain import JsonObject
+from app.pool.questions import PREVIEW, Kind, Reply, json_answer, json_form
 from app.presentation.units import System
 from app.schemas.answers import Shown, Warning
-from app.solids import measures
+from app.solids.analysis_rows import analysed
 from app.solids.analysis_views import output as analysis_output
+from app.solids.rows import built
 from app.solids.schemas.analyses import AnalysisOutput
 from app.storage.database import Database
+from cad.regenerate import as_quantities
 from templates.core.errors import Fault
 from templates.core.judging.judgement import Judgement
 
@@ -186,7 +187,7 @@ def _model_parameters(
 
 def _parameters(calculation: Calculation, model: str) -> dict[str, Shown]:
     shape = calculation.shapes.get(model)
-    quantities = measures.parameters(shape) if shape else {}
+    quantities = as_quantities(shape) if shape else {}
     return {name: Shown.model_validate(quantity) for name, quantity in quantities.items()}
 
 
@@ -200,3 +201,13 @@ def _status(
     if after is None:
         return "pending"
     return "unchanged" if before == after else "ok"
+
+
+PREVIEWS = Kind(
+    PREVIEW,
+    json_form(Previewed),
+    json_answer(Preview),
+    preview,
+    failures=(DesignError,),
+    has_parts=True,
+)

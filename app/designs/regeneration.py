@@ -7,21 +7,16 @@ from collections.abc import Mapping
 from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
-from app.designs import repository
+from app.designs import repository, results
 from app.designs.analyses import measured_unit
-from app.designs.calculation_cache import CalculationCache, Prepared
 from app.designs.document import Document, Iteration
 from app.designs.engine.calculate import calculate, resume
 from app.designs.engine.calculation import Calculation
 from app.designs.errors import NotConverged
-from app.designs.graph import Graph, build_graph, raise_if
-from app.designs.model_failures import named
-from app.designs.reader import starts
-from app.designs.service import REGENERATE
-from app.designs.solid_records import analysed, built
-from app.designs.variants import records as variants
+from app.designs.graph import Graph, build_graph, raise_if, starts
+from app.designs.results import Outcome
+from app.designs.service import REGENERATE, CalculationCache, Prepared
 from app.designs.variants.checks import row_faults
-from app.designs.variants.outcome import Outcome
 from app.designs.variants.solids import Describe, Settling, plain_problem
 from app.designs.variants.together import Available, together
 from app.jobs.service import Completion, Job, JobContext, JobFailed
@@ -30,7 +25,9 @@ from app.pool.pool import Lane
 from app.pool.steps import Steps, calling
 from app.reference import Reference
 from app.solids.analysis_process import Analysing
-from app.solids.builds import Builds
+from app.solids.analysis_rows import analysed
+from app.solids.builds import Builds, failures_named
+from app.solids.rows import built
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild
 from app.workers.errors import DeadlineExceeded, MemoryExceeded
@@ -86,8 +83,8 @@ class Regeneration:
                 outcomes = self._variants(prepared.document, calculation, context)
         except FAILURES as error:
             raise JobFailed(error) from error
-        stored = variants.stored(calculation, rounds, outcomes)
-        models = variants.models(calculation, outcomes)
+        stored = results.stored(calculation, rounds, outcomes)
+        models = results.models(calculation, outcomes)
 
         def completion(session: Session) -> str:
             repository.attach(session, id, number, stored, models)
@@ -160,7 +157,7 @@ class Regeneration:
                 continue  # a build was deleted since: it is built again
             waiting = sorted(calculation.shapes.keys() - calculation.measures.keys())
             for name in waiting:
-                with named(name):
+                with failures_named(name):
                     self.builds.make(calculation.shapes[name], context)
             if not self._analysed(calculation, context) and not waiting:
                 return calculation
@@ -172,7 +169,7 @@ class Regeneration:
         for node in waiting:
             name, kind = node.model.name, node.kind
             question = node.model.analyses[kind]
-            with named(name, kind):
+            with failures_named(name, kind):
                 self.builds.make(calculation.shapes[name], context)  # its file may be lost
                 self.analysing.find(
                     calculation.shapes[name], question, calculation.graph.wanted(name, kind), context

@@ -19,12 +19,13 @@ from app.designs.releases import EVER_RELEASED, NEWEST_RELEASED
 from app.designs.results import ModelState
 from app.identity.audit import record
 from app.identity.principal import acting
+from app.jobs.events import Event, Events
 from app.plain import JsonObject
+from app.storage import event_log
+from app.storage.clock import new_id, now
 from app.storage.errors import NotFound
-from app.storage.identity import new_id, now
-from app.storage.statements import Row, Values
 from app.storage.tables import DesignRow, RevisionModelRow, RevisionRow, canonical_json
-from app.storage.upserts import upsert_values
+from app.storage.units import Row, Values, upsert_values
 
 _LEAN = defer(RevisionRow.results)
 _LEAN_REVISION = (
@@ -323,3 +324,38 @@ def changed_since_good(session: Session, id: str, number: int) -> list[str]:
         before = good.parameters if good else {}
         changed += (f"{model.name}.{n}" for n, v in model.parameters.items() if before.get(n) != v)
     return changed
+
+
+@dataclass(frozen=True)
+class Standing:
+    """The state of a design's regeneration, and the newest event that it includes."""
+
+    number: int
+    revision: int
+    state: str
+    problem: object
+
+
+def note_revision(session: Session, events: Events, design: str, revision: int, state: str) -> None:
+    """Note a new revision and its state, in the unit that writes it."""
+    topic, data = f"design:{design}", {"revision": revision}
+    events.note(session, Event(topic, "revision", data), Event(topic, state, data))
+
+
+def standing(session: Session, id: str) -> Standing:
+    """Return at which revision a design is, and how its regeneration stands.
+
+    Raises
+    ------
+    NotFound
+        If there is no such design.
+    """
+    newest = head(session, id)
+    number = design(session, id).event
+    return Standing(number, newest.number, newest.state, newest.problem)
+
+
+def can_resume(session: Session, id: str, last: int | None) -> bool:
+    """Return whether all events of a design after the one that a reader got last are kept."""
+    until = design(session, id).event
+    return last is not None and event_log.can_resume(session, f"design:{id}", last, until)

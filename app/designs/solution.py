@@ -14,9 +14,8 @@ from app.designs.document import Document, Place
 from app.designs.engine.calculate import calculate
 from app.designs.engine.net import Net
 from app.designs.engine.verdicts import judged
-from app.designs.graph import build_graph
+from app.designs.graph import build_graph, starts
 from app.designs.overrides import changed
-from app.designs.reader import starts
 from app.designs.schemas.solution import DesignRoot, DesignSolution, Target
 from app.designs.solution_search import DesignRoots, Wanted, roots_of_design
 from app.designs.tasks import DesignTask

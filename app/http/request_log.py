@@ -8,7 +8,7 @@ import time
 from fastapi import FastAPI
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.http.clients import from_whom
+from app.http.access import from_whom
 from app.observation import logs, metrics
 
 logger = logging.getLogger(__name__)

@@ -15,8 +15,8 @@ from sqlalchemy.exc import DBAPIError
 from sqlalchemy.orm import Session
 
 from app.storage.errors import DatabaseDamaged
-from app.storage.statements import Statement, Values
 from app.storage.tables import AuditRow, Base, canonical_json
+from app.storage.units import Statement, Values
 
 AT_ONCE = 1000  # rows that are read together
 SOME = 100  # rows that one unit seals: others' writes wait a few milliseconds for it

@@ -26,8 +26,8 @@ from app.identity.limits import Limits, limits_of
 from app.identity.principal import BUILT_IN, ROLES, Principal, Role, acting
 from app.identity.usage import Used
 from app.settings import Settings
+from app.storage.clock import as_text, new_id, now
 from app.storage.database import Database
-from app.storage.identity import as_text, new_id, now
 from app.storage.tables import ApiKeyRow, PrincipalRow, SessionRow
 
 T = TypeVar("T")

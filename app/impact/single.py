@@ -11,9 +11,8 @@ from app.designs.document import Document
 from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
-from app.designs.graph import build_graph
+from app.designs.graph import build_graph, starts
 from app.designs.network import Block, Cell
-from app.designs.reader import starts
 from app.impact.outcome import Judged, Outcome
 from app.impact.solids import Solids
 from app.reference import Reference

@@ -6,10 +6,10 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.identity.principal import BUILT_IN, acting
+from app.storage.clock import now
 from app.storage.errors import NotFound
-from app.storage.identity import now
 from app.storage.tables import BroughtModelRow as Row
-from app.storage.upserts import insert_new
+from app.storage.units import insert_new
 from cad.imported_models import Description
 
 

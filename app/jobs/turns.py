@@ -16,8 +16,8 @@ from sqlalchemy.orm import Session
 from sqlalchemy.sql.functions import Function
 
 from app.jobs.errors import JobShared
-from app.storage.statements import Statement
 from app.storage.tables import Base, JobRow
+from app.storage.units import Statement
 
 UNFINISHED = ("queued", "running")
 MOST_OTHERS = 20  # clients that are remembered to wait for a job, beside the one whose turn it takes

@@ -26,7 +26,7 @@ from app.maintenance.errors import CannotRun
 from app.maintenance.files import fault_of
 from app.maintenance.folder import database_file, reading, refuse_other_schema
 from app.maintenance.rows import Named, named_files
-from app.storage.identity import now
+from app.storage.clock import now
 from app.storage.integrity import faults
 
 EVERY = 500  # artifacts between two lines of progress

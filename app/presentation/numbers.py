@@ -1,6 +1,6 @@
 """Numbers and units as a worksheet shows them: five significant digits, aligned at the point, the unit once.
 
-`static/numbers.js` does the same while a user types; `tests/web` compares the two.
+`app/web/shared/numbers.js` does the same while a user types; `tests/app/web` compares the two.
 """
 
 from __future__ import annotations

@@ -18,8 +18,8 @@ from app.api.responses import accepted_weights, finished, patience, written
 from app.api.threads import Threads
 from app.designs.routes.answers import Id, Number, Prefer, Within
 from app.designs.schemas.designs import RevisionWorksheet
+from app.http.access import TheClient
 from app.http.attachments import named
-from app.http.clients import TheClient
 from app.http.guard import PAGE_POLICY
 from app.http.strict_requests import StrictRoute
 from app.jobs.service import Jobs

@@ -12,8 +12,8 @@ from app.catalogue.catalogues import Catalogues
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.schemas.answers import Shown, Version
 from app.solids import measures, rows
-from app.solids.ages import is_fresh, renew
 from app.solids.builds import Builds
+from app.solids.rows import is_fresh, renew
 from app.solids.schemas.models import Build, BuildUse, Stated, Verification
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database

@@ -15,10 +15,9 @@ from operator import attrgetter
 from sqlalchemy import Table, bindparam, insert, select, update
 from sqlalchemy.orm import Session
 
-from app.storage.clock import NAME
-from app.storage.identity import now
-from app.storage.statements import Statement
+from app.storage.clock import NAME, now
 from app.storage.tables import Base, CounterRow, EventRow
+from app.storage.units import Statement
 
 Data = Mapping[str, object]
 

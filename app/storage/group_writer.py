@@ -23,8 +23,7 @@ from app.storage.clock import OperationClock
 from app.storage.damage import Watch
 from app.storage.engines import rolled_back
 from app.storage.errors import CommitFailed, DatabaseClosed, DatabaseDamaged
-from app.storage.statements import DRIVER
-from app.storage.units import AFTER, T, Unit, follow
+from app.storage.units import AFTER, DRIVER, T, Unit, follow
 
 GROUP = 256  # units in one transaction: bounds how long the first of them waits for the last
 

@@ -19,12 +19,13 @@ from app.designs.engine.net import Refusal
 from app.designs.engine.refusals import refusal_of
 from app.designs.graph import build_graph, raise_if
 from app.designs.network import Graph
-from app.designs.solid_records import analysed, built
 from app.jobs.service import JobContext
 from app.reference import Reference
 from app.solids.analysis_process import Analysing
+from app.solids.analysis_rows import analysed
 from app.solids.builds import Builds
 from app.solids.questions import in_order
+from app.solids.rows import built
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild
 from app.studies.row_solids import Measured, Solids, Texts, Wanting

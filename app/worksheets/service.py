@@ -16,9 +16,9 @@ from sqlalchemy.orm import Session
 from app.catalogue.catalogues import Catalogues
 from app.identity.audit import record
 from app.pool.pool import CalculationPool
+from app.storage.clock import now
 from app.storage.database import Database
 from app.storage.idempotency import Once
-from app.storage.identity import now
 from app.storage.tables import WorksheetVersionRow as Row
 from app.workers.errors import DeadlineExceeded
 from app.worksheets import repository, views

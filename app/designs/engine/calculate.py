@@ -18,8 +18,8 @@ from app.designs.engine.relations import limit_operations, limit_values, related
 from app.designs.engine.steps import memory, step_rows
 from app.designs.network import Block, Cell, Graph, Node, Solid, SolidAnalysis
 from app.plain import Raw
+from app.pool.cost import points, spanned
 from app.pool.errors import StepDeferred
-from app.pool.size import points, spanned
 from app.reference import Reference
 from cad.model import CadModel
 from templates.core.arrays import Array

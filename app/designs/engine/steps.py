@@ -22,9 +22,8 @@ from app.designs.engine.columns import Column, Indices, RowEstimate, scattered
 from app.designs.engine.refusals import Refusal, is_of_all_rows, masked, refusal_of
 from app.designs.network import Block
 from app.plain import Raw
-from app.pool.pending_calculations import fingerprint
-from app.pool.size import shape
-from app.pool.steps import evaluated_step
+from app.pool.cost import shape
+from app.pool.steps import evaluated_step, fingerprint
 from templates.core.arrays import Mask
 from templates.core.errors import InvalidInputs
 from templates.core.judging.bands import Estimate

@@ -10,6 +10,7 @@ from fastapi import APIRouter, Body, Path, Query, Request, Response
 from pydantic import WithJsonSchema
 from pydantic.config import JsonDict
 
+from app.api.answers import answered
 from app.api.dependencies import (
     ExpensiveSteps,
     IdempotencyKey,
@@ -24,7 +25,7 @@ from app.api.dependencies import (
     get_once,
     services_of,
 )
-from app.api.responses import accepted, later, written
+from app.api.responses import later, written
 from app.designs import repository, views
 from app.designs.bodies import LONGEST_NOTE, PATCH, CopyIn, DesignIn
 from app.designs.filters import TEMPLATE, DesignFilter
@@ -54,9 +55,8 @@ from app.designs.schemas.designs import (
 )
 from app.designs.schemas.labels import MOST_TAGS, Tag
 from app.designs.service import Saved
-from app.http.clients import TheClient, get_client
+from app.http.access import TheClient, get_client, needs
 from app.http.pages import Cursor, Limit, page
-from app.http.roles import needs
 from app.http.strict_requests import PlainRoute, StrictRequest, StrictRoute
 from app.plain import JsonObject
 from app.schemas.problems import refusals
@@ -163,7 +163,7 @@ async def change_design(
     A new name alone keeps all results: nothing is calculated.
     """
     patch, note = noted(body)
-    change = services_of(request).labelling.change
+    change = services_of(request).designs.change
     return await _saved(request, prefer, idempotency_key, partial(change, id, patch, note, if_match))
 
 
@@ -207,8 +207,7 @@ async def preview_design(
     change = Previewed(id, noted(body)[0], worksheet, units)
     if within is not None:
         return written(await threads.run_within(within, request, previews.at_once, change))
-    answer, job = await threads.run_within(seconds_waited(prefer), request, previews.in_parts, change, client)
-    return accepted(job, answer) if job else written(answer)
+    return await answered(previews, change, request, client, seconds_waited(prefer))
 
 
 @router.post("/{id}/auto-map", response_model=MappedDesign | Proposals, responses=CHANGED)

@@ -26,8 +26,8 @@ from app.designs import stamps, views
 from app.designs.routes.answers import Id, Number, Prefer
 from app.designs.routes.title_blocks import TheTitleBlock, TitleBlock
 from app.http import problems
+from app.http.access import TheClient
 from app.http.attachments import MemoryFile, disposition, http_time, is_at_hand, tag, unchanged
-from app.http.clients import TheClient
 from app.http.query_names import KNOWN_NAMES
 from app.http.strict_requests import StrictRoute
 from app.jobs.service import Jobs

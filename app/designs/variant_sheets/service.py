@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Literal
 
 from app.designs import repository
-from app.designs.graph import build_graph
-from app.designs.reader import read_document, resolved
+from app.designs.graph import build_graph, read_document, resolved
 from app.designs.schemas.variants import VariantsOut
 from app.designs.service import Designs, Saved
 from app.designs.variant_sheets.csv_files import read_csv, write_csv

@@ -16,11 +16,11 @@ from app.designs.document import Document
 from app.designs.engine.calculate import calculate_nodes
 from app.designs.engine.calculation import Analysed, Calculation, Measured
 from app.designs.engine.relations import MOST_OPERATIONS
-from app.designs.graph import build_graph
+from app.designs.graph import build_graph, starts
 from app.designs.network import Block, Node
-from app.designs.reader import starts
+from app.designs.results import Outcome
 from app.designs.variants.array_calls import Asking, evaluations
-from app.designs.variants.outcome import Outcome, outcome_of, refused, units_of
+from app.designs.variants.outcome import outcome_of, refused, units_of
 from app.designs.variants.table import applied
 from templates.core.errors import Fault, InvalidInputs
 

@@ -28,8 +28,8 @@ from app.api.event_streams import LastEvent, Whole, as_it_stands, listening
 from app.api.responses import written
 from app.designs.routes.answers import CHANGED, IfMatch, Prefer, answer_saved, seconds_waited
 from app.designs.schemas.designs import Design
+from app.http.access import TheClient
 from app.http.attachments import MemoryFile, disposition
-from app.http.clients import TheClient
 from app.http.pages import Cursor, Limit, page
 from app.http.paths import register_id
 from app.http.strict_requests import PreconditionRequired, StrictRoute

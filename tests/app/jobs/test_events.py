@@ -12,8 +12,8 @@ from sqlalchemy import delete, func, select
 from app.jobs.events import Event, Events
 from app.jobs.subscriptions import _ROOM
 from app.storage import event_log
+from app.storage.clock import now
 from app.storage.event_log import PAGE
-from app.storage.identity import now
 from app.storage.tables import DesignRow, EventRow, JobRow
 
 TOPIC = "design:1"

@@ -16,7 +16,7 @@ from app.retention.files import Sweep
 from app.retention.service import Retention
 from app.settings import Settings
 from app.solids import rows as build_rows
-from app.solids.ages import FRESH, is_fresh, renew
+from app.solids.rows import FRESH, is_fresh, renew
 from app.storage import event_log
 from app.storage.artifacts import ArtifactStore
 from app.storage.clock import DAY

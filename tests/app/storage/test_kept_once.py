@@ -6,11 +6,10 @@ import pytest
 
 from app.calculations.cache import Cache
 from app.catalogue.discovery import find_templates
-from app.designs.calculation_cache import CalculationCache, Prepared
 from app.designs.engine.steps import Memory
 from app.designs.graph import Block
 from app.designs.regeneration import Regeneration
-from app.designs.service import Designs
+from app.designs.service import CalculationCache, Designs, Prepared
 from app.storage.artifacts import ArtifactStore
 from templates.core.language.evaluate import evaluate
 
