@@ -11,7 +11,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.responses import LONGEST, finished, later, patience, written
 from app.designs.schemas.designs import Design, MappedDesign, Proposal
-from app.designs.service import Designs, Saved
+from app.designs.service import Designs, SaveResult
 from app.jobs.service import Jobs
 from app.schemas.problems import refusals
 
@@ -34,7 +34,7 @@ def seconds_waited(prefer: str | None) -> float:
 async def answer_saved(
     designs: Designs,
     jobs: Jobs,
-    saved: Saved,
+    saved: SaveResult,
     prefer: str | None,
     proposals: Sequence[Proposal] | None = None,
 ) -> Response:
