@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 
 import ezdxf
 import pytest
+from bare_shells import BUSH, HALF
 from ezdxf import path
 from ezdxf.document import Drawing
 from ezdxf.math import is_point_in_polygon_2d
@@ -164,7 +165,7 @@ def test_no_words_overlap_at_three_sizes(
 
 
 def toleranced(texts: dict[str, str]) -> Build:
-    model = models().get("plain_bearing", 1).from_quantities({"inner_diameter": "48 mm", **texts})
+    model = models().get("plain_bearing", 1).from_quantities({**HALF, "inner_diameter": "48 mm", **texts})
     return regenerate_from_text(model.id, model.version, as_text(model))
 
 
@@ -410,7 +411,7 @@ def test_extension_lines_begin_at_the_outline(example_of) -> None:
 
 
 def test_arcs_of_the_svg_are_arcs() -> None:
-    build = toleranced({"shell": "full"})
+    build = toleranced(BUSH)
     root = ElementTree.fromstring(derive(build.step, "drawing.svg"))
     outlines = [p.attrib["d"] for p in root.iter(f"{SVG}path") if p.attrib.get("stroke-width") == "0.6"]
     assert any("A" in d for d in outlines)

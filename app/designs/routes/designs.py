@@ -10,6 +10,7 @@ from fastapi import APIRouter, Body, Path, Query, Request, Response
 from pydantic import WithJsonSchema
 from pydantic.config import JsonDict
 
+from app.api.answers import answered
 from app.api.dependencies import (
     ExpensiveSteps,
     IdempotencyKey,
@@ -24,7 +25,7 @@ from app.api.dependencies import (
     get_once,
     services_of,
 )
-from app.api.responses import accepted, later, written
+from app.api.responses import later, written
 from app.designs import repository, views
 from app.designs.bodies import LONGEST_NOTE, PATCH, CopyIn, DesignIn
 from app.designs.filters import TEMPLATE, DesignFilter
@@ -206,8 +207,7 @@ async def preview_design(
     change = Previewed(id, noted(body)[0], worksheet, units)
     if within is not None:
         return written(await threads.run_within(within, request, previews.at_once, change))
-    answer, job = await threads.run_within(seconds_waited(prefer), request, previews.in_parts, change, client)
-    return accepted(job, answer) if job else written(answer)
+    return await answered(previews, change, request, client, seconds_waited(prefer))
 
 
 @router.post("/{id}/auto-map", response_model=MappedDesign | Proposals, responses=CHANGED)

@@ -166,7 +166,6 @@ def _document(
                 "parameters": {
                     "inner_diameter": "= film.bearing_diameter",
                     "width": "= film.bearing_width",
-                    "shell": "half",
                 },
             },
             "crankshaft": {
