@@ -1,9 +1,11 @@
 """A model with two versions: which is the latest, what a withdrawn one says, designs of either, impact."""
 
+import io
 from textwrap import dedent
 
 import httpx
 import pytest
+from pypdf import PdfReader
 from serving import API, DOUBLE, created, patched, revision, serving
 from two_versions import folder_of_two_versions
 
@@ -50,6 +52,14 @@ def volume(http, design):
     return measured["value"]
 
 
+def paper_of(http, design):
+    """Return the words of the report of the newest revision."""
+    place = f"{API}/designs/{design['id']}/revisions/{design['revision']}/report.pdf"
+    pdf = http.get(place, headers={"Prefer": "wait=60"})
+    assert pdf.status_code == 200, pdf.text
+    return " ".join(" ".join(one.extract_text() for one in PdfReader(io.BytesIO(pdf.content)).pages).split())
+
+
 def test_both_versions_stand_side_by_side_and_the_latest_is_not_withdrawn(plates):
     assert sorted(plates.of("plate")) == [1, 2]
     assert plates.latest("plate").version == 2
@@ -76,6 +86,19 @@ def test_the_interface_lists_both_and_says_which_is_withdrawn(http):
 def test_the_page_of_the_withdrawn_version_says_why(http):
     assert "Withdrawn: too thin, use 2" in http.get("/models/plate/1").text
     assert "too thin" not in http.get("/models/plate/2").text
+
+
+def test_pages_and_report_of_a_design_say_that_its_model_is_withdrawn(http):
+    """The report on screen and on paper, the page of the design, and that of its revision."""
+    design = created(http, {"name": "plate", "model": PLATE})
+    page = f"/designs/{design['id']}"
+    for shown in (page, f"{page}/revisions/1", f"{API}{page}/revisions/1/report"):
+        assert "ithdrawn: too thin, use 2" in http.get(shown).text, shown
+    assert "withdrawn: too thin, use 2" in paper_of(http, design)
+    upgraded = patched(http, design, {"model": {"version": 2}})
+    for shown in (page, f"{page}/revisions/2", f"{API}{page}/revisions/2/report"):
+        assert "too thin" not in http.get(shown).text, shown
+    assert "too thin" not in paper_of(http, upgraded)
 
 
 def test_a_design_keeps_its_version_until_it_is_upgraded(http):
