@@ -12,8 +12,8 @@ from fastapi import Depends, Header, Query, Request
 
 from app.api.event_streams import Still, always
 from app.api.expensive_answers import Answering
+from app.api.responses import Threads
 from app.api.services import Services
-from app.api.threads import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import Approving
 from app.catalogue.catalogues import Catalogues

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.api.expensive_answers import Answering
-from app.api.threads import Threads
+from app.api.responses import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import Approving
 from app.catalogue.catalogues import Catalogues

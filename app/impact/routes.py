@@ -9,7 +9,7 @@ from app.api.dependencies import TheImpacts, TheJobs, TheStore, Units
 from app.api.responses import LATER, accepted, finished
 from app.calculations.routes.evaluations import stored_answer
 from app.catalogue.routes.templates import Id, Number
-from app.designs.routes.answers import Prefer
+from app.designs.routes.designs import Prefer
 from app.http import problems
 from app.http.access import TheClient
 from app.http.pace import PiecesResponse

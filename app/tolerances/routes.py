@@ -7,7 +7,7 @@ from fastapi import APIRouter, Request, Response
 from app.api.dependencies import ExpensiveSteps, TheThreads, TheTolerances, Units
 from app.api.responses import LATER
 from app.designs.questions import Asked
-from app.designs.routes.answers import Id, Prefer
+from app.designs.routes.designs import Id, Prefer
 from app.designs.routes.solution import answer_asked
 from app.http.access import TheClient, needs
 from app.http.strict_requests import StrictRoute

@@ -23,7 +23,7 @@ from app.http.pace import PiecesResponse
 from app.http.problem_kinds import INTERNAL
 from app.impact.schemas import Impact
 from app.jobs.errors import JobNotFound
-from app.jobs.job import Job
+from app.jobs.repository import Job
 from app.jobs.service import Jobs
 from app.schemas.problems import refusals
 from app.storage.artifacts import Artifacts

@@ -5,10 +5,9 @@ from __future__ import annotations
 from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheSolving, TheThreads, Units
-from app.api.responses import LATER, accepted, patience, written
-from app.api.threads import Threads
+from app.api.responses import LATER, Threads, accepted, patience, written
 from app.designs.questions import A, Asked, Questions
-from app.designs.routes.answers import Id, Prefer
+from app.designs.routes.designs import Id, Prefer
 from app.designs.schemas.solution import DesignSolution
 from app.designs.solution import SolveDesignIn
 from app.http.access import TheClient, needs
