@@ -97,7 +97,7 @@ ABOUT = {
     "tests/app/cli/test_embedded_start.py": ("app/*.py", "pyproject.toml"),
     "tests/app/test_engine_gallery.py": (
         *("app/web/gallery*.py", "app/designs/*.py", "templates/bearing_load/*.py"),
-        *("templates/physics/engine/*.py", "cad/cranks/*.py", "cad/models/crankshaft_v2.py"),
+        *("templates/physics/engine/*.py", "cad/cranks/*.py", "cad/models/crankshaft_v1.py"),
     ),
     "tests/app/jobs/test_events_resumed.py": ("app/*event*.py", "app/api/event_streams.py"),
     "tests/app/http/test_evaluate_hostile.py": (

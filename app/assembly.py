@@ -5,36 +5,37 @@ from __future__ import annotations
 from contextlib import ExitStack, closing
 from typing import TYPE_CHECKING
 
-from app.api.expensive_answers import Answering
 from app.api.responses import Threads
 from app.api.services import Services
 from app.approvals.comments import Comments
 from app.approvals.service import Approving
 from app.calculations.assembly import Calculations, assemble_calculations
 from app.calculations.cache import results
-from app.calculations.jobs import CALCULATION, DECISION, IMPACT, PREVIEW, SOLUTION, TOLERANCE, VARIANT
+from app.calculations.questions import EVALUATION
 from app.catalogue.catalogues import Catalogues, TeamCatalogues
 from app.catalogue.check import CheckInProcess
 from app.catalogue.discovery import find_templates
-from app.designs import decisions as decisions_of
+from app.designs.decisions import DECISIONS
 from app.designs.labels import Labelling
-from app.designs.preview import Previewed, preview
-from app.designs.questions import Asked, Questions, in_a_process
+from app.designs.preview import PREVIEWS
+from app.designs.questions import in_a_process
 from app.designs.regeneration import Regeneration
+from app.designs.schemas.solution import DesignSolution
 from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, CalculationCache, Designs
 from app.designs.solution import solved
-from app.designs.variants.detail import WantedVariant, detailed
+from app.designs.variants.detail import VARIANT_DETAILS
 from app.http import problems
 from app.http.streams import Streams
 from app.identity.sealer import Sealer
 from app.identity.service import Identity
-from app.impact import survey
+from app.impact.survey import IMPACTS
 from app.imported_models.programs import assembled as assembled_programs
 from app.imported_models.registry import ImportedModelRegistry
 from app.imported_models.service import IMPORT as MODEL_IMPORT
 from app.imported_models.service import ModelImports
 from app.jobs.service import Jobs
 from app.observation import metrics, readiness
+from app.pool.questions import CALCULATION, SOLUTION, TOLERANCE, Questions
 from app.reports.paper import Press
 from app.reports.service import Reports
 from app.retention.service import Retention
@@ -54,6 +55,7 @@ from app.storage.stores import Figures, opened_store
 from app.studies.run import LANES, StudyServices
 from app.studies.solids import SolidMaking
 from app.tolerances.answer import analysed
+from app.tolerances.schemas import ToleranceAnalysis
 from app.workers import prefork
 from app.workers.base import Limits, Worker
 from app.workers.choice import started_workers
@@ -117,7 +119,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     registry.start()
     stack.callback(registry.stop)
     published = published_worksheets(database, catalogues, stack)
-    calculations = assemble_calculations(settings, stack, catalogues, database, store, jobs, NETWORK, SHEETS)
+    calculations = assemble_calculations(settings, stack, NETWORK, SHEETS)
     calculation_cache = CalculationCache()
     programs = assembled_programs(settings, store)
     stack.callback(programs.close)
@@ -125,14 +127,15 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
     register_jobs(jobs, builds, analysing, catalogues, calculations, calculation_cache)
     about = database, catalogues, store, jobs, calculations.steps
-    previews = Questions(PREVIEW, Previewed, preview, *about)
-    decisions = Questions(DECISION, decisions_of.Asked, decisions_of.decided, *about)
-    impacts = Questions(IMPACT, survey.Asked, survey.impact, *about, survey.check)
-    solving = Questions(SOLUTION, Asked, in_a_process(SOLUTION, solved), *about)
-    tolerances = Questions(TOLERANCE, Asked, in_a_process(TOLERANCE, analysed), *about)
-    variant_details = Questions(VARIANT, WantedVariant, detailed, *about)
-    for one in (previews, decisions, impacts, solving, tolerances, variant_details):
-        jobs.register(one.kind, one, one.failed, lane=CALCULATION)
+    evaluations = Questions(EVALUATION, *about)
+    previews = Questions(PREVIEWS, *about)
+    decisions = Questions(DECISIONS, *about)
+    impacts = Questions(IMPACTS, *about)
+    solving = Questions(in_a_process(SOLUTION, DesignSolution, solved), *about)
+    tolerances = Questions(in_a_process(TOLERANCE, ToleranceAnalysis, analysed), *about)
+    variant_details = Questions(VARIANT_DETAILS, *about)
+    for one in (evaluations, previews, decisions, impacts, solving, tolerances, variant_details):
+        jobs.register(one.kind.name, one, one.failed, lane=CALCULATION)
     designs = Designs(database, jobs, catalogues, calculation_cache)
     solids = SolidMaking(database, builds, analysing, settings.workers)
     of_studies = StudyServices(
@@ -158,7 +161,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
         calculations=calculations.pool,
         steps=calculations.steps,
         threads=Threads(),
-        answering=Answering(calculations.pool, calculations.jobs, settings.calculation_deadline),
+        evaluations=evaluations,
         designs=designs,
         labelling=Labelling(database),
         previews=previews,

@@ -8,8 +8,8 @@ what it found is attached to the revision. Generator expressions, comprehensions
 Python 3.11) and lambdas count as functions; a generator or coroutine that goes on counts no second time. The
 writer thread of the database is included; HTTP, the queue and starting a process are not.
 
-The design is the paper's film (`oil_film` 1) with a `plain_bearing` whose width and bore follow from it. It
-is changed a few times before, so that every cache is warm, and each time to a width that is new.
+The design is the paper's film (`oil_film` 1) with a full bush, a `plain_bearing`, whose width and bore follow
+from it. It is changed a few times before, so that every cache is warm, and each time to a width that is new.
 """
 
 from __future__ import annotations
@@ -160,7 +160,8 @@ def document() -> dict[str, Any]:
     """Return the design that is changed."""
     from app.designs.bodies import PAPER
 
-    parameters = {"inner_diameter": "= film.bearing_diameter", "width": "= film.bearing_width"}
+    sizes = {"inner_diameter": "= film.bearing_diameter", "width": "= film.bearing_width"}
+    parameters = {**sizes, "shells": "full", "lining_thickness": "0 mm"}
     model = {"id": "plain_bearing", "version": 1, "parameters": parameters}
     paper = {name: part for name, part in PAPER.items() if name != "model"}
     return {**paper, "models": {"model": model}}

@@ -11,16 +11,16 @@ from typing import Annotated
 from fastapi import Depends, Header, Query, Request
 
 from app.api.event_streams import Still, always
-from app.api.expensive_answers import Answering
 from app.api.responses import Threads
 from app.api.services import Services
 from app.approvals.comments import Comments
 from app.approvals.service import Approving
+from app.calculations.operations import Question
 from app.catalogue.catalogues import Catalogues
 from app.designs import decisions
 from app.designs.labels import Labelling
 from app.designs.preview import Previewed
-from app.designs.questions import Asked, Questions
+from app.designs.questions import Asked
 from app.designs.schemas.decision import Decision
 from app.designs.schemas.designs import Preview
 from app.designs.schemas.solution import DesignSolution
@@ -35,6 +35,7 @@ from app.impact.schemas import Impact
 from app.imported_models.service import ModelImports
 from app.jobs.service import Jobs
 from app.observation.readiness import Readiness
+from app.pool.questions import Questions
 from app.pool.steps import Caller, call_as
 from app.presentation.units import System
 from app.reports.paper import Press
@@ -48,6 +49,7 @@ from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.studies.service import Studies
 from app.tolerances.schemas import ToleranceAnalysis
+from app.workers.pieces import Pieces
 from app.worksheets.importing.service import Imports
 from app.worksheets.service import Worksheets
 
@@ -74,7 +76,7 @@ TheSettings = Annotated[Settings, Depends(_part("settings"))]
 TheStore = Annotated[Artifacts, Depends(_part("store"))]
 TheJobs = Annotated[Jobs, Depends(_part("jobs"))]
 TheThreads = Annotated[Threads, Depends(_part("threads"))]
-TheAnswering = Annotated[Answering, Depends(_part("answering"))]
+TheEvaluations = Annotated[Questions[Question, Pieces], Depends(_part("evaluations"))]
 TheDesigns = Annotated[Designs, Depends(_part("designs"))]
 TheLabelling = Annotated[Labelling, Depends(_part("labelling"))]
 TheStudies = Annotated[Studies, Depends(_part("studies"))]

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.api.expensive_answers import Answering
 from app.api.responses import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import Approving
+from app.calculations.operations import Question
 from app.catalogue.catalogues import Catalogues
 from app.designs import decisions as decisions_of
 from app.designs.labels import Labelling
 from app.designs.preview import Previewed
-from app.designs.questions import Asked, Questions
+from app.designs.questions import Asked
 from app.designs.schemas.decision import Decision
 from app.designs.schemas.designs import Preview
 from app.designs.schemas.solution import DesignSolution
@@ -27,6 +27,7 @@ from app.imported_models.service import ModelImports
 from app.jobs.service import Jobs
 from app.observation.readiness import Readiness
 from app.pool.pool import CalculationPool
+from app.pool.questions import Questions
 from app.pool.steps import Steps
 from app.reports.paper import Press
 from app.reports.service import Reports
@@ -38,6 +39,7 @@ from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.studies.service import Studies
 from app.tolerances.schemas import ToleranceAnalysis
+from app.workers.pieces import Pieces
 from app.worksheets.importing.service import Imports
 from app.worksheets.service import Worksheets
 
@@ -55,7 +57,7 @@ class Services:
     calculations: CalculationPool
     steps: Steps
     threads: Threads
-    answering: Answering
+    evaluations: Questions[Question, Pieces]
     designs: Designs
     labelling: Labelling
     previews: Questions[Previewed, Preview]

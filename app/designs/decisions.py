@@ -12,10 +12,12 @@ from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.decision import Climb, ClimbResult, Trial
 from app.designs.engine.verdicts import Verdicts
+from app.designs.errors import DesignError
 from app.designs.graph import build_graph, raise_if, settled, starts
-from app.designs.questions import Reply
+from app.designs.questions import settled as settled_question
 from app.designs.schemas.decision import Decision, Tried
 from app.plain import JsonObject, Raw
+from app.pool.questions import DECISION, Kind, Reply, json_answer, json_form
 from app.presentation.units import System
 from app.schemas.answers import Quantity
 from app.solids.analysis_rows import analysed
@@ -124,3 +126,14 @@ def _tried(trial: Trial) -> Tried:
     if trial.rows:
         tried |= {"rows": trial.rows, "seconds": trial.seconds, "decided": list(trial.decided)}
     return Tried.model_validate(tried)
+
+
+DECISIONS = Kind(
+    DECISION,
+    json_form(Asked),
+    json_answer(Decision),
+    decided,
+    failures=(DesignError,),
+    settle=settled_question,
+    has_parts=True,
+)

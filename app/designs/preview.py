@@ -15,8 +15,8 @@ from app.designs.document import Document, merge
 from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
+from app.designs.errors import DesignError
 from app.designs.graph import build_graph, raise_if, read_document, resolved, starts
-from app.designs.questions import Reply
 from app.designs.results import Outcome
 from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, Status
 from app.designs.variants.checks import checked
@@ -24,6 +24,7 @@ from app.designs.variants.together import Available
 from app.designs.variants.verdict import merged
 from app.designs.worksheet import previewed
 from app.plain import JsonObject
+from app.pool.questions import PREVIEW, Kind, Reply, json_answer, json_form
 from app.presentation.units import System
 from app.schemas.answers import Shown, Warning
 from app.solids.analysis_rows import analysed
@@ -206,3 +207,13 @@ def _status(
     if after is None:
         return "pending"
     return "unchanged" if before == after else "ok"
+
+
+PREVIEWS = Kind(
+    PREVIEW,
+    json_form(Previewed),
+    json_answer(Preview),
+    preview,
+    failures=(DesignError,),
+    has_parts=True,
+)

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
-from app.calculations.jobs import IMPACT
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository as designs
 from app.designs.document import Document
+from app.designs.errors import DesignError
 from app.designs.filters import DesignFilter
 from app.designs.labels import key_of
-from app.designs.questions import Reply
 from app.designs.tasks import CatalogueTask
 from app.impact import repository
 from app.impact.bodies import ImpactIn
@@ -20,6 +19,7 @@ from app.impact.process import Compared, compared
 from app.impact.schemas import DesignImpact, Impact
 from app.impact.severity import rank
 from app.impact.task import Batch, DesignAt, missing, uses
+from app.pool.questions import IMPACT, Kind, Reply, json_answer, json_form
 from app.pool.steps import present_caller
 from app.presentation.units import System
 from app.schemas.answers import Version
@@ -216,3 +216,6 @@ def _batches(designs: Sequence[At]) -> Iterator[list[At]]:
         count += rows
     if batch:
         yield batch
+
+
+IMPACTS = Kind(IMPACT, json_form(Asked), json_answer(Impact), impact, failures=(DesignError,), check=check)

@@ -73,7 +73,7 @@ _JOBS = Base.metadata.tables[JobRow.__tablename__]
 _ADDED = Statement(
     insert(_JOBS).values(state="queued", attempt=0, crashes=0, progress=0.0, log=[], others=[]),
     "id", "kind", "design_id", "revision", "payload", "created", "updated", "client", "turn", "operated",
-    "principal", "cause",
+    "principal", "cause", "question",
 )  # fmt: skip
 _AS_JOB = (
     _JOBS.c.id, _JOBS.c.kind, _JOBS.c.state, _JOBS.c.design_id, _JOBS.c.revision, _JOBS.c.payload,
@@ -93,6 +93,7 @@ def add(
     revision: int | None,
     client: str = "",
     turn: int = 0,
+    question: str | None = None,
 ) -> str:
     """Queue a job of a client, in its turn, and return its id."""
     session.flush()  # the revision it belongs to comes first
@@ -102,6 +103,7 @@ def add(
         "created": at, "updated": at, "client": client, "turn": turn, "operated": operated(session),
         "principal": ACTING.get().id,
         "cause": f"{logs.REQUEST_ID.get()} {logs.TRACE.get()}".rstrip() or None,
+        "question": question,
     }  # fmt: skip
     _ADDED.run(session, row)
     return id
@@ -142,6 +144,13 @@ def find_waiting(session: Session, kind: str, payload: JsonObject) -> str | None
     lock(session, f"job {kind} {canonical_json(payload)}")
     same = select(JobRow.id).where(JobRow.kind == kind, JobRow.payload == payload)
     return session.scalar(same.where(JobRow.state.in_(UNFINISHED)).limit(1))
+
+
+def asked(session: Session, question: str, states: Collection[State]) -> Job | None:
+    """Return the newest job of an equal question, by its key, that is in one of these states."""
+    equal = select(JobRow).where(JobRow.question == question, JobRow.state.in_(states))
+    row = session.scalar(equal.order_by(JobRow.id.desc()).limit(1))
+    return _job(row) if row else None
 
 
 def claim(

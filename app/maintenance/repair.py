@@ -10,14 +10,15 @@ from pathlib import Path
 from typing import TypeVar, TypeVarTuple
 
 from app.calculations.errors import InvalidBody, NoArray, TooManyValues
-from app.calculations.jobs import CALCULATION, place_of_answer, question_of
 from app.calculations.operations import answered
+from app.calculations.questions import EVALUATION
 from app.catalogue.catalogues import Catalogues, loaded
 from app.imported_models.programs import Programs, assembled
 from app.imported_models.registry import ImportedModelRegistry
 from app.jobs import repository as jobs
 from app.maintenance.check import Findings, Say
 from app.maintenance.rows import Named
+from app.pool.questions import place_of_answer, question_of
 from app.pool.sources import source_of
 from app.settings import Settings
 from app.solids import analysis_rows as analyses
@@ -119,9 +120,9 @@ class Repair:
         with self.database.read() as session:
             job = jobs.get(session, row.owner)
         assert job is not None, "it has just been named"
-        if job.kind != CALCULATION:
+        if job.kind != EVALUATION.name:
             raise CannotRebuild("answer_lost", f"job {job.id} is not a calculation; send its request again")
-        question = question_of(job.payload, self.store)
+        question = question_of(EVALUATION.form, job, self.store)
         source = source_of(self.catalogues.templates.get(question.template, question.version))
         sha = self.store.put(*self.runner.run(answered, source, question, limits=self.calculation))
         link = place_of_answer(job.id, sha)

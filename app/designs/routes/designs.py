@@ -12,6 +12,7 @@ from pydantic import WithJsonSchema
 from pydantic.config import JsonDict
 from starlette.concurrency import run_in_threadpool
 
+from app.api.answers import answered
 from app.api.dependencies import (
     ExpensiveSteps,
     IdempotencyKey,
@@ -26,7 +27,7 @@ from app.api.dependencies import (
     get_once,
     services_of,
 )
-from app.api.responses import LONGEST, accepted, finished, later, patience, written
+from app.api.responses import LONGEST, finished, later, patience, written
 from app.designs import repository, views
 from app.designs.bodies import LONGEST_NOTE, PATCH, CopyIn, DesignIn
 from app.designs.filters import TEMPLATE, DesignFilter
@@ -240,8 +241,7 @@ async def preview_design(
     change = Previewed(id, noted(body)[0], worksheet, units)
     if within is not None:
         return written(await threads.run_within(within, request, previews.at_once, change))
-    answer, job = await threads.run_within(seconds_waited(prefer), request, previews.in_parts, change, client)
-    return accepted(job, answer) if job else written(answer)
+    return await answered(previews, change, request, client, seconds_waited(prefer))
 
 
 @router.post("/{id}/auto-map", response_model=MappedDesign | Proposals, responses=CHANGED)

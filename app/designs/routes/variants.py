@@ -14,6 +14,7 @@ from pydantic import ConfigDict, Field
 from pydantic.config import JsonDict
 from starlette.concurrency import run_in_threadpool
 
+from app.api.answers import answered
 from app.api.dependencies import (
     ExpensiveSteps,
     TheCatalogues,
@@ -28,7 +29,7 @@ from app.api.dependencies import (
     Units,
 )
 from app.api.file_answers import UNAVAILABLE, lost
-from app.api.responses import LATER, accepted, finished, later, patience, written
+from app.api.responses import LATER, finished, later, patience, written
 from app.catalogue.catalogues import Catalogues
 from app.designs.bodies import Note
 from app.designs.document import Overrides, Word
@@ -178,7 +179,6 @@ async def show_variant(
     id: Id,
     variant: VariantName,
     details: TheVariantDetails,
-    threads: TheThreads,
     client: TheClient,
     request: Request,
     number: Number | None = None,
@@ -188,9 +188,7 @@ async def show_variant(
 ) -> Response:
     """One variant with its outputs, curves included; `base` is the design itself. Nothing is saved."""
     wanted = WantedVariant(id, variant, tuple(dict.fromkeys(output)), number, units)
-    seconds = patience(prefer, details.steps.deadline)
-    answer, job = await threads.run_within(seconds, request, details.answer, wanted, client)
-    return accepted(job) if answer is None else written(answer)
+    return await answered(details, wanted, request, client, patience(prefer, details.steps.deadline))
 
 
 @router.get("/{id}/variants/{variant}/model", **FILES)

@@ -44,6 +44,7 @@ class JobRow(Base):
     owner: Mapped[str | None] = mapped_column(default=None)  # the server process that runs it
     lease_until: Mapped[float | None] = mapped_column(Double, default=None)  # by the database's clock [s]
     cause: Mapped[str | None] = mapped_column(default=None)  # the id of its request, and the trace's context
+    question: Mapped[str | None] = mapped_column(default=None, index=True)  # the key of what it answers
 
 
 class EventRow(Base):

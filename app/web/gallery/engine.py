@@ -166,12 +166,11 @@ def _document(
                 "parameters": {
                     "inner_diameter": "= film.bearing_diameter",
                     "width": "= film.bearing_width",
-                    "shell": "half",
                 },
             },
             "crankshaft": {
                 "id": "crankshaft",
-                "version": 2,
+                "version": 1,
                 "parameters": {**_CRANKSHAFT, **shaft},
                 "analyses": gallery_train.analyses(),
             },

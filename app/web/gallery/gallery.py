@@ -35,7 +35,7 @@ GALLERY = {
     ),
     "shell": Example(
         title="A plain bearing at several levels",
-        text="The same duty by oil film 3: friction, flow, stiffness, measured errors, and the pressure "
+        text="The same duty by oil film 2: friction, flow, stiffness, measured errors, and the pressure "
         "painted on the shell.",
         document={
             "name": "plain main bearing",
@@ -58,7 +58,6 @@ GALLERY = {
                 "parameters": {
                     "inner_diameter": "= film.bearing_diameter",
                     "width": "= film.bearing_width",
-                    "shell": "half",
                 },
             },
         },

@@ -105,9 +105,8 @@ async def ask(id: Id, version: Number, request: Request, services: ThePageServic
     asked = {name: typed.get(name, "").strip()[:200] for name in ("name", "tag")}
     try:
         body = services.read(ImpactIn, _body(asked))
-        job = await services.run(
-            services.impacts.requested, Asked(id, version, body, units_of(request)), services.client
-        )
+        asked_for = Asked(id, version, body, units_of(request))
+        _, job = await services.run(services.impacts.answer, asked_for, services.client)
     except Refused as refused:
         if refused.status != ILL_NAMED:
             raise

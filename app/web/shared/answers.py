@@ -8,12 +8,10 @@ from typing import Generic, TypeVar
 
 from pydantic import TypeAdapter
 from pydantic_core import to_json
-from starlette.responses import Response
 
-from app.api.expensive_answers import to_try
+from app.api.answers import answer_of
 from app.calculations.bodies import Asked
 from app.calculations.operations import OPERATIONS, Question
-from app.calculations.routes.evaluations import show_evaluation
 from app.http.pace import PiecesResponse
 from app.pool.cost import EXPENSIVE
 from app.presentation.units import System
@@ -60,13 +58,14 @@ async def calculated(
     Refused
         With everything that is wrong.
     """
-    cls = await services.ask(to_try(services.catalogues, asked.template, asked.version))
+    cls = await services.ask(services.catalogues.tried(asked.template, asked.version))
     if await services.run(seconds_needed, cls, asked.body) <= EXPENSIVE:
         write = OPERATIONS[asked.operation].write["json"]
         return Answered(_read(kind, await services.run(write, cls, asked.body, asked.units)))
     body = Pieces.of(to_json(asked.body.model_dump(exclude_unset=True, by_alias=True)))
     question = Question(asked.template, asked.version, asked.operation, body, asked.units, "json")
-    return _answered(await services.ask(services.answering.answer(services.request, question, within)), kind)
+    kept, job = await services.calculate(within, services.evaluations.answer, question, services.client)
+    return Answered(None if kept is None else _read(kind, kept.joined()), job or "")
 
 
 async def stored(services: PageServices, job: str, kind: type[Kind]) -> Answered[Kind]:
@@ -77,20 +76,13 @@ async def stored(services: PageServices, job: str, kind: type[Kind]) -> Answered
     Refused
         If there is no such job, or it has failed.
     """
-    look = show_evaluation(
-        job, services.jobs, services.store, services.answering, services.client, services.request
-    )
-    return _answered(await services.ask(look), kind)
-
-
-def _answered(response: Response, kind: type[Kind]) -> Answered[Kind]:
+    response = await services.ask(answer_of(services, job, services.request, services.client))
     if response.status_code >= 400:
         raise Refused(Problem.model_validate_json(bytes(response.body)))
     if response.status_code == ACCEPTED:
         return Answered(None, response.headers["Location"].rpartition("/")[2])
-    if isinstance(response, PiecesResponse):
-        return Answered(_read(kind, response.pieces.joined()))
-    return Answered(_read(kind, bytes(response.body)))
+    assert isinstance(response, PiecesResponse), "an answer is sent as it is kept"
+    return Answered(_read(kind, response.pieces.joined()))
 
 
 def _read(kind: type[Kind], content: bytes) -> Kind:

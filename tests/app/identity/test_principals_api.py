@@ -1,6 +1,7 @@
 """Principals, keys and usage by the interface: administrators for all, everybody for themselves."""
 
 import pytest
+from bare_shells import BUSH
 
 from app.client import Client, Problem
 from app.identity.limits import LimitReached, Limits
@@ -85,7 +86,7 @@ def test_jobs_are_counted_and_the_limit_of_the_day_is_kept(team):
         with team.http("author2") as http:
             refused = http.post(
                 "/api/v1/models/plain_bearing/versions/1/build",
-                json={"parameters": {"inner_diameter": "47 mm"}},
+                json={"parameters": {**BUSH, "inner_diameter": "47 mm"}},
             )
         assert refused.status_code == 429, refused.text
         assert 0 < int(refused.headers["retry-after"]) <= 86400

@@ -9,6 +9,7 @@ import time
 
 import httpx
 import pytest
+from bare_shells import BUSH
 from click.testing import CliRunner
 from prometheus_client.parser import text_string_to_metric_families
 from serving import API, PATIENCE, ServerProcess, created, moody, until
@@ -48,7 +49,7 @@ def logged(tmp_path_factory):
                 ),
                 "model": http.post(
                     f"{API}/models/plain_bearing/versions/1/build",
-                    json={"parameters": {"inner_diameter": "50 mm"}},
+                    json={"parameters": {**BUSH, "inner_diameter": "50 mm"}},
                     headers={"Prefer": "wait=60", "Cookie": "crankwright_session=hunter2hunter2hunter2"},
                 ),
                 "page": http.get("/", headers={"Accept": "text/html"}),

@@ -156,6 +156,7 @@ def create_jobs() -> None:
         sa.Column("owner", sa.Text()),
         sa.Column("lease_until", sa.Double()),
         sa.Column("cause", sa.Text()),
+        sa.Column("question", sa.Text()),
         sa.ForeignKeyConstraint(
             ["design_id", "revision"],
             ["revision.design_id", "revision.number"],
@@ -167,6 +168,7 @@ def create_jobs() -> None:
     op.create_index("ix_job_design_id_revision", "job", ["design_id", "revision"])
     op.create_index("ix_job_operated", "job", ["operated"])
     op.create_index("ix_job_owner", "job", ["owner"])
+    op.create_index("ix_job_question", "job", ["question"])
     op.create_index("ix_job_state_turn_id", "job", ["state", "turn", "id"])
     op.create_table(
         "idempotency",

@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
+from bare_shells import BUSH
 from patience import patient, until
 from playwright.sync_api import expect
 from serving import API
@@ -12,7 +13,7 @@ from serving import API
 from cad.export import MEDIA_TYPES
 
 PATIENCE = patient(60.0) * 1000  # ms
-SHELL = {"id": "plain_bearing", "version": 1, "parameters": {"inner_diameter": "37.5 mm"}}
+SHELL = {"id": "plain_bearing", "version": 1, "parameters": {**BUSH, "inner_diameter": "37.5 mm"}}
 PROBLEM = {
     "type": "/problems/geometry",
     "title": "Geometry",

@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from bare_shells import BUSH
 from browsing import settled
 from judging import CRITERIA, verdict
 from playwright.sync_api import expect
@@ -18,7 +19,7 @@ def shell(http):
         "name": "explained",
         "parameters": {"least": "2 um"},
         "steps": {"film": step},
-        "model": {"id": "plain_bearing", "version": 1, "parameters": {"inner_diameter": "48 mm"}},
+        "model": {"id": "plain_bearing", "version": 1, "parameters": {**BUSH, "inner_diameter": "48 mm"}},
     }
     design = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"}).json()
     settled(http, f"/designs/{design['id']}")

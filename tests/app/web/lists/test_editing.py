@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from bare_shells import BUSH
 from browsing import from_example
 from playwright.sync_api import expect
 from serving import API
@@ -110,7 +111,11 @@ def test_items_and_texts_become_each_other(watched):
 @pytest.fixture
 def throw(http):
     """The path of a design with a shell, and with a crank throw that nothing sets yet."""
-    shell = {"id": "plain_bearing", "version": 1, "parameters": {"inner_diameter": "48 mm", "width": "18 mm"}}
+    shell = {
+        "id": "plain_bearing",
+        "version": 1,
+        "parameters": {**BUSH, "inner_diameter": "48 mm", "width": "18 mm"},
+    }
     document = {"name": "throw", "models": {"throw": {"id": "crank_throw", "version": 1}, "shell": shell}}
     response = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"})
     assert response.status_code in (201, 202), response.text

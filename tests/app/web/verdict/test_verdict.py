@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from bare_shells import BUSH
 from browsing import settled
 from judging import CRITERIA, MET, UNCHECKED, UNDECIDED, WORST, verdict
 from playwright.sync_api import expect
@@ -61,7 +62,7 @@ def two_steps(http):
         "model": {
             "id": "plain_bearing",
             "version": 1,
-            "parameters": {"inner_diameter": "= film.bearing_diameter"},
+            "parameters": {**BUSH, "inner_diameter": "= film.bearing_diameter"},
         },
     }
     design = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"}).json()

@@ -1,4 +1,4 @@
-"""`crankshaft` 2: closed forms, what is measured, its throws apart, lists as parameters, and refusals."""
+"""`crankshaft` 1, undivided: closed forms, what is measured, throws apart, lists as parameters, refusals."""
 
 import json
 from cmath import exp
@@ -9,13 +9,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from undivided import TWO_THROWS
 
 import templates
 from benchmarks.in_line_four import IN_LINE_FOUR
 from cad.cranks.outline import Outline, reach
 from cad.lists import LONGEST_TEXT, listed, written
-from cad.models.crankshaft_v1 import Crankshaft as OneThrow
-from cad.models.crankshaft_v2 import Crankshaft
+from cad.models.crank_throw_v1 import CrankThrow
+from cad.models.crankshaft_v1 import Crankshaft
 from cad.regenerate import Build, as_text, build_key, regenerate
 from cad.shaft import STEEL_DENSITY
 from templates.core.catalogue.finding import find
@@ -36,7 +37,7 @@ def degrees(*angles: float) -> dict[str, Any]:
 
 
 def build(given: dict[str, Any]) -> Build:
-    return regenerate("crankshaft", 2, Crankshaft.from_quantities(given).inputs_si())
+    return regenerate("crankshaft", 1, Crankshaft.from_quantities(given).inputs_si())
 
 
 def refused(given: dict[str, Any]) -> dict[str, str]:
@@ -49,46 +50,37 @@ def refused(given: dict[str, Any]) -> dict[str, str]:
 def cross() -> Build:
     """A cross-plane shaft of four throws with unequal counterweights, drilled and bored."""
     radii = {"value": [70, 0, 0, 72, 70, 0, 0, 70], "unit": "mm"}
-    return build(
-        {**Crankshaft.example, "pin_angles": degrees(0, 90, 270, 180), "counterweight_radius": radii}
-    )
+    return build({**TWO_THROWS, "pin_angles": degrees(0, 90, 270, 180), "counterweight_radius": radii})
 
 
 @pytest.mark.parametrize("angles", [(0,), (0, 180), (0, 120, 240), (30, 102, 174, 246, 318)])
 def test_analytic_volume_is_that_of_its_parts(angles: tuple[float, ...]) -> None:
-    """The closed form against one put together here from the volume of the shaft of one throw."""
+    """The closed form against one put together here from the volumes of throws from mid-main to mid-main."""
     ends = {"nose_length": "30 mm", "nose_diameter": "40 mm", "flange_thickness": "12 mm",
             "flange_diameter": "80 mm"}  # fmt: skip
-    one = OneThrow.from_quantities({
-        **PLAIN, "front_length": "30 mm", "front_diameter": "40 mm", "rear_length": "12 mm",
-        "rear_diameter": "80 mm",
-    }).build()[0].volume  # fmt: skip
-    shared = pi * (27.5**2 * 26 + 20**2 * 30 + 40**2 * 12)  # a journal more than throws; both ends
-    wanted = len(angles) * (one - shared) + shared
+    throw = CrankThrow.from_quantities(PLAIN).build()[0].volume
+    wanted = len(angles) * throw + pi * (27.5**2 * 26 + 20**2 * 30 + 40**2 * 12)
     measured = build({**PLAIN, **ends, "pin_angles": degrees(*angles)}).measures["volume"]
     assert measured == pytest.approx(wanted, rel=1e-9)
 
 
-def test_one_throw_is_the_shaft_of_version_1() -> None:
-    example: dict[str, Any] = dict(OneThrow.example)
-    renamed = {"front": "nose", "rear_length": "flange_thickness", "rear": "flange"}
-    for old, new in renamed.items():
-        example = {name.replace(old, new): value for name, value in example.items()}
-    one = regenerate("crankshaft", 1, OneThrow.from_quantities(OneThrow.example).inputs_si()).measures
-    other = build({**example, "pin_angles": degrees(0)}).measures
-    half = (26 + 2 * 16 + 32) / 2  # [mm] from the middle of the first main to that of the pin
-    for name in (
-        "mass",
-        "volume",
-        "centre_x",
-        "inertia_xx",
-        "inertia_xz",
-        "polar_inertia",
-        "low_x",
-        "high_y",
-    ):
-        assert other[name] == pytest.approx(one[name], rel=1e-8, abs=1e-9), name
-    assert other["centre_z"] == pytest.approx(one["centre_z"] + half, rel=1e-8)
+def test_analytic_one_throw_and_its_cylinders() -> None:
+    """A bored throw with counterweights, half a main more on either side, a nose and a plain flange."""
+    inside = {**PLAIN, "journal_bore": "12 mm", "pin_bore": "10 mm", "web_shape": "rectangular"}
+    inside |= {"counterweight_radius": "70 mm", "counterweight_angle": "130 deg", "face_inclination": "6 deg"}
+    ends = {"nose_length": "45 mm", "nose_diameter": "30 mm", "flange_thickness": "12 mm"}
+    whole = build({**inside, **ends, "flange_diameter": "70 mm", "pin_angles": degrees(0)}).measures
+    throw = regenerate("crank_throw", 1, CrankThrow.from_quantities(inside).inputs_si()).measures
+    cylinders = [(27.5, 13.0, -6.5), (15.0, 45.0, -35.5), (27.5, 13.0, 100.5), (35.0, 12.0, 113.0)]
+    masses = [STEEL_DENSITY * 1e-9 * pi * (r**2 - 6**2) * length for r, length, _ in cylinders]
+    polar = sum(m * (r**2 + 6**2) / 2 * 1e-6 for m, (r, *_) in zip(masses, cylinders, strict=True))
+    along = sum(m * z for m, (*_, z) in zip(masses, cylinders, strict=True))
+    mass = throw["mass"] + sum(masses)
+    assert whole["mass"] == pytest.approx(mass, rel=1e-9)
+    assert whole["polar_inertia"] == pytest.approx(throw["polar_inertia"] + polar, rel=1e-9)
+    assert whole["mass"] * whole["centre_x"] == pytest.approx(throw["mass"] * throw["centre_x"], rel=1e-9)
+    assert whole["mass"] * whole["centre_z"] == pytest.approx(throw["mass"] * 47.0 + along, rel=1e-9)
+    assert (whole["low_z"], whole["high_z"]) == pytest.approx((-13 - 45, 94 + 13 + 12), abs=1e-6)
 
 
 @pytest.mark.slow
@@ -221,7 +213,7 @@ class TestLists:
         shaft = build(given)
         header = shaft.step.split(b"ENDSEC;")[0].decode()
         assert max(map(len, header.split(",\n"))) <= 258 + 4
-        again = regenerate("crankshaft", 2, Crankshaft.from_quantities(given).inputs_si())
+        again = regenerate("crankshaft", 1, Crankshaft.from_quantities(given).inputs_si())
         assert again.key == shaft.key
         assert json.loads(json.dumps(shaft.parameters)) == shaft.parameters
 
@@ -270,7 +262,7 @@ def test_turned_pin_is_where_it_should_be() -> None:
 def test_four_throws_take_less_than_two_seconds_of_the_processor() -> None:
     """Drawn, written, read again, measured and checked; the better of two, as the machine has other work."""
     radii = {"value": [70, 0, 0, 70, 70, 0, 0, 70], "unit": "mm"}
-    given = {**Crankshaft.example, "pin_angles": degrees(0, 180, 180, 0), "counterweight_radius": radii}
+    given = {**TWO_THROWS, "pin_angles": degrees(0, 180, 180, 0), "counterweight_radius": radii}
     times = []
     for _ in range(2):
         started = process_time()

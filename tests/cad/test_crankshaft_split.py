@@ -1,4 +1,4 @@
-"""`crankshaft` 3, split pins: volume and unbalance in closed form, an engine's pins, refusals by name."""
+"""`crankshaft` 1, split pins: volume and unbalance in closed form, an engine's pins, refusals by name."""
 
 from cmath import exp
 from math import cos, pi, radians, remainder, sin
@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.optimize import minimize
+from undivided import TWO_THROWS
 
 from app.solids.analysis_process import throw_of
 from app.solids.questions import Question
@@ -14,8 +15,7 @@ from benchmarks.in_line_four import IN_LINE_FOUR
 from cad.cranks.chain_throw import shaft_of_throws, sizes_of_throw, throws_apart
 from cad.cranks.split_parameters import least_gap
 from cad.errors import AnalysisError
-from cad.models.crankshaft_v2 import Crankshaft as Undivided
-from cad.models.crankshaft_v3 import Crankshaft
+from cad.models.crankshaft_v1 import Crankshaft
 from cad.regenerate import Build, as_text, regenerate
 from cad.shaft import STEEL_DENSITY
 from templates.bearing_load.engine_v1 import Engine
@@ -42,7 +42,7 @@ def loads_only(example: dict[str, Any]) -> dict[str, Any]:
 
 
 def build(given: dict[str, Any]) -> Build:
-    return regenerate("crankshaft", 3, Crankshaft.from_quantities(given).inputs_si())
+    return regenerate("crankshaft", 1, Crankshaft.from_quantities(given).inputs_si())
 
 
 def refused(given: dict[str, Any]) -> dict[str, str]:
@@ -51,26 +51,24 @@ def refused(given: dict[str, Any]) -> dict[str, str]:
     return {name: fault.detail for fault in caught.value.faults for name in fault.names}
 
 
-@pytest.mark.parametrize("turns", [0, pytest.param(360, marks=pytest.mark.slow)])
-def test_undivided_shaft_is_that_of_version_2_to_the_byte(turns: float) -> None:
-    example = {**Undivided.example, "pin_angles": angles(0), "counterweight_radius": "70 mm"}
-    old = regenerate("crankshaft", 2, Undivided.from_quantities(example).inputs_si())
-    new = build({**example, "pin_split": {"value": turns, "unit": "deg"}})
-    assert new.step.split(b"ENDSEC;", 1)[1] == old.step.split(b"ENDSEC;", 1)[1]
-    assert new.measures == old.measures
+def test_pins_split_by_a_whole_turn_are_undivided_to_the_byte() -> None:
+    given = {**TWO_THROWS, "pin_angles": angles(0), "counterweight_radius": "70 mm"}
+    none, turn = (build({**given, "pin_split": split}) for split in ("0 deg", "360 deg"))
+    assert turn.step.split(b"ENDSEC;", 1)[1] == none.step.split(b"ENDSEC;", 1)[1]
+    assert turn.measures == none.measures
 
 
 @pytest.mark.parametrize(
     "split", [-60.0, *(pytest.param(one, marks=pytest.mark.slow) for one in (30.0, 180.0))]
 )
 def test_analytic_volume_is_that_of_its_parts(split: float) -> None:
-    """Against the shaft of version 2: a pin with its fillets more for each throw, and the middle web."""
+    """Against the undivided shaft: a pin with its fillets more for each throw, and the middle web."""
     pins = {**PLAIN, "pin_angles": angles(10, 130)}
     divided = {**MIDDLE, "pin_split": {"value": split, "unit": "deg"}}
     fillets = 2 * 2 * pi * ((1 - pi / 4) * 2**2 * 24 + (5 / 6 - pi / 4) * 2**3)
     web = 9 * (pi * 30**2 + 60 * 2 * 43 * abs(sin(radians(split) / 2)))
     more = 2 * (pi * 24**2 * 24 + fillets + web)
-    undivided = Undivided.from_quantities(pins).build()[0].volume
+    undivided = Crankshaft.from_quantities(pins).build()[0].volume
     assert build({**pins, **divided}).measures["volume"] == pytest.approx(undivided + more, rel=1e-9)
 
 

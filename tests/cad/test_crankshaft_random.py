@@ -1,6 +1,7 @@
-"""Random and hostile parameters of `crankshaft` 2: a checked solid, or a refusal by name before drawing."""
+"""Random and hostile parameters of `crankshaft`: a checked solid, or a refusal by name before drawing."""
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from seeds import seeded
 from test_cranks_random import HOSTILE as HOSTILE_THROWS
 from test_cranks_random import MAY_BE_NONE, RANGES
 
-from cad.models.crankshaft_v2 import Crankshaft
+from cad.models.crankshaft_v1 import Crankshaft
 from cad.regenerate import as_text, regenerate
 from templates.core.errors import InvalidInputs
 
@@ -18,7 +19,6 @@ ENDS = {
     "flange_diameter": (0.4, 3), "bolt_hole_diameter": (0.02, 0.4), "bolt_circle_diameter": (0.5, 2.5),
     "bolt_hole_depth": (0.05, 0.8),
 }  # fmt: skip
-SHARED = {name: bounds for name, bounds in RANGES.items() if name in Crankshaft.inputs}
 COMMON = (0.0, math.pi / 2, math.pi, 2 * math.pi / 3, -math.pi / 2, 3 * math.pi)
 
 D = 0.055
@@ -53,6 +53,23 @@ HOSTILE: list[dict[str, Any]] = [
     {"bolt_hole_diameter": 0.1 * D, "bolt_circle_diameter": 0.6 * D, "journal_bore": 0.45 * D},
 ]  # fmt: skip
 
+SPLITS = (math.pi / 6, -math.pi / 6, math.pi / 3, math.pi, -2 * math.pi / 3, 2 * math.pi)
+HOSTILE_SPLITS: list[dict[str, Any]] = [
+    {"pin_split": value} for value in (
+        math.nan, math.inf, 1e300, 7.0, [0.5], [0.5, 0.5], 1e-12, 1e-6, math.radians(0.9), math.radians(1.1),
+        math.pi, -math.pi, math.pi - 1e-9, math.pi + 1e-3,
+    )
+] + [
+    {"pin_split": 0.5, name: value}
+    for name in ("middle_web_thickness", "middle_web_width")
+    for value in (math.nan, -1e-3, 0.0, 1e-9, D, 2 * D, 9.9)
+] + [
+    {"pin_split": 0.5, "oil_drilling_diameter": 0.1 * D, "pin_angles": [0.0, 0.5]},
+    {"pin_split": 0.5, "oil_drilling_diameter": 0.1 * D, "pin_angles": [0.0, 0.8]},
+    {"pin_split": 0.5, "journal_bore": 0.3 * D}, {"pin_split": 2.5, "journal_bore": 0.1 * D},
+    {"pin_split": 0.5, "pin_bore": 0.3 * D}, {"pin_split": 0.01, "middle_web_width": 5.0},
+]  # fmt: skip
+
 
 def sample(rng: np.random.Generator) -> dict[str, Any]:
     """Random parameters [SI]: each length is left out, 0 where that means none, or anything in its range."""
@@ -61,7 +78,7 @@ def sample(rng: np.random.Generator) -> dict[str, Any]:
     angles = [rng.choice(COMMON) if rng.random() < 0.5 else rng.uniform(-7, 12) for _ in range(count)]
     chosen: dict[str, Any] = {"journal_diameter": size, "pin_angles": [float(a) for a in angles]}
     chosen["web_shape"] = rng.choice(["obround", "rectangular"]).item()
-    for name, (low, high) in {**SHARED, **ENDS}.items():
+    for name, (low, high) in {**RANGES, **ENDS}.items():
         if name != "counterweight_radius" and rng.random() < 0.4:
             none = name in MAY_BE_NONE and rng.random() < 0.3
             chosen[name] = 0.0 if none else size * low * (high / low) ** rng.random()
@@ -78,6 +95,16 @@ def sample(rng: np.random.Generator) -> dict[str, Any]:
     return chosen
 
 
+def random_split(rng: np.random.Generator) -> dict[str, Any]:
+    """Random parameters [SI] of a shaft whose pins are split in most cases."""
+    given = sample(rng)
+    given["pin_split"] = float(rng.choice(SPLITS) if rng.random() < 0.7 else rng.uniform(-6, 6))
+    for name, (low, high) in {"middle_web_thickness": (0.05, 0.5), "middle_web_width": (0.9, 2)}.items():
+        if rng.random() < 0.4:
+            given[name] = given["journal_diameter"] * rng.uniform(low, high)
+    return given
+
+
 def refused(given: dict[str, Any]) -> set[str]:
     try:
         as_text(Crankshaft.from_si(given))
@@ -91,7 +118,7 @@ def drawn(given: dict[str, Any]) -> bool:
     if named := refused(given):
         assert named & set(given)
         return False
-    model, result = Crankshaft.from_si(given), regenerate("crankshaft", 2, given)
+    model, result = Crankshaft.from_si(given), regenerate("crankshaft", 1, given)
     for name, value in result.dimensions.items():
         declared = Crankshaft.inputs[name]
         wanted = np.asarray(declared.meaning.scale.from_si(getattr(model, declared.attribute)))
@@ -100,18 +127,42 @@ def drawn(given: dict[str, Any]) -> bool:
     return True
 
 
-def solids_among(sets: int, seed: int) -> int:
+def solids_among(sets: int, seed: int, sampled: Callable[[np.random.Generator], dict[str, Any]]) -> int:
     rng = np.random.default_rng(seed)
-    return sum(drawn(sample(rng)) for _ in range(sets))
+    return sum(drawn(sampled(rng)) for _ in range(sets))
 
 
 def test_property_some_random_crankshafts() -> None:
-    assert 2 < solids_among(10, seed=5) < 10
+    assert 2 < solids_among(10, 5, sample) < 10
+
+
+def short_mains(rng: np.random.Generator) -> dict[str, Any]:
+    """Random parameters [SI] of one throw, its main journals shorter than two fillets."""
+    given = {**sample(rng), "pin_angles": [0.0]}
+    given["counterweight_radius"] = float(np.max(given.get("counterweight_radius", 0.0)))
+    given["journal_length"] = given["journal_diameter"] * 10 ** rng.uniform(-2, 0)
+    given["fillet"] = given["journal_length"] * rng.uniform(0.51, 0.89)
+    return given
+
+
+def test_property_one_throw_takes_mains_shorter_than_two_fillets() -> None:
+    """Each main then has one fillet; between two throws it has two, which do not fit."""
+    rng = np.random.default_rng(8)
+    accepted = [given for given in (short_mains(rng) for _ in range(60)) if not refused(given)]
+    assert len(accepted) > 5
+    assert all(map(drawn, accepted[:3]))
+    between = {"pin_angles": [0.0, math.pi / 2]}
+    assert all({"fillet", "journal_length"} <= refused({**given, **between}) for given in accepted)
+
+
+@pytest.mark.slow
+def test_property_many_shafts_of_one_throw_with_short_mains() -> None:
+    assert solids_among(300, seeded(9), short_mains) > 20
 
 
 @pytest.mark.slow
 def test_property_many_random_crankshafts() -> None:
-    assert 60 < solids_among(300, seed=seeded(6)) < 300
+    assert 60 < solids_among(300, seeded(6), sample) < 300
 
 
 def is_bad(given: dict[str, Any]) -> bool:
@@ -131,3 +182,25 @@ def test_property_some_hostile_crankshafts(given: dict[str, Any]) -> None:
 @pytest.mark.parametrize("given", [*HOSTILE, *HOSTILE_THROWS], ids=lambda given: str(given)[:60])
 def test_property_hostile_crankshafts(given: dict[str, Any]) -> None:
     assert not (drawn({"journal_diameter": D, "pin_angles": PINS, **given}) and is_bad(given))
+
+
+def test_property_some_random_split_pins() -> None:
+    assert 1 <= solids_among(4, 5, random_split) < 4
+
+
+@pytest.mark.slow
+def test_property_many_random_split_pins() -> None:
+    assert 60 < solids_among(300, seeded(6), random_split) < 300
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        pytest.param(given, marks=() if n % 7 == 0 else pytest.mark.slow, id=str(given)[:60])
+        for n, given in enumerate(HOSTILE_SPLITS)
+    ],
+)
+def test_property_hostile_split_pins(given: dict[str, Any]) -> None:
+    flat = any(size < 1e-6 for name, size in given.items() if name.startswith("middle"))
+    bad = flat or not all(abs(value) < 1e9 for one in given.values() for value in np.ravel(one).tolist())
+    assert not (drawn({"journal_diameter": D, "pin_angles": PINS, **given}) and bad)
