@@ -5,8 +5,8 @@ from __future__ import annotations
 from contextlib import ExitStack, closing
 from typing import TYPE_CHECKING
 
+from app.api.responses import Threads
 from app.api.services import Services
-from app.api.threads import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import ApprovalService
 from app.calculations.assembly import Calculations, assemble_calculations

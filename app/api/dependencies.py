@@ -11,8 +11,8 @@ from typing import Annotated
 from fastapi import Depends, Header, Query, Request
 
 from app.api.event_streams import Still, always
+from app.api.responses import Threads
 from app.api.services import Services
-from app.api.threads import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import ApprovalService
 from app.calculations.operations import Question

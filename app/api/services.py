@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.api.threads import Threads
+from app.api.responses import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import ApprovalService
 from app.calculations.operations import Question

@@ -10,7 +10,7 @@ from app.api.dependencies import TheApproving, TheComments, TheOnce
 from app.api.responses import written
 from app.approvals.comments import shown
 from app.approvals.schemas import ApprovalIn, Approvals, Comment, CommentIn, CommentList, ReleasedRevision
-from app.designs.routes.answers import Id, Number
+from app.designs.routes.designs import Id, Number
 from app.http.pages import Cursor, Limit, page
 from app.http.strict_requests import PreconditionRequired, StrictRoute
 from app.schemas.problems import refusals

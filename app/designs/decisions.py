@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from app.calculations.criteria import rendered
+from app.calculations.json_values import rendered
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository
 from app.designs.document import Document

@@ -56,6 +56,7 @@ class Regeneration:
         describe: Describe = plain_problem,
     ) -> None:
         self.describe = describe
+        self._solids = built(database), analysed(database)
         self.database, self.builds, self.catalogues = database, builds, catalogues
         self.analysing, self.steps, self.calculation_cache = (
             analysing,
@@ -110,7 +111,7 @@ class Regeneration:
         return Prepared(document, self._calculated(graph, starts(document)))
 
     def _calculated(self, graph: Graph, assumed: Mapping[Reference, float]) -> Calculation:
-        return calculate(graph, built(self.database), analysed(self.database), assumed)
+        return calculate(graph, *self._solids, assumed)
 
     def _settled(self, prepared: Prepared, context: JobContext) -> tuple[Calculation, list[JsonObject]]:
         """Return the calculation with all solids built and iterations converged, and its rounds."""
@@ -138,7 +139,7 @@ class Regeneration:
         if not document.variants:
             return []
         raise_if(row_faults(base))
-        available = Available(self.catalogues, built(self.database), analysed(self.database))
+        available = Available(self.catalogues, *self._solids)
         settling = VariantSolids(self.builds, self._settle, self.describe, context)
         return settling.settled(together(document, available))
 
@@ -161,7 +162,7 @@ class Regeneration:
                     self.builds.make(calculation.shapes[name], context)
             if not self._analysed(calculation, context) and not waiting:
                 return calculation
-            calculation = resume(calculation, built(self.database), analysed(self.database))
+            calculation = resume(calculation, *self._solids)
 
     def _analysed(self, calculation: Calculation, context: JobContext) -> bool:
         """Analyse every solid whose analysis is waited for; whether there was any."""

@@ -19,9 +19,8 @@ from app.designs.releases import EVER_RELEASED, NEWEST_RELEASED
 from app.designs.results import ModelState
 from app.identity.audit import record
 from app.identity.principal import acting
-from app.jobs.events import Event, Events
+from app.jobs.events import Event, Events, are_events_kept
 from app.plain import JsonObject
-from app.storage import event_log
 from app.storage.clock import new_id, now
 from app.storage.errors import NotFound
 from app.storage.tables import DesignRow, RevisionModelRow, RevisionRow, canonical_json
@@ -358,4 +357,4 @@ def standing(session: Session, id: str) -> Standing:
 def can_resume(session: Session, id: str, last: int | None) -> bool:
     """Return whether all events of a design after the one that a reader got last are kept."""
     until = design(session, id).event
-    return last is not None and event_log.can_resume(session, f"design:{id}", last, until)
+    return last is not None and are_events_kept(session, f"design:{id}", last, until)

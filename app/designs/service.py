@@ -122,6 +122,7 @@ class Designs:
     ) -> None:
         self.database, self.jobs, self.catalogues = database, jobs, catalogues
         self.calculation_cache = calculation_cache or CalculationCache()
+        self._solids = built(database), analysed(database)
 
     def show(self, id: str, number: int | None = None) -> Design:
         """Return a design as of a revision, by default the newest.
@@ -257,8 +258,7 @@ class Designs:
         Faults are left in the calculation.
         """
         document = resolved(read_document(raw), self.catalogues)
-        available = built(self.database), analysed(self.database)
-        return document, calculate(self._graph(document), *available, starts(document))
+        return document, calculate(self._graph(document), *self._solids, starts(document))
 
     def _graph(self, document: Document) -> Graph:
         graph, faults = build_graph(document, self.catalogues)
@@ -359,9 +359,7 @@ class Designs:
     def _checked(self, document: Document, base: Calculation) -> tuple[list[Outcome], list[Fault]]:
         if not document.variants:
             return [], []
-        return checked(
-            document, base, Available(self.catalogues, built(self.database), analysed(self.database))
-        )
+        return checked(document, base, Available(self.catalogues, *self._solids))
 
     def faulty_variants(self, raw: Mapping[str, Raw]) -> list[Fault]:
         """Return all faults for which a save would refuse the variants of a document.
@@ -416,7 +414,8 @@ def _with_builds(session: Session, draft: Draft) -> Draft:
 
     One that was deleted since it was looked up must be built again.
     """
-    if renew(session, [model.build for model in draft.written.models if model.build]):
+    builds = [model.build for model in draft.written.models if model.build]
+    if not builds or renew(session, builds):
         return draft
     return replace(draft, written=replace(draft.written, results=None, state="regenerating"))
 

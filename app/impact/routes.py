@@ -8,7 +8,7 @@ from app.api.answers import answered
 from app.api.dependencies import TheImpacts, Units
 from app.api.responses import LATER, patience
 from app.catalogue.routes.templates import Id, Number
-from app.designs.routes.answers import Prefer
+from app.designs.routes.designs import Prefer
 from app.http.access import TheClient
 from app.http.strict_requests import StrictRoute
 from app.impact.bodies import ImpactIn

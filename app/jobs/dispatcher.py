@@ -13,13 +13,12 @@ from sqlalchemy.orm import Session
 
 from app.identity.usage import working_for
 from app.jobs import repository
-from app.jobs.admission import Durations
 from app.jobs.context import JobContext, note
 from app.jobs.errors import JobFailed, JobLost, JobRests
 from app.jobs.events import Events
-from app.jobs.job import Job
 from app.jobs.progress import ProgressKeeper
-from app.jobs.turns import Lane
+from app.jobs.repository import Job
+from app.jobs.turns import Durations, Lane
 from app.observation import logs
 from app.plain import JsonObject
 from app.storage.database import Database, after_commit

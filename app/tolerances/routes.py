@@ -8,7 +8,7 @@ from app.api.answers import answered
 from app.api.dependencies import TheTolerances, Units
 from app.api.responses import LATER, patience
 from app.designs.questions import DesignQuestion
-from app.designs.routes.answers import Id, Prefer
+from app.designs.routes.designs import Id, Prefer
 from app.http.access import TheClient, needs
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals

@@ -9,7 +9,7 @@ from app.api.dependencies import TheDecisions, Units
 from app.api.responses import later, patience
 from app.designs.bodies import DecideIn
 from app.designs.decisions import LONGEST_BUDGET, DecisionQuestion, read_budget
-from app.designs.routes.answers import Id, Prefer
+from app.designs.routes.designs import Id, Prefer
 from app.designs.schemas.decision import Decision
 from app.http.access import TheClient, needs
 from app.http.strict_requests import StrictRoute

@@ -23,7 +23,7 @@ from app.api.dependencies import (
 from app.api.file_answers import UNAVAILABLE, UNCHANGED, lost
 from app.api.responses import LATER, accepted, accepted_weights, finished
 from app.designs import stamps, views
-from app.designs.routes.answers import Id, Number, Prefer
+from app.designs.routes.designs import Id, Number, Prefer
 from app.designs.routes.title_blocks import TheTitleBlock, TitleBlock
 from app.http import problems
 from app.http.access import TheClient

@@ -8,7 +8,7 @@ from app.api.answers import answered
 from app.api.dependencies import TheSolving, Units
 from app.api.responses import LATER, patience
 from app.designs.questions import DesignQuestion
-from app.designs.routes.answers import Id, Prefer
+from app.designs.routes.designs import Id, Prefer
 from app.designs.schemas.solution import DesignSolution
 from app.designs.solution import SolveDesignIn
 from app.http.access import TheClient, needs

@@ -33,7 +33,7 @@ from app.api.responses import LATER, finished, later, patience, written
 from app.catalogue.catalogues import Catalogues
 from app.designs.bodies import Note
 from app.designs.document import Overrides, Word
-from app.designs.routes.answers import Id, IfMatch, Number, Prefer
+from app.designs.routes.designs import Id, IfMatch, Number, Prefer
 from app.designs.routes.files import FILES, IfNoneMatch, TheFileRequest
 from app.designs.routes.sheet_types import ANSWERS, BODIES
 from app.designs.schemas.variants import VariantDetail, VariantsOut
