@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.calculations.criteria import rendered
+from app.calculations.json_values import rendered
 from app.calculations.schemas.evaluations import Output
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, results, tolerances
@@ -38,7 +38,7 @@ from templates.core.judging.judgement import Judgement
 
 
 @dataclass(frozen=True)
-class Previewed:
+class PreviewRequest:
     """A change that is to be previewed, and how.
 
     The patch is one of the newest revision, if none is named. With `worksheet`, the answer has every step as
@@ -52,7 +52,9 @@ class Previewed:
     revision: int | None = None
 
 
-def preview(asked: Previewed, database: Database, catalogues: Catalogues) -> Reply[Previewed, Preview]:
+def preview(
+    asked: PreviewRequest, database: Database, catalogues: Catalogues
+) -> Reply[PreviewRequest, Preview]:
     """Return old and new values for a patch of a design; nothing is saved or built.
 
     The answer is incomplete where something depends on deferred steps.
@@ -211,7 +213,7 @@ def _status(
 
 PREVIEWS = Kind(
     PREVIEW,
-    json_form(Previewed),
+    json_form(PreviewRequest),
     json_answer(Preview),
     preview,
     failures=(DesignError,),

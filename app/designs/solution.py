@@ -16,7 +16,7 @@ from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph, starts
 from app.designs.overrides import changed
 from app.designs.schemas.solution import DesignRoot, DesignSolution, Target
-from app.designs.solution_search import DesignRoots, Wanted, roots_of_design
+from app.designs.solution_search import DesignRoots, RootQuestion, roots_of_design
 from app.designs.tasks import DesignTask
 from app.designs.variants.table import applied
 from app.reference import Reference
@@ -96,8 +96,8 @@ def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
         detail = "the first bound must be below the second"
         raise InvalidInputs([Fault("between", "not_ascending", detail)])
     value = _single(raw, net.unit(target), f"target.{name}")
-    solution = roots_of_design(net, Wanted(unknown, (low, high), target, value, question.tolerance))
-    return _Written(solution, document, catalogues).answer(revision)
+    solution = roots_of_design(net, RootQuestion(unknown, (low, high), target, value, question.tolerance))
+    return _SolutionText(solution, document, catalogues).answer(revision)
 
 
 def _single(raw: object, unit: str, name: str) -> float:
@@ -111,7 +111,7 @@ def _single(raw: object, unit: str, name: str) -> float:
     return float(value)
 
 
-class _Written:
+class _SolutionText:
     """The roots of a design, as the interface writes them."""
 
     def __init__(self, solution: DesignRoots, document: Document, catalogues: Catalogues) -> None:

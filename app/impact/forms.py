@@ -37,7 +37,7 @@ class Form:
 def form_of(document: Document, catalogues: Catalogues) -> Form:
     """Return the form of a document whose templates and models are in the catalogues."""
     plain = document.model_dump(mode="json", exclude={"name", "variants"})
-    opening = _Opening({})
+    opening = _PlaceRemoval({})
     plain["parameters"] = {n: opening.parameter(n, raw) for n, raw in document.parameters.items()}
     for name, step in document.steps.items():
         cls = catalogues.templates.versions.get((step.template, int(step.version or 0)))
@@ -49,7 +49,7 @@ def form_of(document: Document, catalogues: Catalogues) -> Form:
 
 
 @dataclass(frozen=True)
-class _Opening:
+class _PlaceRemoval:
     """Leaves places open, and notes the values that stood there."""
 
     values: dict[Reference, float]

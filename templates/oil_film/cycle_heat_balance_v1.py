@@ -20,6 +20,7 @@ from templates.core.language.template import (
     shared,
 )
 from templates.groups.fed_bearing import FedBearing
+from templates.groups.journal_criteria import hot_oil
 from templates.groups.oil import Oil
 from templates.physics.heat.cycle_heat import (
     CycleBearing,
@@ -155,6 +156,7 @@ class CycleHeatBalance(Oil, FedBearing):
                 }
             },
         },
+        "hot_oil": hot_oil("outlet_temperature"),
         "temperature_rise": {
             "require": "temperature_rise <= permissible_temperature_rise",
             "words": "the oil grows no warmer on its way than its user permits",

@@ -48,6 +48,8 @@ class HydrostaticPad(Template):
     small beside the recess pressure.
     Restrictor constant_flow is a pump of fixed displacement; its supply pressure is that of its relief valve.
     Of all the power nothing leaves through the walls: the temperature rise is the largest that the oil has.
+    The viscosity is that given, at every temperature. Mineral oil loses half of it in some 15 to 20 K, so
+    give that of the mean temperature on the lands; above a rise of 60 K a warning says so.
     The film and the viscosity of least power are those for the same load and lands, with a restrictor that is
     chosen anew for them; they need a speed.
 
@@ -102,6 +104,13 @@ class HydrostaticPad(Template):
                     "words": "largest temperature rise from supply to edge",
                 }
             },
+        },
+        "warm_oil": {
+            "require": "temperature_rise <= 60 K",
+            "words": "oil supplied at 40 degC leaves at 100 degC at most; it is much thinner there",
+            "source": "ISO 7902-3, 100 degC as the general limit with pressure feed, as textbooks quote it",
+            "unverified": "no public copy of ISO 7902-3 was at hand",
+            "warning": "oil_too_hot",
         },
     }
 

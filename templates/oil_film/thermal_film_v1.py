@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from templates.core.language.template import Array, Template, Truth, formula, given, profile, require, shared
+from templates.groups.journal_criteria import hot_oil
 from templates.groups.oil import Oil
 from templates.physics.journals.lubrication_regime import friction_coefficient
 from templates.physics.journals.oil import by_law
@@ -133,6 +134,7 @@ class ThermalFilm(Oil, Template):
                 }
             },
         },
+        "hot_oil": hot_oil("outlet_temperature"),
         "laminar": {
             "require": "film_reynolds_number <= laminar_limit",
             "words": "the flow in the film is laminar",
@@ -215,7 +217,7 @@ class ThermalFilm(Oil, Template):
     def case(self) -> ThermalCase:
         """The bearing with its oil."""
         return ThermalCase(
-            F=self.F, D=self.D, W=self.W, psi=self.psi, omega=self.omega, pressure=self.p_s,
+            F=self.F, D=self.D, W=self.b * self.D, psi=self.psi, omega=self.omega, pressure=self.p_s,
             angle=self.phi_g, extent=self.ext_g, length=self.l_g, carry_over=self.kappa, supply=self.T_film,
             heat_capacity=self.rho_c, conductivity=self.k_o, held=self.T_b, transfer=self.h_b,
             ambient=self.T_amb, journal=self.T_j, A=self.A, B=self.B, a=by_law(self.law, np.nan, self.a_V),

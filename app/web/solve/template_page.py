@@ -13,11 +13,11 @@ from pydantic import JsonValue
 from app.calculations.bodies import SolveIn
 from app.calculations.schemas.evaluations import Solution
 from app.catalogue.routes.templates import show_template
-from app.catalogue.schemas.declarations import Declared, properties
+from app.catalogue.schemas.declarations import DeclaredValue, properties
 from app.catalogue.schemas.templates import Template
 from app.pool.cost import solving_seconds
 from app.presentation.input_text import text_of, value_of
-from app.web.shared.answers import Answered, TemplateQuestion, calculated, stored
+from app.web.shared.answers import AnswerOrJob, TemplateQuestion, calculated, stored
 from app.web.shared.places import PlaceOption, suggested
 from app.web.shared.responses import go, show, units_of
 from app.web.shared.services import PageServices
@@ -121,7 +121,7 @@ async def template_solve_page(request: Request, services: PageServices, id: str,
     )
 
 
-async def _solved(services: PageServices, template: Template, question: Question) -> Answered[Solution]:
+async def _solved(services: PageServices, template: Template, question: Question) -> AnswerOrJob[Solution]:
     """Return the solution, or the job that calculates it where the page does not wait so long."""
     body = services.read(SolveIn, question.body(template))
     asked = TemplateQuestion(template.id, template.version, "solve", body)
@@ -147,7 +147,7 @@ def _outputs(template: Template) -> Iterator[PlaceOption]:
             yield PlaceOption(name, declared.title, declared.unit or "")
 
 
-def _is_single(declared: Declared) -> bool:
+def _is_single(declared: DeclaredValue) -> bool:
     return declared.unit is not None and not declared.along and not declared.is_list
 
 

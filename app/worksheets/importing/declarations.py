@@ -10,7 +10,7 @@ from functools import lru_cache
 import lark
 
 from app.worksheets.importing.errors import Untranslatable
-from app.worksheets.importing.quantities import Scaled
+from app.worksheets.importing.quantities import ScaledNumber
 from templates.core.errors import FaultyText
 from templates.core.units.expressions import GRAMMAR, Sort, checked
 from templates.core.units.operations import Kind, Name
@@ -131,4 +131,4 @@ def unit_for(sort: Sort, wanted: Sequence[str]) -> str:
         (_SHORT.get(name, name), Fraction(str(power)).limit_denominator(100))
         for name, power in registry.Quantity(1.0, sort.kind.base).unit_items()
     )
-    return Scaled(1.0, powers).unit
+    return ScaledNumber(1.0, powers).unit
