@@ -17,7 +17,7 @@ from app.http import problems
 from app.http.pace import PiecesResponse
 from app.http.problem_kinds import INTERNAL
 from app.jobs.errors import JobNotFound
-from app.jobs.job import FINAL, Job
+from app.jobs.repository import FINAL, Job
 from app.pool.questions import ANSWERS, Questions, stored_answer
 from app.schemas.answers import Answer
 from app.storage.errors import ArtifactDamaged, ArtifactMissing

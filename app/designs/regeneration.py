@@ -17,14 +17,14 @@ from app.designs.graph import Graph, build_graph, raise_if, starts
 from app.designs.results import Outcome
 from app.designs.service import REGENERATE, CalculationCache, Prepared
 from app.designs.variants.checks import row_faults
-from app.designs.variants.solids import Describe, Settling, plain_problem
+from app.designs.variants.solids import Describe, VariantSolids, plain_problem
 from app.designs.variants.together import Available, together
 from app.jobs.service import Completion, Job, JobContext, JobFailed
 from app.plain import Json, JsonObject
 from app.pool.pool import Lane
 from app.pool.steps import Steps, calling
 from app.reference import Reference
-from app.solids.analysis_process import Analysing
+from app.solids.analysis_process import AnalysisRunner
 from app.solids.analysis_rows import analysed
 from app.solids.builds import Builds, failures_named
 from app.solids.rows import built
@@ -49,13 +49,14 @@ class Regeneration:
         self,
         database: Database,
         builds: Builds,
-        analysing: Analysing,
+        analysing: AnalysisRunner,
         catalogues: Catalogues,
         steps: Steps | None = None,
         calculation_cache: CalculationCache | None = None,
         describe: Describe = plain_problem,
     ) -> None:
         self.describe = describe
+        self._solids = built(database), analysed(database)
         self.database, self.builds, self.catalogues = database, builds, catalogues
         self.analysing, self.steps, self.calculation_cache = (
             analysing,
@@ -110,7 +111,7 @@ class Regeneration:
         return Prepared(document, self._calculated(graph, starts(document)))
 
     def _calculated(self, graph: Graph, assumed: Mapping[Reference, float]) -> Calculation:
-        return calculate(graph, built(self.database), analysed(self.database), assumed)
+        return calculate(graph, *self._solids, assumed)
 
     def _settled(self, prepared: Prepared, context: JobContext) -> tuple[Calculation, list[JsonObject]]:
         """Return the calculation with all solids built and iterations converged, and its rounds."""
@@ -138,8 +139,8 @@ class Regeneration:
         if not document.variants:
             return []
         raise_if(row_faults(base))
-        available = Available(self.catalogues, built(self.database), analysed(self.database))
-        settling = Settling(self.builds, self._settle, self.describe, context)
+        available = Available(self.catalogues, *self._solids)
+        settling = VariantSolids(self.builds, self._settle, self.describe, context)
         return settling.settled(together(document, available))
 
     def _settle(self, prepared: Prepared, context: JobContext) -> Calculation:
@@ -161,7 +162,7 @@ class Regeneration:
                     self.builds.make(calculation.shapes[name], context)
             if not self._analysed(calculation, context) and not waiting:
                 return calculation
-            calculation = resume(calculation, built(self.database), analysed(self.database))
+            calculation = resume(calculation, *self._solids)
 
     def _analysed(self, calculation: Calculation, context: JobContext) -> bool:
         """Analyse every solid whose analysis is waited for; whether there was any."""

@@ -19,9 +19,8 @@ from app.designs.releases import EVER_RELEASED, NEWEST_RELEASED
 from app.designs.results import ModelState
 from app.identity.audit import record
 from app.identity.principal import acting
-from app.jobs.events import Event, Events
+from app.jobs.events import Event, Events, are_events_kept
 from app.plain import JsonObject
-from app.storage import event_log
 from app.storage.clock import new_id, now
 from app.storage.errors import NotFound
 from app.storage.tables import DesignRow, RevisionModelRow, RevisionRow, canonical_json
@@ -36,7 +35,7 @@ _LEAN_REVISION = (
 
 
 @dataclass(frozen=True)
-class Written:
+class StoredRevision:
     """The content of a new revision."""
 
     document: JsonObject
@@ -209,7 +208,7 @@ def revisions(session: Session, id: str, limit: int, before: int | None) -> list
     return list(session.scalars(query.limit(limit + 1)))
 
 
-def create(session: Session, name: str, written: Written, at: str | None = None) -> tuple[str, int]:
+def create(session: Session, name: str, written: StoredRevision, at: str | None = None) -> tuple[str, int]:
     """Return a new design with its first revision, `at` the time given or now.
 
     Its id and the revision's number.
@@ -219,7 +218,7 @@ def create(session: Session, name: str, written: Written, at: str | None = None)
     return id, append(session, id, 0, written, created)
 
 
-def append(session: Session, id: str, base: int, written: Written, at: str | None = None) -> int:
+def append(session: Session, id: str, base: int, written: StoredRevision, at: str | None = None) -> int:
     """Return a new revision of a design whose newest one is `base`, `at` the time given or now; its number.
 
     The row of the design decides: of several servers that append to the same revision, one succeeds.
@@ -358,4 +357,4 @@ def standing(session: Session, id: str) -> Standing:
 def can_resume(session: Session, id: str, last: int | None) -> bool:
     """Return whether all events of a design after the one that a reader got last are kept."""
     until = design(session, id).event
-    return last is not None and event_log.can_resume(session, f"design:{id}", last, until)
+    return last is not None and are_events_kept(session, f"design:{id}", last, until)

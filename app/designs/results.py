@@ -9,7 +9,7 @@ from itertools import chain
 import numpy as np
 
 from app.calculations import json_values
-from app.calculations.criteria import rendered
+from app.calculations.json_values import rendered
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged

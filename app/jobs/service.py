@@ -16,15 +16,15 @@ from app.identity.errors import NotOwn
 from app.identity.limits import Limits as PrincipalLimits
 from app.identity.principal import BUILT_IN, acting
 from app.jobs import repository, turns
-from app.jobs.admission import admit
 from app.jobs.context import JobContext, note
 from app.jobs.dispatcher import FAST, SLOW, Completion, Dispatcher, FailureHook, Handler, Kind, Problem
 from app.jobs.errors import JobFailed, JobFinished, JobNotFound, JobRests
 from app.jobs.events import Events
-from app.jobs.job import FINAL, Job
 from app.jobs.leases import Leases
 from app.jobs.progress import ProgressFollower
+from app.jobs.repository import FINAL, Job
 from app.jobs.schemas import State
+from app.jobs.turns import admit
 from app.plain import JsonObject
 from app.settings import Settings
 from app.storage.clock import operated

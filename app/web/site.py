@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import os
-import re
 from pathlib import Path
 
 from fastapi import FastAPI
 from fastapi.staticfiles import StaticFiles
-from starlette.middleware.gzip import GZipMiddleware
 from starlette.responses import Response
-from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import Scope
 
+from app.api.responses import Compression
 from app.web.approval import routes as approval
 from app.web.audit import routes as audit
 from app.web.compare import routes as compare
@@ -82,11 +81,6 @@ ROUTERS = (
 )
 FOLDER = Path(__file__).parent
 SENT = {".css", ".js", ".svg"}  # endings of the files that a browser may fetch
-SMALLEST, LEVEL = 1000, 6  # of what is compressed [bytes], and how hard
-PLAIN = ("/events", "/evaluate", ".png", ".step")
-"""Ends of paths that are sent as they are: streams, short answers, what is compressed already."""
-CALCULATED = re.compile("/api/v1/(evaluations/.*|templates/.*/worksheet)")
-"""Paths of answers that may be large: to compress 256 kB holds the event loop for some 10 ms."""
 
 
 class Files(StaticFiles):
@@ -112,22 +106,6 @@ class Files(StaticFiles):
         response.headers["Cache-Control"] = "no-cache"
         response.headers["X-Content-Type-Options"] = "nosniff"
         return response
-
-
-class Compression:
-    """ASGI middleware that compresses pages and answers, but no stream."""
-
-    def __init__(self, app: ASGIApp) -> None:
-        self.app, self.compressed = app, GZipMiddleware(app, minimum_size=SMALLEST, compresslevel=LEVEL)
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on, compressed or not."""
-        is_plain = scope["type"] != "http" or _is_plain(scope["path"])
-        await (self.app if is_plain else self.compressed)(scope, receive, send)
-
-
-def _is_plain(path: str) -> bool:
-    return path.endswith(PLAIN) or CALCULATED.fullmatch(path) is not None
 
 
 def install(app: FastAPI) -> None:

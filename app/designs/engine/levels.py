@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.columns import Column
-from app.designs.engine.row_design import Levels, RowDesign, Rows, Wanted
+from app.designs.engine.row_design import Levels, RowDesign, Rows, Targets
 from app.designs.engine.steps import Part, StepRows
 from app.designs.network import Block
 from app.reference import Reference
@@ -27,7 +27,7 @@ Passes = Callable[[str | None], Iterable[Calculation]]
 
 
 @dataclass(frozen=True)
-class Levelling:
+class LevelChoice:
     """The choice of levels for some rows.
 
     Attributes
@@ -41,7 +41,7 @@ class Levelling:
     design: RowDesign
     rows: Rows
     count: int
-    wanted: Wanted
+    wanted: Targets
 
     def of_tolerances(self, levels: Levels) -> dict[str, str | None]:
         """Return the levels given, and those of steps for which the design has a tolerance and no level."""
@@ -66,7 +66,7 @@ class Levelling:
         if not cls.levels:
             return None
         outputs = self.design.needs(self.wanted).outputs(block)
-        inside = Wanted.of(Reference(block.name, None, output) for output in outputs)
+        inside = Targets.of(Reference(block.name, None, output) for output in outputs)
 
         def passes(level: str | None) -> Iterator[Calculation]:
             pinned = {**levels, block.name: level or levels.get(block.name)}

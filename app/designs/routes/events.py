@@ -11,8 +11,7 @@ from starlette.concurrency import run_in_threadpool
 from app.api.dependencies import OneStream, TheDatabase, TheJobs
 from app.api.event_streams import LastEvent, allowed, identity, listening
 from app.designs.repository import Standing, can_resume, standing
-from app.designs.routes.answers import Id
-from app.designs.routes.designs import show_design
+from app.designs.routes.designs import Id, show_design
 from app.http.strict_requests import StrictRoute
 from app.storage.database import Database
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from app.calculations import json_values
-from app.calculations.criteria import rendered
+from app.calculations.json_values import rendered
 from app.calculations.schemas.evaluations import Output
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from row_designs import BEARING, CATALOGUES, CURVES, net_of, ref
 
-from app.calculations.criteria import rendered
+from app.calculations.json_values import rendered
 from app.designs.document import Document, merge
 from app.designs.engine.calculate import calculate
 from app.designs.engine.steps import memory
