@@ -1,4 +1,4 @@
-"""A bearing through `Net`: least power with a film of at least a limit, explored at a cheap level."""
+"""A bearing through `DesignEngine`: least power with a film of at least a limit, explored at a cheap level."""
 
 import numpy as np
 import pytest
