@@ -27,7 +27,7 @@ from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.request import read_request
 from templates.core.language.spec import Choice, Curve
-from templates.core.units.quantity import Typed, read, read_any
+from templates.core.units.quantity import TypedQuantity, read, read_any
 from templates.core.units.relation import is_relation
 
 NOT_FINITE = "the relation has no finite value here (a division by zero, a root below zero?)"
@@ -237,7 +237,7 @@ def _waits(result: Calculation, cell: Cell, sources: Collection[Node]) -> bool:
     return result.needs is not None and not result.needs.waiting.isdisjoint(cell.uses.values())
 
 
-def literal(cell: Cell) -> Typed:
+def literal(cell: Cell) -> TypedQuantity:
     """Return a quantity as its user wrote it.
 
     Raises
@@ -266,16 +266,16 @@ def _limit(result: Calculation, cell: Cell, uses: Mapping[str, Column]) -> None:
         limit_operations(result.operations)
 
 
-def _typed(result: Calculation, cell: Cell, column: Column) -> Typed:
+def _typed(result: Calculation, cell: Cell, column: Column) -> TypedQuantity:
     """Return the value of a relation as the template of its block takes it."""
     si = column.value
     if cell.declared is None:
-        return Typed(None, "", si, {})  # it is used in SI only
+        return TypedQuantity(None, "", si, {})  # it is used in SI only
     scale = cell.declared.meaning.scale
     block = result.graph.blocks.get(cell.reference.block)
     is_of_model = block is not None and block.is_model
     tolerance = tolerance_of(result.graph, cell, result.typed) if is_of_model else None
-    return Typed(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {}, tolerance)
+    return TypedQuantity(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {}, tolerance)
 
 
 def _joined(cell: Cell, uses: Mapping[str, Column]) -> Column:

@@ -13,7 +13,7 @@ from app.http.strict_requests import SHEET_TYPES, StrictRoute, require_sheet
 from app.schemas.problems import refusals
 from app.storage.errors import NotFound
 from app.worksheets.bodies import ID, NAME
-from app.worksheets.importing.views import imported
+from app.worksheets.imports.views import imported
 from app.worksheets.routes.worksheets import Id
 from app.worksheets.schemas.imports import SheetImport
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from app.worksheets.importing.definitions import Definitions
-from app.worksheets.importing.errors import Unnamed, Untranslatable
-from app.worksheets.importing.names import key_of, look
-from app.worksheets.importing.outcome import Outcome, one_line
-from app.worksheets.importing.regions import OriginalSheet
-from app.worksheets.importing.trees import Node
+from app.worksheets.imports.definitions import Definitions
+from app.worksheets.imports.errors import Unnamed, Untranslatable
+from app.worksheets.imports.names import key_of, look
+from app.worksheets.imports.outcome import Outcome, one_line
+from app.worksheets.imports.regions import OriginalSheet
+from app.worksheets.imports.trees import Node
 
 _SHOWN = {"plot": "plot", "picture": "picture", "page break": "page break", "area": "area",
           "solve block": "solve block", "other": "control"}  # fmt: skip

@@ -13,7 +13,7 @@ import zlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from app.worksheets.importing.errors import SheetNotRead
+from app.worksheets.imports.errors import SheetNotRead
 
 MOST_PARTS = 200
 MOST_BYTES = 32 * 2**20

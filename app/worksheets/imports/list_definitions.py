@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from app.worksheets.importing.errors import Unnamed, Untranslatable
-from app.worksheets.importing.expressions import Expressions
-from app.worksheets.importing.names import Names, key_of
-from app.worksheets.importing.outcome import Outcome
-from app.worksheets.importing.scope import Choice, FailedName, Range, Value
-from app.worksheets.importing.statements import RESERVED, Statements, items_in, without_result
-from app.worksheets.importing.terms import LOOSE, Term, listed, number
-from app.worksheets.importing.trees import Node
-from app.worksheets.importing.writer import MOST_ITEMS
+from app.worksheets.imports.errors import Unnamed, Untranslatable
+from app.worksheets.imports.expressions import Expressions
+from app.worksheets.imports.names import Names, key_of
+from app.worksheets.imports.outcome import Outcome
+from app.worksheets.imports.scope import Choice, FailedName, Range, Value
+from app.worksheets.imports.statements import RESERVED, Statements, items_in, without_result
+from app.worksheets.imports.terms import LOOSE, Term, listed, number
+from app.worksheets.imports.trees import Node
+from app.worksheets.imports.writer import MOST_ITEMS
 from templates.core.units.expressions import Sort
 
 
