@@ -109,18 +109,23 @@ def turns_remark(kind: Kind, want: Unit, text: str) -> str:
     return ""
 
 
+def _over(name: str, divisor: str) -> str:
+    """Return a name or a number with its unit over a divisor."""
+    return f"{name} / ({divisor})" if " " in name else f"{name}/({divisor})"
+
+
 def _both_readings(names: list[str], want: Unit, text: str) -> str:
     which = f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} given in turns"
     if radians(want.base):
         return f"{which}, but in a formula the value is in rad/s already: leave out 2*pi or pi/30"
     in_turns = text
     for name in names:
-        in_turns = re.sub(rf"(?<![\w.]){re.escape(name)}(?![\w.])", f"({name}/(2*pi))", in_turns)
+        in_turns = re.sub(rf"(?<![\w.]){re.escape(name)}(?![\w.])", f"({_over(name, '2*pi')})", in_turns)
     plain = _OF_TURNS.fullmatch(text.strip()) if len(names) == 1 and not re.search(r"[-+,]", text) else None
     same = f", which is {plain[2]}{'' if plain[1] else '/2'}" if plain else ""
     turns = f": {in_turns}{same}" if in_turns != text else ""
     return (
         f"{which}, but in a formula the value is in rad/s, and {want.text} holds no angle; if the formula "
-        f"takes turns, write {names[0]}/(2*pi) for {names[0]}{turns}; if it takes radians, "
-        f"give {names[0]} in rad/s, or write {names[0]}/(1 rad)"
+        f"takes turns, write {_over(names[0], '2*pi')} for {names[0]}{turns}; if it takes radians, "
+        f"give {names[0]} in rad/s, or write {_over(names[0], '1 rad')}"
     )
