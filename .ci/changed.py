@@ -97,7 +97,7 @@ ABOUT = {
     "tests/app/cli/test_embedded_start.py": ("app/*.py", "pyproject.toml"),
     "tests/app/test_engine_gallery.py": (
         *("app/web/gallery*.py", "app/designs/*.py", "templates/bearing_load/*.py"),
-        *("templates/physics/engine/*.py", "cad/cranks/*.py", "cad/models/crankshaft_v2.py"),
+        *("templates/physics/engine/*.py", "cad/cranks/*.py", "cad/models/crankshaft_v1.py"),
     ),
     "tests/app/jobs/test_events_resumed.py": ("app/*event*.py", "app/api/event_streams.py"),
     "tests/app/http/test_evaluate_hostile.py": (
@@ -148,7 +148,7 @@ ABOUT = {
     "tests/app/studies/test_study_resumes.py": ("app/studies/*.py",),
     "tests/app/catalogue/test_team_templates.py": ("app/catalogue/*.py", "templates/core/checking/*.py"),
     "tests/app/http/test_stopping.py": ("app/http/server.py", "app/*jobs/*.py", "app/*workers/*.py"),
-    "tests/web/test_foreign_pages.py": ("app/http/*.py",),
+    "tests/app/web/test_foreign_pages.py": ("app/http/*.py",),
     "tests/app/http/test_contract_all_at_length.py": HTTP,
     "tests/app/http/test_contract_at_length.py": HTTP,
     "tests/app/http/test_interface_at_length.py": HTTP,
@@ -256,7 +256,7 @@ def is_there(file: str) -> bool:
 
 def about(test: str) -> tuple[str, ...]:
     """Return the patterns of the files that a test of a whole server is about; none for another test."""
-    return ABOUT.get(test, WEB if test.startswith("tests/web/") else ())
+    return ABOUT.get(test, WEB if test.startswith("tests/app/web/") else ())
 
 
 def is_related(test: str, files: Iterable[str]) -> bool:

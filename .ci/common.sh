@@ -146,7 +146,7 @@ team() {
 }
 
 lint() { "$environment/bin/ruff" check && "$environment/bin/ruff" format --check; }
-scripts() { "$environment/bin/oxlint" --config tests/oxlint.json --deny-warnings app/web/static; }
+scripts() { "$environment/bin/oxlint" --config tests/oxlint.json --deny-warnings app/web; }
 types() { "$environment/bin/mypy"; }
 contracts() { PATH="$environment/bin:$PATH" "$environment/bin/lint-imports"; }
 

@@ -38,20 +38,18 @@ from app.designs.routes.solution import router as solving
 from app.designs.routes.variant_sheets import by_type as sheets_by_type
 from app.designs.routes.variant_sheets import router as variant_sheets
 from app.designs.routes.variants import router as variants
-from app.http import guard, openapi, problems, request_log, roles
+from app.http import access, guard, openapi, problems, request_log
 from app.http.access import Access
-from app.http.heads import HeadLimit
+from app.http.limits import BodyLimits, RequestLimits
 from app.http.openapi import describe_interface, operation_id
 from app.http.pace import Pace
-from app.http.problems import StoppingAnswer
 from app.http.server import on_stop_signal
-from app.http.strict_requests import BodyLimit, BodyTooLarge, HeadTooLarge, HttpError
-from app.http.timeouts import BodyTime
+from app.http.strict_requests import HttpError
 from app.identity.errors import IdentityError
 from app.identity.routes.audit import router as audit
 from app.identity.routes.principals import router as principals
 from app.impact.routes import router as impact
-from app.imported_models.routes import router as brought_models
+from app.imported_models.routes import router as imported_models
 from app.jobs.routes import router as jobs
 from app.observation.routes import router as health
 from app.reports.routes import router as reports
@@ -64,7 +62,7 @@ from app.storage.errors import DatabaseUnavailable
 from app.studies.routes.studies import router as studies
 from app.studies.routes.tables import router as study_tables
 from app.tolerances.routes import router as tolerances
-from app.web import assembly as pages
+from app.web import site as pages
 from app.worksheets.routes.imports import router as worksheet_imports
 from app.worksheets.routes.worksheets import router as written_worksheets
 
@@ -110,7 +108,7 @@ ROUTERS = (
     design_events,
     study_tables,
     studies,
-    brought_models,
+    imported_models,
     models,
     analyses,
     jobs,
@@ -160,12 +158,10 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     problems.install(app)
     openapi.install(app)
     pages.install(app)
-    roles.install(app)
+    access.install(app)
     app.add_middleware(Access, refuse=_refused)
-    app.add_middleware(BodyLimit, limit=chosen.body_limit, refuse=_too_large)
-    app.add_middleware(BodyTime, seconds=chosen.body_seconds, rate=chosen.slowest_rate)
-    app.add_middleware(HeadLimit, refuse=_head_too_large)
-    app.add_middleware(StoppingAnswer)
+    body = BodyLimits(chosen.body_limit, chosen.body_seconds, chosen.slowest_rate)
+    app.add_middleware(RequestLimits, body=body, refuse=_refused)
     guard.install(app, Hosts(chosen.allowed_hosts, chosen.host), _refused)
     if traces is not None:
         from app.http import request_spans
@@ -204,13 +200,5 @@ def spared_by_collections() -> Iterator[None]:
         gc.unfreeze()
 
 
-def _too_large(reason: str) -> Response:
-    return _refused(BodyTooLarge(reason))
-
-
 def _refused(error: HttpError | IdentityError | DatabaseUnavailable) -> Response:
     return problems.refusal(error)
-
-
-def _head_too_large(reason: str) -> Response:
-    return _refused(HeadTooLarge(reason))

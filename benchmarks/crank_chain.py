@@ -35,8 +35,7 @@ from cad.analysis.solid import FREE, HELD, LOADED, Solid
 from cad.analysis.throw_matrix import ThrowMatrix, section_loads, throw_matrix
 from cad.cranks.chain_throw import throw_step
 from cad.cranks.whole import WholeShaft
-from cad.models.crankshaft_v2 import Crankshaft
-from cad.models.crankshaft_v3 import Crankshaft as SplitCrankshaft
+from cad.models.crankshaft_v1 import Crankshaft
 
 RESULTS = Path("benchmarks/results/crank_chain.json")
 LEVEL = LEVELS[0]
@@ -55,7 +54,7 @@ def shaft(angles: tuple[float, ...], split: float = 0.0) -> WholeShaft:
     if split == 0:
         return Crankshaft.from_quantities({**GIVEN, "pin_angles": pins}).drawn()
     divided = {"pin_split": {"value": split, "unit": "deg"}, "pin_length": "24 mm"}
-    return SplitCrankshaft.from_quantities({**GIVEN, "pin_angles": pins, **divided}).drawn()
+    return Crankshaft.from_quantities({**GIVEN, "pin_angles": pins, **divided}).drawn()
 
 
 @cache

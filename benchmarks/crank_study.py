@@ -43,6 +43,7 @@ CLOSED = (
 )  # fmt: skip
 
 SLENDER = {
+    "pin_angles": "[0] deg",
     "journal_diameter": "44 mm",
     "journal_length": "36 mm",
     "pin_diameter": "46 mm",
@@ -55,10 +56,10 @@ SLENDER = {
     "counterweight_radius": "60 mm",
     "counterweight_angle": "120 deg",
     "face_inclination": "4.5 deg",
-    "front_length": "15 mm",
-    "front_diameter": "40 mm",
-    "rear_length": "12 mm",
-    "rear_diameter": "52 mm",
+    "nose_length": "15 mm",
+    "nose_diameter": "40 mm",
+    "flange_thickness": "12 mm",
+    "flange_diameter": "52 mm",
 }
 STOUT = {"web_thickness": "18 mm", "face_inclination": "9 deg"}
 """The same shaft with webs of a usual thickness."""

@@ -8,8 +8,8 @@ what it found is attached to the revision. Generator expressions, comprehensions
 Python 3.11) and lambdas count as functions; a generator or coroutine that goes on counts no second time. The
 writer thread of the database is included; HTTP, the queue and starting a process are not.
 
-The design is the paper's film (`oil_film` 1) with a `plain_bearing` whose width and bore follow from it. It
-is changed a few times before, so that every cache is warm, and each time to a width that is new.
+The design is the paper's film (`oil_film` 1) with a full bush, a `plain_bearing`, whose width and bore follow
+from it. It is changed a few times before, so that every cache is warm, and each time to a width that is new.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ class Bench:
         from app.http import problems
         from app.jobs.service import Jobs
         from app.settings import Settings
-        from app.solids.analysis_process import Analysing
+        from app.solids.analysis_process import AnalysisRunner
         from app.solids.builds import Builds
         from app.storage.artifacts import ArtifactStore
         from app.storage.database import Database
@@ -96,7 +96,7 @@ class Bench:
         catalogues = Catalogues(find_templates(()), models())
         self.jobs = Jobs(self.database, Inline(), Settings(data=folder), problems.describe)
         builds = Builds(self.database, store, *_folders(Builds))
-        analysing = Analysing(self.database, store, Limits())
+        analysing = AnalysisRunner(self.database, store, Limits())
         self.designs = Designs(self.database, self.jobs, catalogues)
         self.regeneration = Regeneration(
             self.database, builds, analysing, catalogues, **_recent(self.designs)
@@ -160,7 +160,8 @@ def document() -> dict[str, Any]:
     """Return the design that is changed."""
     from app.designs.bodies import PAPER
 
-    parameters = {"inner_diameter": "= film.bearing_diameter", "width": "= film.bearing_width"}
+    sizes = {"inner_diameter": "= film.bearing_diameter", "width": "= film.bearing_width"}
+    parameters = {**sizes, "shells": "full", "lining_thickness": "0 mm"}
     model = {"id": "plain_bearing", "version": 1, "parameters": parameters}
     paper = {name: part for name, part in PAPER.items() if name != "model"}
     return {**paper, "models": {"model": model}}

@@ -26,7 +26,6 @@ RESOURCE = frozenset({"routes", "schemas", "bodies", "views", "repository", "ser
 """The files of a resource: the same names in each folder, however short."""
 
 REASONS: dict[str, str] = {
-    "app.calculations.sizes": "memory that any value holds; knows nothing of the cache that asks",
     "app.pool.turns": "the rule of turns between clients alone, tested by itself",
     "app.client.approval_operations": "the calls on one resource, as every resource has them in the client",
     "app.client.identity_operations": "the calls on one resource, as every resource has them in the client",

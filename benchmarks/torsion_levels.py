@@ -46,6 +46,10 @@ OPTIONS = {
     "journal_bore": (0.15, 0.4), "pin_bore": (0.15, 0.4), "oil_drilling_diameter": (0.06, 0.12),
     "counterweight_radius": (1.2, 1.6),
 }  # fmt: skip
+ENDS = {
+    "nose_diameter": (0.5, 0.9), "nose_length": (0.3, 1.0), "flange_diameter": (0.5, 0.9),
+    "flange_thickness": (0.3, 1.0),
+}  # fmt: skip
 
 
 def random_throws(count: int, seed: int) -> Iterator[dict[str, Any]]:
@@ -70,16 +74,12 @@ def random_throws(count: int, seed: int) -> Iterator[dict[str, Any]]:
 
 
 def random_crankshafts(count: int, seed: int) -> Iterator[dict[str, Any]]:
-    """Yield parameters [SI] of crankshafts that can be drawn: random throws, each with ends of its own."""
+    """Yield parameters [SI] of crankshafts that can be drawn: a random throw, a nose and a plain flange."""
     rng = np.random.default_rng(seed + 1)
     for thrown in random_throws(10 * count, seed):
         size = thrown["journal_diameter"]
-        ends = {
-            f"{end}_{name}": size * rng.uniform(low, high)
-            for end in ("front", "rear")
-            for name, low, high in (("diameter", 0.5, 0.9), ("length", 0.3, 1.0))
-        }
-        if count > 0 and possible(Crankshaft, drawn := {**thrown, **ends}):
+        ends = {name: size * rng.uniform(low, high) for name, (low, high) in ENDS.items()}
+        if count > 0 and possible(Crankshaft, drawn := {"pin_angles": [0.0], **thrown, **ends}):
             count -= 1
             yield drawn
 

@@ -12,7 +12,7 @@ import pytest
 
 SERVED = "served"  # every test that needs the server of tests/app/conftest.py
 TEAM = "team"  # every test that needs PostgreSQL, an S3 server or Dask, of which one worker has each
-PAGES = "pages"  # every test that needs the server or the browser of tests/web/conftest.py
+PAGES = "pages"  # every test that needs the server or the browser of tests/app/web/conftest.py
 
 MODELS = "models"  # the files that go through every model, whose example and files are made once
 
@@ -37,7 +37,7 @@ LONGEST = (PAGES, SERVED, TEAM, MODELS, "tests/templates/test_catalogue_properti
 def group_of(item):
     """The group of a test: its server's, else its file."""
     file = item.path.relative_to(item.config.rootpath).as_posix()
-    if file.startswith("tests/web/"):
+    if file.startswith("tests/app/web/"):
         return PAGES
     if file.startswith("tests/team/"):
         return TEAM

@@ -27,7 +27,7 @@ def item(file, *fixtures):
 @pytest.mark.parametrize(
     ("test", "group"),
     [
-        (item("tests/web/test_pages.py", "http"), PAGES),
+        (item("tests/app/web/test_pages.py", "http"), PAGES),
         (item("tests/app/designs/test_designs.py", "http", "served"), SERVED),
         (item("tests/app/test_jobs.py"), "tests/app/test_jobs.py"),
         (item("tests/physics/test_oil.py"), "tests/physics/test_oil.py"),
@@ -125,13 +125,15 @@ def test_a_test_of_a_whole_server_is_about_files_that_exist():
             files = fnmatch.filter([*tree, "pyproject.toml"], pattern)
             assert files, f"{test}: {pattern} names no file"
             assert changed.is_related(test, files[:1])
-        assert not changed.is_related(test, ["app/web/static/icon.svg"])
+        assert not changed.is_related(test, ["app/web/shared/icon.svg"])
 
 
 def test_a_slow_test_of_the_pages_is_about_the_pages():
-    pages = {test for test in changed.slow_files() if test.startswith("tests/web/")} - changed.ABOUT.keys()
+    pages = {
+        test for test in changed.slow_files() if test.startswith("tests/app/web/")
+    } - changed.ABOUT.keys()
     assert len(pages) > 10
-    assert pages <= set(changed.selection(["app/web/static/design.js"]))
+    assert pages <= set(changed.selection(["app/web/design/design.js"]))
     assert pages & set(changed.selection(["app/designs/service.py"])) == set()
 
 

@@ -30,7 +30,7 @@ def test_related_tests_are_few_and_none_of_the_pages():
         tests = related(file)
         assert 2 < len(tests) <= NEAREST + 2 + len(changed.ABOUT)
         assert len(set(tests)) == len(tests)
-        assert not any(test.startswith("tests/web/") for test in tests)
+        assert not any(test.startswith("tests/app/web/") for test in tests)
     assert changed.CATALOGUE in related("templates/core/errors.py")
 
 

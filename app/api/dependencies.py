@@ -11,24 +11,23 @@ from typing import Annotated
 from fastapi import Depends, Header, Query, Request
 
 from app.api.event_streams import Still, always
-from app.api.expensive_answers import Answering
+from app.api.responses import Threads
 from app.api.services import Services
-from app.api.threads import Threads
 from app.approvals.comments import Comments
-from app.approvals.service import Approving
+from app.approvals.service import ApprovalService
+from app.calculations.operations import Question
 from app.catalogue.catalogues import Catalogues
 from app.designs import decisions
-from app.designs.labels import Labelling
-from app.designs.preview import Previewed
-from app.designs.questions import Asked, Questions
+from app.designs.labels import LabelService
+from app.designs.preview import PreviewRequest
+from app.designs.questions import DesignQuestion
 from app.designs.schemas.decision import Decision
 from app.designs.schemas.designs import Preview
 from app.designs.schemas.solution import DesignSolution
 from app.designs.schemas.variants import VariantDetail
 from app.designs.service import Designs
 from app.designs.variants.detail import WantedVariant
-from app.http.access import STILL
-from app.http.clients import TheClient
+from app.http.access import STILL, TheClient
 from app.http.strict_requests import fingerprint
 from app.identity.service import Identity
 from app.impact import survey
@@ -36,6 +35,7 @@ from app.impact.schemas import Impact
 from app.imported_models.service import ModelImports
 from app.jobs.service import Jobs
 from app.observation.readiness import Readiness
+from app.pool.questions import Questions
 from app.pool.steps import Caller, call_as
 from app.presentation.units import System
 from app.reports.paper import Press
@@ -43,12 +43,13 @@ from app.reports.service import Reports
 from app.settings import Settings
 from app.solids.analyses import Analyses
 from app.solids.models import Models
-from app.solids.repair import Healing
+from app.solids.repair import ArtifactRepair
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.studies.service import Studies
 from app.tolerances.schemas import ToleranceAnalysis
+from app.workers.pieces import Pieces
 from app.worksheets.importing.service import Imports
 from app.worksheets.service import Worksheets
 
@@ -75,23 +76,23 @@ TheSettings = Annotated[Settings, Depends(_part("settings"))]
 TheStore = Annotated[Artifacts, Depends(_part("store"))]
 TheJobs = Annotated[Jobs, Depends(_part("jobs"))]
 TheThreads = Annotated[Threads, Depends(_part("threads"))]
-TheAnswering = Annotated[Answering, Depends(_part("answering"))]
+TheEvaluations = Annotated[Questions[Question, Pieces], Depends(_part("evaluations"))]
 TheDesigns = Annotated[Designs, Depends(_part("designs"))]
-TheLabelling = Annotated[Labelling, Depends(_part("labelling"))]
+TheLabelling = Annotated[LabelService, Depends(_part("labelling"))]
 TheStudies = Annotated[Studies, Depends(_part("studies"))]
 TheImports = Annotated[Imports, Depends(_part("imports"))]
 TheWorksheets = Annotated[Worksheets, Depends(_part("worksheets"))]
-ThePreviews = Annotated[Questions[Previewed, Preview], Depends(_part("previews"))]
-TheDecisions = Annotated[Questions[decisions.Asked, Decision], Depends(_part("decisions"))]
-TheSolving = Annotated[Questions[Asked, DesignSolution], Depends(_part("solving"))]
-TheTolerances = Annotated[Questions[Asked, ToleranceAnalysis], Depends(_part("tolerances"))]
+ThePreviews = Annotated[Questions[PreviewRequest, Preview], Depends(_part("previews"))]
+TheDecisions = Annotated[Questions[decisions.DecisionQuestion, Decision], Depends(_part("decisions"))]
+TheSolving = Annotated[Questions[DesignQuestion, DesignSolution], Depends(_part("solving"))]
+TheTolerances = Annotated[Questions[DesignQuestion, ToleranceAnalysis], Depends(_part("tolerances"))]
 TheVariantDetails = Annotated[Questions[WantedVariant, VariantDetail], Depends(_part("variant_details"))]
-TheImpacts = Annotated[Questions[survey.Asked, Impact], Depends(_part("impacts"))]
+TheImpacts = Annotated[Questions[survey.ImpactQuestion, Impact], Depends(_part("impacts"))]
 TheModels = Annotated[Models, Depends(_part("models"))]
 TheModelImports = Annotated[ModelImports, Depends(_part("model_imports"))]
 TheAnalyses = Annotated[Analyses, Depends(_part("analyses"))]
-TheHealing = Annotated[Healing, Depends(_part("healing"))]
-TheApproving = Annotated[Approving, Depends(_part("approving"))]
+TheHealing = Annotated[ArtifactRepair, Depends(_part("healing"))]
+TheApproving = Annotated[ApprovalService, Depends(_part("approving"))]
 TheComments = Annotated[Comments, Depends(_part("comments"))]
 TheReports = Annotated[Reports, Depends(_part("reports"))]
 ThePress = Annotated[Press, Depends(_part("press"))]

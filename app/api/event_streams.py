@@ -14,10 +14,9 @@ from fastapi import Depends, Header
 from fastapi.sse import ServerSentEvent
 from starlette.concurrency import run_in_threadpool
 
-from app.jobs.events import Events, Subscription
+from app.jobs.events import Event, Events, Subscription
 from app.schemas.answers import Answer
 from app.storage.errors import DatabaseUnavailable
-from app.storage.event_log import Event
 
 
 async def last_event(

@@ -1,18 +1,34 @@
-"""Responses of routes whose work may become a job: 202 with the job, and how long the client waits."""
+"""Responses of routes: how long a client waits, in which threads, 202 with a job, JSON and its compression.
+
+Routes that may wait for the pool of calculation processes have threads of their own, so that those of the
+others are free.
+"""
 
 from __future__ import annotations
 
+import asyncio
 import re
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
+from typing import ParamSpec, TypeVar
 
+from anyio import CapacityLimiter, to_thread
 from fastapi import Request
 from fastapi.responses import Response
+from starlette.middleware.gzip import GZipMiddleware
+from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.jobs.service import Jobs
+from app.pool.steps import Caller, present_caller
 from app.schemas.answers import Accepted, Answer
 from app.schemas.problems import Responses
 
 LONGEST = 60.0  # s
+SMALLEST, LEVEL = 1000, 6  # of what is compressed [bytes], and how hard
+PLAIN = ("/events", "/evaluate", ".png", ".step")
+"""Ends of paths that are sent as they are: streams, short answers, what is compressed already."""
+CALCULATED = re.compile("/api/v1/(evaluations/.*|templates/.*/worksheet)")
+"""Paths of answers that may be large: to compress 256 kB holds the event loop for some 10 ms."""
 LATER: Responses = {
     202: {"description": "the work goes on; its job is in the header Location", "model": Accepted}
 }
@@ -84,3 +100,78 @@ def written(answer: Answer, status: int = 200, headers: Mapping[str, str] | None
 def as_json(answer: Answer) -> bytes:
     """Return an answer as JSON, without the fields that it leaves out."""
     return answer.model_dump_json(by_alias=True, exclude_unset=True).encode()
+
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+THREADS = 64
+
+
+class Threads:
+    """Threads of routes that may wait for the pool, so that those of the others are free."""
+
+    def __init__(self) -> None:
+        self._limiter: CapacityLimiter | None = None
+
+    async def run(self, function: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
+        """Call a function in such a thread."""
+        if self._limiter is None:
+            self._limiter = CapacityLimiter(THREADS)
+        return await to_thread.run_sync(lambda: function(*args, **options), limiter=self._limiter)
+
+    async def run_for(
+        self, request: Request, function: Callable[P, T], *args: P.args, **options: P.kwargs
+    ) -> T:
+        """Call a function for a client; what it calculates ends if the client leaves."""
+        caller = present_caller()
+        leaving = asyncio.create_task(_note_leaving(request, caller))
+        try:
+            return await self.run(_closing, caller, lambda: function(*args, **options))
+        finally:
+            leaving.cancel()
+
+    async def run_within(
+        self, seconds: float, request: Request, function: Callable[P, T], *args: P.args, **options: P.kwargs
+    ) -> T:
+        """Run a function as `run_for`, and defer the steps that take longer than so long [s].
+
+        The deadline of the calculation limits that time.
+        """
+        if caller := present_caller():
+            caller.until = time.monotonic() + min(seconds, caller.steps.deadline)
+        return await self.run_for(request, function, *args, **options)
+
+
+def _closing(caller: Caller | None, function: Callable[[], T]) -> T:
+    """Call a function, then end what it has begun and left to no job."""
+    failed = True
+    try:
+        result = function()
+        failed = False
+        return result
+    finally:
+        if caller is not None:
+            caller.begun.close(failed=failed)
+
+
+async def _note_leaving(request: Request, caller: Caller | None) -> None:
+    await client_left(request)
+    if caller is not None:
+        caller.left.set()
+
+
+class Compression:
+    """ASGI middleware that compresses pages and answers, but no stream."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app, self.compressed = app, GZipMiddleware(app, minimum_size=SMALLEST, compresslevel=LEVEL)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on, compressed or not."""
+        is_plain = scope["type"] != "http" or _is_plain(scope["path"])
+        await (self.app if is_plain else self.compressed)(scope, receive, send)
+
+
+def _is_plain(path: str) -> bool:
+    return path.endswith(PLAIN) or CALCULATED.fullmatch(path) is not None

@@ -12,10 +12,10 @@ from app.approvals.schemas import Comment, CommentIn
 from app.designs import repository
 from app.identity.audit import record
 from app.identity.principal import acting
+from app.storage.clock import new_id, now
 from app.storage.database import Database
 from app.storage.errors import NotFound
 from app.storage.idempotency import Once
-from app.storage.identity import new_id, now
 from app.storage.tables import CommentRow, RevisionRow
 from templates.core.errors import Fault, InvalidInputs, plain
 

@@ -7,16 +7,12 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
 
-from app.calculations.jobs import CALCULATION, CalculationJobs
-from app.catalogue.catalogues import Catalogues
-from app.jobs.service import Jobs
 from app.observation import metrics
 from app.pool.pool import CalculationPool
 from app.pool.processes import CalculationProcesses
+from app.pool.questions import CALCULATION
 from app.pool.steps import Steps
 from app.settings import Settings
-from app.storage.artifacts import Artifacts
-from app.storage.database import Database
 from app.workers import prefork
 from app.workers.base import Limits
 from app.workers.pool import WarmProcesses
@@ -26,11 +22,10 @@ PRELOAD = ("app.calculations.warm",)
 
 @dataclass(frozen=True)
 class Calculations:
-    """The pool, and what evaluates in it."""
+    """The pool, and the steps that are evaluated in it."""
 
     pool: CalculationPool
     steps: Steps
-    jobs: CalculationJobs
 
     @property
     def lanes(self) -> dict[str, int]:
@@ -45,14 +40,10 @@ class Calculations:
 def assemble_calculations(
     settings: Settings,
     stack: ExitStack,
-    catalogues: Catalogues,
-    database: Database,
-    store: Artifacts,
-    jobs: Jobs,
     designs: tuple[str, ...] = (),
     sheets: tuple[str, ...] = (),
 ) -> Calculations:
-    """Make the pool, and register the jobs that use it; the stack ends it.
+    """Make the pool; the stack ends it.
 
     `designs` are the modules that functions of designs need in their processes, `sheets` those that read
     worksheets, which all processes have.
@@ -70,6 +61,4 @@ def assemble_calculations(
     pool = CalculationPool(processes, size, settings.calculation_waiting, limits)
     stack.callback(pool.close)
     stack.callback(metrics.watch("calculations", pool.occupancy))
-    handler = CalculationJobs(pool, catalogues, database, store, jobs)
-    jobs.register(CALCULATION, handler, handler.failed, lane=CALCULATION)
-    return Calculations(pool, Steps(pool, settings.calculation_deadline), handler)
+    return Calculations(pool, Steps(pool, settings.calculation_deadline))

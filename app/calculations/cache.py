@@ -1,27 +1,35 @@
-"""Results that are kept to be used again, all together within a limit of memory."""
+"""Results that are kept to be used again, all together within a limit of the memory that they hold."""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Hashable
 from dataclasses import dataclass
+from functools import lru_cache
+from gc import get_referents
 from operator import attrgetter
 from threading import Lock
+from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
 from typing import Any
 
+import numpy as np
+import pint
 from cachetools import LRUCache
+from numpy.typing import NDArray
 
-from app.calculations.sizes import size_of
+from templates.core.language.spec import Declaration, Requirement, Shared
+from templates.core.units.units import Unit
 
 USUAL = 256  # MiB, unless the settings say otherwise
 
 
 @dataclass(frozen=True)
-class _Sized:
+class _CacheEntry:
     value: object
     size: int  # bytes
 
 
-def _kept(megabytes: int) -> LRUCache[Hashable, _Sized]:
+def _kept(megabytes: int) -> LRUCache[Hashable, _CacheEntry]:
     return LRUCache(megabytes * 2**20, getsizeof=attrgetter("size"))
 
 
@@ -55,7 +63,7 @@ class Cache:
         with self._lock:
             self._kept.pop(key, None)
             if size <= self._kept.maxsize:
-                self._kept[key] = _Sized(value, size)
+                self._kept[key] = _CacheEntry(value, size)
 
     def limit(self, megabytes: int) -> None:
         """Begin again, empty, with another limit [MiB]."""
@@ -65,3 +73,40 @@ class Cache:
 
 results = Cache(USUAL)
 """The cache of the process: evaluations of steps and formulas written out."""
+
+
+_SHARED = (
+    type, ModuleType, FunctionType, BuiltinFunctionType, MethodType,
+    Declaration, Shared, Requirement, Unit, pint.UnitRegistry, pint.Unit,
+)  # fmt: skip
+"""What belongs to the program, not to the values that refer to it."""
+_ATOMS = (float, int, bool, str, bytes, complex, type(None))
+
+
+def size_of(value: object) -> int:
+    """Return the memory of a value and of all that it refers to [bytes].
+
+    What equal parts share may count twice.
+    """
+    total, seen, waiting = sys.getsizeof(value), {id(value)}, [value]
+    while waiting:
+        item = waiting.pop()
+        for part in _parts(item) if isinstance(item, np.ndarray) else get_referents(item):
+            if type(part) in _ATOMS:
+                total += sys.getsizeof(part)
+            elif id(part) not in seen and not _is_shared(type(part)):  # type: ignore[arg-type]  # a class is hashable
+                seen.add(id(part))
+                total += sys.getsizeof(part)
+                waiting.append(part)
+    return total
+
+
+@lru_cache(2048)
+def _is_shared(kind: type) -> bool:
+    return issubclass(kind, _SHARED)
+
+
+def _parts(array: NDArray[np.generic]) -> list[object]:  # arrays of any kind of number
+    """Return the objects in an array, and of a view the array that owns the numbers."""
+    items = array.ravel().tolist() if array.dtype == object else []
+    return items if array.base is None else [*items, array.base]

@@ -8,7 +8,7 @@ from app.calculations import json_values
 from app.calculations.bodies import EvaluateIn, SolveIn
 from app.calculations.errors import TooManyValues
 from app.plain import JsonObject
-from app.pool.size import points
+from app.pool.cost import points
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.question import read_question
 from templates.core.language.request import read_request, require_points

@@ -23,7 +23,7 @@ from app.workers.errors import WorkerError
 from cad.catalogue import models as find_models
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
-from templates.core.errors import UnknownTemplate
+from templates.core.errors import UnknownTemplate, UnreleasedTemplate
 from templates.core.language.template import Template
 
 logger = logging.getLogger(__name__)
@@ -82,6 +82,19 @@ class Catalogues:
         if (id, version) not in self.templates.unreleased:
             return self.templates.get(id, version)
         return self._drafts(id, version)
+
+    async def tried(self, id: str, version: int) -> type[Template]:
+        """As `to_try`, in the event loop: a thread reads the draft.
+
+        Raises
+        ------
+        UnknownTemplate
+            As `to_try`.
+        """
+        try:
+            return self.templates.get(id, version)
+        except UnreleasedTemplate:
+            return await asyncio.to_thread(self.to_try, id, version)
 
     def with_drafts(self, wanted: Iterable[Key]) -> Catalogues:
         """Return the same, and the drafts of worksheets that are wanted.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from app.calculations.criteria import criterion as rendered
+from app.calculations.json_values import criterion as rendered
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import Verdicts

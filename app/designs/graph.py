@@ -1,32 +1,48 @@
-"""Build the network of a document, and check it before anything is calculated.
+"""Read a document as its user sent it, build its network, and check that before anything is calculated.
 
-Every check returns what it finds; nothing is changed on the way.
+Every check returns what it finds; nothing is changed on the way. The units of relations are checked before
+any value is known.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from graphlib import CycleError, TopologicalSorter
 from itertools import chain, filterfalse, pairwise
 from typing import TypeVar
 
+from pydantic import ValidationError
+
 from app.catalogue.catalogues import Catalogues
-from app.designs.analyses import is_measured, is_table, questions, remedy
+from app.designs.analyses import is_measured, is_table, measured_unit, questions, remedy
 from app.designs.choices import Choices
-from app.designs.demands import checked_demands, read_demands, unknown_names_in
 from app.designs.document import Document, Model, Step, Version
-from app.designs.kinds import checked_kinds
-from app.designs.network import LIMITS, Block, Cell, Graph, Network, Node, limits_of
-from app.plain import Raw
+from app.designs.network import (
+    LIMITS,
+    Block,
+    Cell,
+    Graph,
+    Network,
+    Node,
+    checked_demands,
+    limits_of,
+    read_demands,
+    unknown_names_in,
+)
+from app.plain import Json, Raw
 from app.reference import Reference
 from templates.core.catalogue.finding import Catalogue
-from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, unknown_names
+from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, plain, unknown_names
 from templates.core.judging.limits import GivenLimit, read_limits
 from templates.core.language.meaning import Meaning
-from templates.core.language.spec import Given, Input
+from templates.core.language.spec import Choice, Given, Input
 from templates.core.language.template import Template
-from templates.core.units.relation import Kind, Relation, is_relation, parse
+from templates.core.units.conformity import misfit, turns_remark
+from templates.core.units.nodes import Kind, kind_of
+from templates.core.units.quantity import Value, read, read_any
+from templates.core.units.relation import Relation, is_relation, parse
+from templates.core.units.units import unit
 
 T = TypeVar("T", bound=Template)
 
@@ -313,3 +329,131 @@ def _named(network: Network, cycle: Sequence[Node]) -> Iterator[str]:
             yield node.name
         elif isinstance(following, Cell):
             yield next(name for name, used in following.uses.items() if network.node(used) is node)
+
+
+def checked_kinds(network: Network, cells: Iterable[Cell]) -> tuple[dict[str, Kind], list[Fault]]:
+    """Return the kind of unit of each parameter, and a fault for each relation whose units do not fit.
+
+    The cells come in order, so that a parameter's unit is known before its use.
+    """
+    kinds: dict[str, Kind] = {}
+    faults: dict[str, Fault] = {}
+    broken: set[str] = set()
+    for cell in cells:
+        if cell.declared is not None and not cell.relations:
+            continue
+        if not broken.isdisjoint(cell.uses):
+            broken.add(cell.name)
+            continue
+        try:
+            kind = _kind(network, kinds, cell)
+        except FaultyText as error:
+            broken.add(cell.name)
+            faults[cell.name] = error.fault(cell.name)
+        else:
+            kinds |= {cell.name: kind} if cell.declared is None else {}
+    return kinds, list(faults.values())
+
+
+def _kind(network: Network, kinds: Mapping[str, Kind], cell: Cell) -> Kind:
+    """Return the kind of a cell, if its relations fit what it sets."""
+    if not cell.relations:
+        return kind_of(read_any(cell.raw).unit, cell.name)
+    used = {
+        name: kinds[name] if name in network.parameters else network.kind_of(reference)
+        for name, reference in cell.uses.items()
+    }
+    own = [relation.kind(used) for relation in cell.relations]
+    if cell.declared is not None:
+        for kind, relation in zip(own, cell.relations, strict=True):
+            _check_target(cell, relation, kind)
+    return replace(own[0], literal=False, pi=0, twos=frozenset())
+
+
+def _check_target(cell: Cell, relation: Relation, kind: Kind) -> None:
+    declared = cell.declared
+    assert declared is not None
+    if isinstance(declared, Choice):
+        message = f"{cell.name} is one of {', '.join(declared.options)}; no relation fits it"
+        raise FaultyText("unit_mismatch", message)
+    want = unit(declared.meaning.accepted)
+    text = relation.text.removeprefix("=").strip()
+    if mismatch := misfit(kind, want, text):
+        why, remedy = mismatch
+        hint = f"; {remedy}" if remedy else ""
+        raise FaultyText("unit_mismatch", f"{cell.name} is in {declared.meaning.unit}, but {why}{hint}")
+    if remark := turns_remark(kind, want, text):
+        raise FaultyText("unit_mismatch", f"{cell.name} is in {declared.meaning.unit}: {remark}")
+
+
+LONGEST_PLACE = 200  # characters of where in a document something is wrong
+
+
+def read_document(raw: Mapping[str, Raw]) -> Document:
+    """Return a document from JSON.
+
+    Raises
+    ------
+    InvalidInputs
+        With everything that has not the shape of a design.
+    """
+    try:
+        return Document.model_validate(raw)
+    except ValidationError as error:
+        raise InvalidInputs(map(_fault, error.errors(include_url=False, include_input=False))) from None
+
+
+def _fault(error: Mapping[str, Json]) -> Fault:
+    place = ".".join(str(part)[:LONGEST_PLACE] for part in error["loc"])
+    return Fault(plain(place, LONGEST_PLACE) or "design", error["type"], error["msg"])
+
+
+def resolved(document: Document, catalogues: Catalogues) -> Document:
+    """Return the document with every version pinned.
+
+    Latest is resolved once, when a step or model comes in.
+    """
+    versions = [step.version for step in document.steps.values()]
+    versions += [model.version for model in document.models.values()]
+    if all(isinstance(version, int) for version in versions):
+        return document
+    plain = document.model_copy(deep=True)
+    for step in plain.steps.values():
+        if not isinstance(step.version, int) and step.template in catalogues.templates.ids:
+            step.version = catalogues.templates.latest(step.template).version
+    for model in plain.models.values():
+        if not isinstance(model.version, int) and model.id in catalogues.models.ids:
+            model.version = catalogues.models.latest(model.id).version
+    return plain
+
+
+def starts(document: Document) -> dict[Reference, float]:
+    """Return the SI values with which the iterations of a document begin.
+
+    Raises
+    ------
+    InvalidInputs
+        If a start is not a quantity of its measure's kind.
+    """
+    faults, values = list[Fault](), dict[Reference, float]()
+    for iteration in document.iterations:
+        through = Reference.parse(iteration.through)
+        try:
+            values[through] = _single(read(iteration.start, measured_unit(through)).si)
+        except FaultyText as error:
+            faults.append(error.fault("iterations.start"))
+    raise_if(faults)
+    return values
+
+
+def settled(results: Mapping[str, list[Mapping[str, Raw]]] | None) -> dict[Reference, float]:
+    """Return the values [SI] with which the iterations of a revision ended, by its results."""
+    rounds = (results or {}).get("iterations", [])
+    values = {str(one["through"]): (float(str(one["assumed"])), str(one["unit"])) for one in rounds}
+    return {Reference.parse(name): float(unit(scale).to_si(value)) for name, (value, scale) in values.items()}
+
+
+def _single(value: Value) -> float:
+    if not isinstance(value, float):
+        raise FaultyText("not_a_number", "give a single value here, not an array")
+    return value

@@ -1,30 +1,22 @@
-"""Labels of designs in the database, and renaming: neither calculates anything, nor makes a result old."""
+"""Labels of designs in the database: they make no result old."""
 
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
 from pydantic import ConfigDict, Field
 from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session
 
 from app.designs import repository
-from app.designs.document import merge
-from app.designs.errors import StaleRevision
-from app.designs.news import note_revision
-from app.designs.reader import read_document
-from app.designs.repository import Written
-from app.designs.results import ModelState
 from app.designs.schemas.labels import MOST_TAGS, Labels, Tag, TagUse
-from app.designs.service import Designs, Saved
 from app.identity.audit import record
-from app.plain import JsonObject, Raw
 from app.schemas.bounds import Bounded
-from app.storage.idempotency import Once
-from app.storage.identity import now
-from app.storage.tables import DesignRow, DesignTagRow, RevisionRow
-from app.storage.upserts import upsert
+from app.storage.clock import now
+from app.storage.database import Database
+from app.storage.tables import DesignRow, DesignTagRow
+from app.storage.units import upsert
 from templates.core.errors import Fault, InvalidInputs
 
 MOST_LISTED = 500
@@ -54,11 +46,11 @@ def clean(tag: str) -> str:
     return " ".join(filter(None, unicodedata.normalize("NFC", tag).split(" ")))
 
 
-class Labelling:
-    """Changes of labels and names, which leave results as they are."""
+class LabelService:
+    """Changes of labels, which leave results as they are."""
 
-    def __init__(self, designs: Designs) -> None:
-        self.designs, self.database = designs, designs.database
+    def __init__(self, database: Database) -> None:
+        self.database = database
 
     def labels(self, id: str) -> Labels:
         """Return the labels of a design."""
@@ -82,62 +74,6 @@ class Labelling:
             return _labels(session, row)
 
         return self.database.write(unit)
-
-    def change(
-        self, id: str, patch: Mapping[str, Raw], note: str | None, expected: str | None, once: Once
-    ) -> Saved:
-        """Change a design as `Designs.change`; a new name alone keeps the results."""
-        if set(patch) == {"name"}:
-            saved = self._renamed(id, patch, note, expected, once)
-            if saved is not None:
-                return saved
-        return self.designs.change(id, patch, note, expected, once)
-
-    def _renamed(
-        self, id: str, patch: Mapping[str, Raw], note: str | None, expected: str | None, once: Once
-    ) -> Saved | None:
-        """Return a revision with another name and the same results; None where the usual way has to do it."""
-
-        def unit(session: Session) -> Saved:
-            if once.begin(session):
-                raise _UsualWay
-            number = repository.locked(session, id).head
-            head = repository.revision(session, id, number)
-            document = merge(head.document, patch)
-            if head.state != "current" or document == head.document:
-                raise _UsualWay
-            if expected is not None and expected.strip() not in ("*", f'"{number}"'):
-                raise StaleRevision(expected, number)
-            name = read_document(document).name
-            appended = repository.append(session, id, number, _carried(head, name, note))
-            saved = Saved(id, appended, None, created=False)
-            note_revision(session, self.designs.jobs.events, id, appended, head.state)
-            saved.keep(session, once)
-            return saved
-
-        try:
-            return self.database.write(unit)
-        except _UsualWay:
-            return None
-
-
-class _UsualWay(Exception):
-    """A patch of a name that calculates, or changes nothing, or has been carried out before."""
-
-
-def _carried(head: RevisionRow, name: str, note: str | None) -> Written:
-    """Return the content of a revision under another name."""
-    models = [
-        ModelState(m.name, m.model, m.model_version, m.parameters, m.relations, (), m.build_key)
-        for m in (*head.models, *head.variant_models)
-    ]
-    document: JsonObject = {**head.document, "name": name}
-    words = note or f"renamed from {_former(head)}"
-    return Written(document, head.results, models, head.state, words, "design.rename")
-
-
-def _former(head: RevisionRow) -> str:
-    return str(head.document["name"])
 
 
 def _apply(session: Session, row: DesignRow, change: LabelsIn) -> None:

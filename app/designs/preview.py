@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from app.calculations.criteria import rendered
+from app.calculations.json_values import rendered
 from app.calculations.schemas.evaluations import Output
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, results, tolerances
@@ -15,29 +13,31 @@ from app.designs.document import Document, merge
 from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
-from app.designs.graph import build_graph, raise_if
-from app.designs.questions import Reply
-from app.designs.reader import read_document, resolved, starts
+from app.designs.errors import DesignError
+from app.designs.graph import build_graph, raise_if, read_document, resolved, starts
+from app.designs.parameter_explanation import shown
+from app.designs.results import Outcome
 from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, Status
-from app.designs.solid_records import analysed, built
 from app.designs.variants.checks import checked
-from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available
 from app.designs.variants.verdict import merged
 from app.designs.worksheet import previewed
 from app.plain import JsonObject
+from app.pool.questions import PREVIEW, Kind, Reply, json_answer, json_form
 from app.presentation.units import System
 from app.schemas.answers import Shown, Warning
-from app.solids import measures
+from app.solids.analysis_rows import analysed
 from app.solids.analysis_views import output as analysis_output
+from app.solids.rows import built
 from app.solids.schemas.analyses import AnalysisOutput
 from app.storage.database import Database
+from cad.regenerate import as_quantities
 from templates.core.errors import Fault
 from templates.core.judging.judgement import Judgement
 
 
 @dataclass(frozen=True)
-class Previewed:
+class PreviewRequest:
     """A change that is to be previewed, and how.
 
     The patch is one of the newest revision, if none is named. With `worksheet`, the answer has every step as
@@ -51,7 +51,9 @@ class Previewed:
     revision: int | None = None
 
 
-def preview(asked: Previewed, database: Database, catalogues: Catalogues) -> Reply[Previewed, Preview]:
+def preview(
+    asked: PreviewRequest, database: Database, catalogues: Catalogues
+) -> Reply[PreviewRequest, Preview]:
     """Return old and new values for a patch of a design; nothing is saved or built.
 
     The answer is incomplete where something depends on deferred steps.
@@ -164,12 +166,7 @@ def _warnings(steps: Mapping[str, RevisionStep]) -> list[Warning]:
 def _values(new: Calculation) -> dict[str, Shown]:
     """Return the values of the design's parameters in SI, without those that wait for a solid."""
     names = (name for name in new.graph.parameters if name in new.values)
-    return {
-        name: Shown(
-            value=np.asarray(new.values[name].value).tolist(), unit=f"{new.graph.kinds[name].base:~C}" or "1"
-        )
-        for name in names
-    }
+    return {name: Shown(**shown(new.values[name].value, new.graph.kinds[name].unit)) for name in names}
 
 
 def _model_parameters(
@@ -192,7 +189,7 @@ def _model_parameters(
 
 def _parameters(calculation: Calculation, model: str) -> dict[str, Shown]:
     shape = calculation.shapes.get(model)
-    quantities = measures.parameters(shape) if shape else {}
+    quantities = as_quantities(shape) if shape else {}
     return {name: Shown.model_validate(quantity) for name, quantity in quantities.items()}
 
 
@@ -206,3 +203,13 @@ def _status(
     if after is None:
         return "pending"
     return "unchanged" if before == after else "ok"
+
+
+PREVIEWS = Kind(
+    PREVIEW,
+    json_form(PreviewRequest),
+    json_answer(Preview),
+    preview,
+    failures=(DesignError,),
+    has_parts=True,
+)

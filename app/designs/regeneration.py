@@ -7,30 +7,27 @@ from collections.abc import Mapping
 from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
-from app.designs import repository
+from app.designs import repository, results
 from app.designs.analyses import measured_unit
-from app.designs.calculation_cache import CalculationCache, Prepared
 from app.designs.document import Document, Iteration
 from app.designs.engine.calculate import calculate, resume
 from app.designs.engine.calculation import Calculation
 from app.designs.errors import NotConverged
-from app.designs.graph import Graph, build_graph, raise_if
-from app.designs.model_failures import named
-from app.designs.reader import starts
-from app.designs.service import REGENERATE
-from app.designs.solid_records import analysed, built
-from app.designs.variants import records as variants
+from app.designs.graph import Graph, build_graph, raise_if, starts
+from app.designs.results import Outcome
+from app.designs.service import REGENERATE, CalculationCache, Prepared
 from app.designs.variants.checks import row_faults
-from app.designs.variants.outcome import Outcome
-from app.designs.variants.solids import Describe, Settling, plain_problem
+from app.designs.variants.solids import Describe, VariantSolids, plain_problem
 from app.designs.variants.together import Available, together
 from app.jobs.service import Completion, Job, JobContext, JobFailed
 from app.plain import Json, JsonObject
 from app.pool.pool import Lane
 from app.pool.steps import Steps, calling
 from app.reference import Reference
-from app.solids.analysis_process import Analysing
-from app.solids.builds import Builds
+from app.solids.analysis_process import AnalysisRunner
+from app.solids.analysis_rows import analysed
+from app.solids.builds import Builds, failures_named
+from app.solids.rows import built
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild
 from app.workers.errors import DeadlineExceeded, MemoryExceeded
@@ -52,13 +49,14 @@ class Regeneration:
         self,
         database: Database,
         builds: Builds,
-        analysing: Analysing,
+        analysing: AnalysisRunner,
         catalogues: Catalogues,
         steps: Steps | None = None,
         calculation_cache: CalculationCache | None = None,
         describe: Describe = plain_problem,
     ) -> None:
         self.describe = describe
+        self._solids = built(database), analysed(database)
         self.database, self.builds, self.catalogues = database, builds, catalogues
         self.analysing, self.steps, self.calculation_cache = (
             analysing,
@@ -86,8 +84,8 @@ class Regeneration:
                 outcomes = self._variants(prepared.document, calculation, context)
         except FAILURES as error:
             raise JobFailed(error) from error
-        stored = variants.stored(calculation, rounds, outcomes)
-        models = variants.models(calculation, outcomes)
+        stored = results.stored(calculation, rounds, outcomes)
+        models = results.models(calculation, outcomes)
 
         def completion(session: Session) -> str:
             repository.attach(session, id, number, stored, models)
@@ -113,7 +111,7 @@ class Regeneration:
         return Prepared(document, self._calculated(graph, starts(document)))
 
     def _calculated(self, graph: Graph, assumed: Mapping[Reference, float]) -> Calculation:
-        return calculate(graph, built(self.database), analysed(self.database), assumed)
+        return calculate(graph, *self._solids, assumed)
 
     def _settled(self, prepared: Prepared, context: JobContext) -> tuple[Calculation, list[JsonObject]]:
         """Return the calculation with all solids built and iterations converged, and its rounds."""
@@ -141,8 +139,8 @@ class Regeneration:
         if not document.variants:
             return []
         raise_if(row_faults(base))
-        available = Available(self.catalogues, built(self.database), analysed(self.database))
-        settling = Settling(self.builds, self._settle, self.describe, context)
+        available = Available(self.catalogues, *self._solids)
+        settling = VariantSolids(self.builds, self._settle, self.describe, context)
         return settling.settled(together(document, available))
 
     def _settle(self, prepared: Prepared, context: JobContext) -> Calculation:
@@ -160,11 +158,11 @@ class Regeneration:
                 continue  # a build was deleted since: it is built again
             waiting = sorted(calculation.shapes.keys() - calculation.measures.keys())
             for name in waiting:
-                with named(name):
+                with failures_named(name):
                     self.builds.make(calculation.shapes[name], context)
             if not self._analysed(calculation, context) and not waiting:
                 return calculation
-            calculation = resume(calculation, built(self.database), analysed(self.database))
+            calculation = resume(calculation, *self._solids)
 
     def _analysed(self, calculation: Calculation, context: JobContext) -> bool:
         """Analyse every solid whose analysis is waited for; whether there was any."""
@@ -172,7 +170,7 @@ class Regeneration:
         for node in waiting:
             name, kind = node.model.name, node.kind
             question = node.model.analyses[kind]
-            with named(name, kind):
+            with failures_named(name, kind):
                 self.builds.make(calculation.shapes[name], context)  # its file may be lost
                 self.analysing.find(
                     calculation.shapes[name], question, calculation.graph.wanted(name, kind), context

@@ -9,8 +9,8 @@ from sqlalchemy.orm import Session, aliased
 
 from app.schemas.approval_steps import ORDER, Step
 from app.storage.errors import NotFound
-from app.storage.statements import Statement
 from app.storage.tables import ApprovalRow, RevisionRow
+from app.storage.units import Statement
 
 _withdrawal = aliased(ApprovalRow)
 _IS_WITHDRAWN = (

@@ -19,12 +19,12 @@ from app.designs.releases import EVER_RELEASED, NEWEST_RELEASED
 from app.designs.results import ModelState
 from app.identity.audit import record
 from app.identity.principal import acting
+from app.jobs.events import Event, Events, are_events_kept
 from app.plain import JsonObject
+from app.storage.clock import new_id, now
 from app.storage.errors import NotFound
-from app.storage.identity import new_id, now
-from app.storage.statements import Row, Values
 from app.storage.tables import DesignRow, RevisionModelRow, RevisionRow, canonical_json
-from app.storage.upserts import upsert_values
+from app.storage.units import Row, Values, upsert_values
 
 _LEAN = defer(RevisionRow.results)
 _LEAN_REVISION = (
@@ -35,7 +35,7 @@ _LEAN_REVISION = (
 
 
 @dataclass(frozen=True)
-class Written:
+class StoredRevision:
     """The content of a new revision."""
 
     document: JsonObject
@@ -208,7 +208,7 @@ def revisions(session: Session, id: str, limit: int, before: int | None) -> list
     return list(session.scalars(query.limit(limit + 1)))
 
 
-def create(session: Session, name: str, written: Written, at: str | None = None) -> tuple[str, int]:
+def create(session: Session, name: str, written: StoredRevision, at: str | None = None) -> tuple[str, int]:
     """Return a new design with its first revision, `at` the time given or now.
 
     Its id and the revision's number.
@@ -218,7 +218,7 @@ def create(session: Session, name: str, written: Written, at: str | None = None)
     return id, append(session, id, 0, written, created)
 
 
-def append(session: Session, id: str, base: int, written: Written, at: str | None = None) -> int:
+def append(session: Session, id: str, base: int, written: StoredRevision, at: str | None = None) -> int:
     """Return a new revision of a design whose newest one is `base`, `at` the time given or now; its number.
 
     The row of the design decides: of several servers that append to the same revision, one succeeds.
@@ -323,3 +323,38 @@ def changed_since_good(session: Session, id: str, number: int) -> list[str]:
         before = good.parameters if good else {}
         changed += (f"{model.name}.{n}" for n, v in model.parameters.items() if before.get(n) != v)
     return changed
+
+
+@dataclass(frozen=True)
+class Standing:
+    """The state of a design's regeneration, and the newest event that it includes."""
+
+    number: int
+    revision: int
+    state: str
+    problem: object
+
+
+def note_revision(session: Session, events: Events, design: str, revision: int, state: str) -> None:
+    """Note a new revision and its state, in the unit that writes it."""
+    topic, data = f"design:{design}", {"revision": revision}
+    events.note(session, Event(topic, "revision", data), Event(topic, state, data))
+
+
+def standing(session: Session, id: str) -> Standing:
+    """Return at which revision a design is, and how its regeneration stands.
+
+    Raises
+    ------
+    NotFound
+        If there is no such design.
+    """
+    newest = head(session, id)
+    number = design(session, id).event
+    return Standing(number, newest.number, newest.state, newest.problem)
+
+
+def can_resume(session: Session, id: str, last: int | None) -> bool:
+    """Return whether all events of a design after the one that a reader got last are kept."""
+    until = design(session, id).event
+    return last is not None and are_events_kept(session, f"design:{id}", last, until)

@@ -1,24 +1,35 @@
-"""The stored results of a revision in JSON: results of steps, parameters of models."""
+"""The results of a revision and of its variants, as it stores them: outputs and criteria, models, solids."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import chain
+
+import numpy as np
 
 from app.calculations import json_values
-from app.calculations.criteria import rendered
+from app.calculations.json_values import rendered
+from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.network import Block
+from app.designs.variants.names import BASE
+from app.designs.variants.verdict import merged
 from app.designs.worksheet import remember
-from app.plain import JsonObject, Raw
-from app.solids import measures
+from app.plain import Json, JsonObject, Raw
+from app.pool.cost import EXPENSIVE
 from app.solids.analysis_views import in_design
-from cad.regenerate import build_key
+from cad.model import CadModel
+from cad.regenerate import as_quantities, build_key
+from templates.core.errors import Fault
 from templates.core.judging.judgement import Judgement
+from templates.core.judging.summary import worst_first
 from templates.core.language.criteria import warned
 from templates.core.language.evaluate import Evaluation
 from templates.core.language.record import record
+
+VARIANTS = "variants"
 
 
 @dataclass(frozen=True)
@@ -35,16 +46,21 @@ class ModelState:
 
 
 def stored(
-    calculation: Calculation, rounds: list[JsonObject], criteria: Sequence[Judgement] | None = None
+    calculation: Calculation, rounds: list[JsonObject], outcomes: Sequence[Outcome] = ()
 ) -> JsonObject:
-    """Return the results that a revision keeps beside its models, with its `criteria` if they are judged."""
-    criteria = judged(calculation) if criteria is None else criteria
-    return {
+    """Return the results of a calculation and its variants that a revision keeps beside the models."""
+    own = judged(calculation)
+    criteria = merged(own, {one.name: one.judgements for one in outcomes}) if outcomes else own
+    results = {
         "steps": steps(calculation, criteria),
         "iterations": rounds,
         "analyses": analyses(calculation),
         **rendered(criteria),
     }
+    if outcomes:
+        base = _variant({}, own, single_outputs(calculation), {}, None)
+        results[VARIANTS] = {BASE: base, **{outcome.name: _outcome(outcome) for outcome in outcomes}}
+    return results
 
 
 def analyses(calculation: Calculation) -> dict[str, JsonObject]:
@@ -81,7 +97,8 @@ def _step(calculation: Calculation, block: Block, criteria: Sequence[Judgement])
         return {"template": json_values.identity(block.cls), "relations": relations, "state": "pending"}
     evaluation = calculation.evaluations[block.name]
     answer = json_values.evaluation(evaluation)
-    remember(answer, evaluation)
+    if evaluation.seconds > EXPENSIVE:
+        remember(answer, evaluation)
     del answer["seconds"]  # equal revisions are equal
     answer["warnings"] = _warnings(evaluation, block, criteria)
     return {**answer, "relations": relations, "record": vars(record(evaluation.template))}
@@ -99,10 +116,11 @@ def _warnings(evaluation: Evaluation, block: Block, criteria: Sequence[Judgement
     return [{"code": w.code, "name": w.name, "detail": w.detail} for w in notices]
 
 
-def models(calculation: Calculation) -> list[ModelState]:
-    """Return every model with its resolved parameters and the key of its build."""
+def models(calculation: Calculation, outcomes: Iterable[Outcome] = ()) -> list[ModelState]:
+    """Return every model of a design, then those of its variants, each with the key of its build."""
     blocks = (block for block in calculation.graph.blocks.values() if block.is_model)
-    return [_model(calculation, block) for block in blocks]
+    own = [_model(calculation, block) for block in blocks]
+    return [*own, *chain.from_iterable(outcome.models for outcome in outcomes)]
 
 
 def _model(calculation: Calculation, block: Block) -> ModelState:
@@ -111,8 +129,93 @@ def _model(calculation: Calculation, block: Block) -> ModelState:
         name=block.name,
         id=block.cls.id,
         version=block.cls.version,
-        parameters=measures.parameters(shape) if shape else {},
+        parameters=as_quantities(shape) if shape else {},
         relations={n: cell.raw for n, cell in block.cells.items() if cell.relations},
         missing=tuple(calculation.missing.get(block.name, ())),
         build=build_key(shape) if shape else None,
     )
+
+
+def _outcome(outcome: Outcome) -> JsonObject:
+    return _variant(outcome.values, outcome.judgements, outcome.outputs, outcome.failures, outcome.problem)
+
+
+def _variant(
+    values: Mapping[str, JsonObject],
+    judgements: Iterable[Judgement],
+    outputs: Mapping[str, JsonObject],
+    failures: Mapping[str, JsonObject],
+    problem: JsonObject | None,
+) -> JsonObject:
+    """Return one variant as a revision keeps it, without empty members."""
+    parts: JsonObject = {
+        "values": dict(values),
+        "outputs": dict(outputs),
+        "failures": dict(failures),
+        "problem": problem,
+    }
+    return {**{name: part for name, part in parts.items() if part}, **rendered(worst_first(judgements))}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One variant, as far as it is calculated.
+
+    Attributes
+    ----------
+    places
+        What it overrides; of parameters with the unit in which the design has typed them, else empty.
+    values
+        The places that it overrides as quantities, in the units in which they were typed.
+    outputs
+        Every output of its steps that is a single value or a word, by its name in relations.
+    models
+        Its models with their parameters resolved, named as rows of a revision: `main_2.shell`.
+    shapes
+        The models of which all parameters are known, by their names in the design.
+    is_pending
+        Whether a step is still calculated, or a solid not built.
+    is_deferred
+        Whether nobody waited for a step.
+    document, calculation
+        Where the variant is calculated as a design of its own, to be continued by a job.
+    faults
+        What is wrong with it, by names of the table: `variants.main_2.clearance`.
+    problem
+        Why it failed in the job of its revision, as an RFC 9457 problem.
+    failures
+        Why models of it could not be built, by their names in the design.
+    """
+
+    name: str
+    places: Mapping[str, str] = field(default_factory=dict)
+    values: Mapping[str, JsonObject] = field(default_factory=dict)
+    judgements: Sequence[Judgement] = ()
+    outputs: Mapping[str, JsonObject] = field(default_factory=dict)
+    models: Sequence[ModelState] = ()
+    shapes: Mapping[str, CadModel] = field(default_factory=dict)
+    is_pending: bool = False
+    is_deferred: bool = False
+    document: Document | None = None
+    calculation: Calculation | None = None
+    faults: Sequence[Fault] = ()
+    problem: JsonObject | None = None
+    failures: Mapping[str, JsonObject] = field(default_factory=dict)
+
+
+def single_outputs(calculation: Calculation) -> dict[str, JsonObject]:
+    """Return every output of every step that is not an array, by its name in relations.
+
+    Null with its reason.
+    """
+    shown: dict[str, JsonObject] = {}
+    for step, evaluation in calculation.evaluations.items():
+        answers = {n: a for n, a in evaluation.outputs.items() if not isinstance(a.value, np.ndarray)}
+        shown |= {f"{step}.{name}": _without_nan(one) for name, one in json_values.outputs(answers).items()}
+    return shown
+
+
+def _without_nan(quantity: JsonObject) -> JsonObject:
+    """Return a quantity fit for JSON."""
+    value: Json = quantity["value"]
+    return {**quantity, "value": None} if value != value else quantity

@@ -4,41 +4,77 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from hashlib import sha256
+from typing import NamedTuple
 
 from sqlalchemy.orm import Session
 
+from app.calculations.cache import Cache
 from app.catalogue.catalogues import Catalogues
-from app.designs import repository, views
+from app.designs import repository, results, views
 from app.designs.automap import proposals
-from app.designs.calculation_cache import CalculationCache, Prepared
 from app.designs.document import Document, merge
 from app.designs.drives import network
 from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
 from app.designs.errors import StaleRevision
 from app.designs.explanation import explained
-from app.designs.graph import Graph, build_graph, raise_if
-from app.designs.news import note_revision
-from app.designs.reader import read_document, resolved, starts
-from app.designs.repository import Written
+from app.designs.graph import Graph, build_graph, raise_if, read_document, resolved, starts
+from app.designs.repository import StoredRevision, note_revision
+from app.designs.results import ModelState, Outcome
 from app.designs.schemas.designs import Design, Explanation, Proposal
 from app.designs.schemas.network import DesignNetwork
-from app.designs.solid_records import analysed, built
-from app.designs.variants import records as variants
 from app.designs.variants.checks import checked
-from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available
 from app.jobs.service import Jobs
-from app.plain import JsonObject, Raw
-from app.pool.pending_calculations import PendingCalculations
-from app.pool.steps import begun_steps
+from app.plain import Json, JsonObject, Raw
+from app.pool.steps import PendingCalculations, begun_steps
 from app.presentation.units import System
 from app.reference import Reference
-from app.solids.ages import renew
+from app.solids.analysis_rows import analysed
+from app.solids.rows import built, renew
+from app.storage.clock import now
 from app.storage.database import Database, Unit
 from app.storage.idempotency import Once
-from app.storage.identity import now
+from app.storage.tables import RevisionRow, canonical_json
 from templates.core.errors import Fault
+
+MEGABYTES = 32  # of calculations that wait for their job
+BYTES = 128
+"""Taken for one character of a document: of the designs in the gallery 36 to 104 bytes of its calculation."""
+
+
+class Prepared(NamedTuple):
+    """A document as it was read, and what could be calculated of it."""
+
+    document: Document
+    calculation: Calculation
+
+
+class CalculationCache:
+    """The latest calculations that wait for a solid, by their documents.
+
+    It belongs to one application: it counts on the catalogues and on the database of that. A calculation that
+    is not here any more, or that another process did, is done again from the document.
+    """
+
+    def __init__(self, cache: Cache | None = None) -> None:
+        self._cache = cache or Cache(MEGABYTES)
+
+    def keep(self, plain: Mapping[str, Json], prepared: Prepared) -> None:
+        """Keep the calculation of a document, which is given as JSON too."""
+        text = canonical_json(plain).encode()
+        self._cache.keep(_digest(text), prepared, BYTES * len(text))
+
+    def find(self, plain: Mapping[str, Json]) -> Prepared | None:
+        """Return the calculation of a document that was saved lately."""
+        prepared: Prepared | None = self._cache.get(_digest(canonical_json(plain).encode()))
+        return prepared
+
+
+def _digest(text: bytes) -> bytes:
+    return sha256(text).digest()
+
 
 REGENERATE, REGENERATE_SLOWLY = "regenerate", "regenerate_and_analyse"
 CALCULATE = "calculate_and_regenerate"
@@ -47,7 +83,7 @@ with steps for which the save did not wait."""
 
 
 @dataclass(frozen=True)
-class Saved:
+class SaveResult:
     """The result of a change: a revision, and the job that regenerates it if it needs one."""
 
     design: str
@@ -68,7 +104,7 @@ class Saved:
 class Draft:
     """A revision to be written, and the job that completes it, should one have to."""
 
-    written: Written
+    written: StoredRevision
     kind: str
     is_deferred: bool
     begun: PendingCalculations | None  # what the job takes over
@@ -86,6 +122,7 @@ class Designs:
     ) -> None:
         self.database, self.jobs, self.catalogues = database, jobs, catalogues
         self.calculation_cache = calculation_cache or CalculationCache()
+        self._solids = built(database), analysed(database)
 
     def show(self, id: str, number: int | None = None) -> Design:
         """Return a design as of a revision, by default the newest.
@@ -124,7 +161,7 @@ class Designs:
 
     def create(
         self, raw: Mapping[str, Raw], note: str | None, once: Once, action: str = "design.create"
-    ) -> Saved:
+    ) -> SaveResult:
         """Return a new design.
 
         Raises
@@ -136,7 +173,7 @@ class Designs:
             return saved_before
         draft = self.draft(raw, note, action)
 
-        def unit(session: Session) -> Saved:
+        def unit(session: Session) -> SaveResult:
             if before := once.begin(session):
                 return _saved_before(before)
             certain = _with_builds(session, draft)
@@ -148,8 +185,10 @@ class Designs:
 
     def change(
         self, id: str, patch: Mapping[str, Raw], note: str | None, expected: str | None, once: Once
-    ) -> Saved:
+    ) -> SaveResult:
         """Return a new revision with a merge patch applied; a patch that changes nothing makes none.
+
+        A new name alone keeps all results: nothing is calculated.
 
         Raises
         ------
@@ -158,6 +197,8 @@ class Designs:
         InvalidInputs
             With everything that is wrong; nothing is saved then.
         """
+        if patch.keys() == {"name"} and (renamed := self._renamed(id, patch, note, expected, once)):
+            return renamed
         with self.database.read() as session:
             if before := once.find(session):
                 return _saved_before(before)
@@ -165,7 +206,7 @@ class Designs:
         _require_match(expected, base)
         return self._append(id, base, merge(document, patch), note, once, "design.change", created)
 
-    def restore(self, id: str, number: int, note: str | None, expected: str | None, once: Once) -> Saved:
+    def restore(self, id: str, number: int, note: str | None, expected: str | None, once: Once) -> SaveResult:
         """Return a new revision equal to an old one."""
         with self.database.read() as session:
             if before := once.find(session):
@@ -176,7 +217,7 @@ class Designs:
         words = note or f"as revision {number}"
         return self._append(id, design.head, document, words, once, "design.restore", design.created)
 
-    def copy(self, id: str, name: str | None, once: Once) -> Saved:
+    def copy(self, id: str, name: str | None, once: Once) -> SaveResult:
         """Return a new design with the newest document of another."""
         with self.database.read() as session:
             number, document, *_ = repository.newest(session, id)
@@ -195,7 +236,7 @@ class Designs:
 
     def auto_map(
         self, id: str, apply: bool, expected: str | None, once: Once
-    ) -> tuple[list[Proposal], Saved | None]:
+    ) -> tuple[list[Proposal], SaveResult | None]:
         """Return proposals for unset model parameters, and the revision with them if they are applied."""
         repeated = self._repeated(once) if apply else None
         with self.database.read() as session:
@@ -217,8 +258,7 @@ class Designs:
         Faults are left in the calculation.
         """
         document = resolved(read_document(raw), self.catalogues)
-        available = built(self.database), analysed(self.database)
-        return document, calculate(self._graph(document), *available, starts(document))
+        return document, calculate(self._graph(document), *self._solids, starts(document))
 
     def _graph(self, document: Document) -> Graph:
         graph, faults = build_graph(document, self.catalogues)
@@ -234,15 +274,15 @@ class Designs:
         once: Once,
         action: str,
         created: str,
-    ) -> Saved:
+    ) -> SaveResult:
         draft = self.draft(raw, note, action)
 
-        def unit(session: Session) -> Saved:
+        def unit(session: Session) -> SaveResult:
             if before := once.begin(session):
                 return _saved_before(before)
             if repository.document(session, id, base) == draft.written.document:
                 _require_match(f'"{base}"', repository.design(session, id).head)
-                unchanged = Saved(id, base, None, created=False, fresh=False)
+                unchanged = SaveResult(id, base, None, created=False, fresh=False)
                 unchanged.keep(session, once)
                 return unchanged
             certain, at = _with_builds(session, draft), now()
@@ -250,6 +290,35 @@ class Designs:
             return self._enqueued(session, id, revision, certain, once, created=created, at=at)
 
         return self._saved(unit, draft)
+
+    def _renamed(
+        self, id: str, patch: Mapping[str, Raw], note: str | None, expected: str | None, once: Once
+    ) -> SaveResult | None:
+        """Return a revision with another name and the same results; None where the usual way has to do it.
+
+        That is so if the design has no results yet, has this name, or the request was carried out before.
+        """
+
+        def unit(session: Session) -> SaveResult:
+            if once.begin(session):
+                raise _UsualWay
+            number = repository.locked(session, id).head
+            head = repository.revision(session, id, number)
+            document = merge(head.document, patch)
+            if head.state != "current" or document == head.document:
+                raise _UsualWay
+            _require_match(expected, number)
+            named = {**head.document, "name": read_document(document).name}
+            appended = repository.append(session, id, number, _carried(head, named, note))
+            saved = SaveResult(id, appended, None, created=False)
+            note_revision(session, self.jobs.events, id, appended, head.state)
+            saved.keep(session, once)
+            return saved
+
+        try:
+            return self.database.write(unit)
+        except _UsualWay:
+            return None
 
     def draft(self, raw: Mapping[str, Raw], note: str | None, action: str) -> Draft:
         """Return the revision to write for a document; its results wait for a job if any part of it waits.
@@ -264,7 +333,7 @@ class Designs:
         outcomes = self._variants(document, calculation)
         waits = bool(outcomes) and any(outcome.is_pending for outcome in outcomes)
         pending = bool(document.iterations) or bool(calculation.pending) or waits
-        stored = None if pending else variants.stored(calculation, [], outcomes)
+        stored = None if pending else results.stored(calculation, [], outcomes)
         state = "regenerating" if pending else "current"
         plain = document.model_dump(mode="json")
         is_deferred = bool(calculation.deferred) or (
@@ -272,7 +341,7 @@ class Designs:
         )
         if pending and not calculation.deferred:
             self.calculation_cache.keep(plain, Prepared(document, calculation))
-        written = Written(plain, stored, variants.models(calculation, outcomes), state, note, action)
+        written = StoredRevision(plain, stored, results.models(calculation, outcomes), state, note, action)
         return Draft(written, _kind(calculation.graph, is_deferred), is_deferred, begun_steps())
 
     def _variants(self, document: Document, base: Calculation) -> list[Outcome]:
@@ -290,9 +359,7 @@ class Designs:
     def _checked(self, document: Document, base: Calculation) -> tuple[list[Outcome], list[Fault]]:
         if not document.variants:
             return [], []
-        return checked(
-            document, base, Available(self.catalogues, built(self.database), analysed(self.database))
-        )
+        return checked(document, base, Available(self.catalogues, *self._solids))
 
     def faulty_variants(self, raw: Mapping[str, Raw]) -> list[Fault]:
         """Return all faults for which a save would refuse the variants of a document.
@@ -307,7 +374,7 @@ class Designs:
 
     def _enqueued(
         self, session: Session, design: str, revision: int, draft: Draft, once: Once, *, created: str, at: str
-    ) -> Saved:
+    ) -> SaveResult:
         """Return the job of a revision, if it needs one, and the record of the request.
 
         In one transaction.
@@ -321,12 +388,12 @@ class Designs:
                 draft.begun.leave_to(job)
         else:
             answer = views.current(design, revision, written.document, created, at)
-        saved = Saved(design, revision, job, created=revision == 1, answer=answer)
+        saved = SaveResult(design, revision, job, created=revision == 1, answer=answer)
         note_revision(session, self.jobs.events, design, revision, written.state)
         saved.keep(session, once)
         return saved
 
-    def _saved(self, unit: Unit[Saved], draft: Draft) -> Saved:
+    def _saved(self, unit: Unit[SaveResult], draft: Draft) -> SaveResult:
         saved = self.database.write(unit)
         if saved.fresh:
             saved = replace(saved, is_deferred=draft.is_deferred)
@@ -334,7 +401,7 @@ class Designs:
             self.jobs.wake(draft.kind)
         return saved
 
-    def _repeated(self, once: Once) -> Saved | None:
+    def _repeated(self, once: Once) -> SaveResult | None:
         if not once.key:
             return None
         with self.database.read() as session:
@@ -347,7 +414,8 @@ def _with_builds(session: Session, draft: Draft) -> Draft:
 
     One that was deleted since it was looked up must be built again.
     """
-    if renew(session, [model.build for model in draft.written.models if model.build]):
+    builds = [model.build for model in draft.written.models if model.build]
+    if not builds or renew(session, builds):
         return draft
     return replace(draft, written=replace(draft.written, results=None, state="regenerating"))
 
@@ -359,8 +427,22 @@ def _kind(graph: Graph, is_deferred: bool) -> str:
     return CALCULATE if is_deferred else REGENERATE
 
 
-def _saved_before(location: JsonObject) -> Saved:
-    return Saved(**{**location, "fresh": False})
+def _saved_before(location: JsonObject) -> SaveResult:
+    return SaveResult(**{**location, "fresh": False})
+
+
+class _UsualWay(Exception):
+    """A patch of a name that calculates, or changes nothing, or has been carried out before."""
+
+
+def _carried(head: RevisionRow, document: JsonObject, note: str | None) -> StoredRevision:
+    """Return the content of a revision under another name."""
+    models = [
+        ModelState(m.name, m.model, m.model_version, m.parameters, m.relations, (), m.build_key)
+        for m in (*head.models, *head.variant_models)
+    ]
+    words = note or f"renamed from {head.document['name']}"
+    return StoredRevision(document, head.results, models, head.state, words, "design.rename")
 
 
 def _require_match(expected: str | None, head: int) -> None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from sqlalchemy import Integer, bindparam, func, insert, select, update
 
-from app.storage.statements import Statement
 from app.storage.tables import Base, BuildRow, DesignRow, RevisionModelRow, RevisionRow
+from app.storage.units import Statement
 
 _DESIGNS = Base.metadata.tables[DesignRow.__tablename__]
 _REVISIONS = Base.metadata.tables[RevisionRow.__tablename__]

@@ -16,10 +16,8 @@ from app.calculations.worksheet import formulas
 from app.designs.engine.calculation import Calculation
 from app.designs.schemas.designs import PreviewedStep, Revision, RevisionStep, RevisionWorksheet
 from app.plain import JsonObject, Raw
-from app.pool.cost import EXPENSIVE
 from app.pool.errors import StepDeferred
-from app.pool.pending_calculations import fingerprint
-from app.pool.steps import evaluated_step
+from app.pool.steps import evaluated_step, fingerprint
 from app.presentation.units import System
 from templates.core.catalogue.finding import Catalogue
 from templates.core.catalogue.loading import is_outside
@@ -143,9 +141,8 @@ class _Question(NamedTuple):
 
 def remember(answer: JsonObject, evaluation: Evaluation) -> None:
     """Keep the evaluation of an expensive step, so that its worksheet does not calculate it again."""
-    if evaluation.seconds > EXPENSIVE:
-        question = _Question.of(RevisionStep.model_validate(answer))
-        cache.keep(question.key(type(evaluation.template)), evaluation)
+    question = _Question.of(RevisionStep.model_validate(answer))
+    cache.keep(question.key(type(evaluation.template)), evaluation)
 
 
 def _formulas(template: Template, system: System, names: Collection[str]) -> list[WorkedFormula]:

@@ -1,23 +1,36 @@
-"""Every request acts for the principal whose key or session it carries; its route then asks for a role."""
+"""Who sends a request: its principal, its client, and the role that its route needs.
+
+Every request acts for the principal whose key or session it carries. Limits and turns are counted by client:
+who has signed in is the client as a principal. Where nothing asks for a key, a client is the header
+`Crankwright-Client`, else the session of a page, else the address that the request came from.
+
+The role that a route needs is that of its declaration, else it follows from its method; it is checked before
+the route runs. A router or a route declares by `dependencies=[needs("author")]`; of several declarations the
+last one counts.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 from functools import partial
+from typing import Annotated
 from urllib.parse import unquote_plus
 
-from fastapi import Response
+from fastapi import Depends, FastAPI, Request, Response, params
+from starlette.datastructures import Headers
+from starlette.routing import BaseRoute, Mount, Route
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.http.clients import PRINCIPAL
 from app.identity.door import Door
-from app.identity.errors import IdentityError, KeyInAddress
+from app.identity.errors import IdentityError, KeyInAddress, NotSignedIn, RoleNeeded
 from app.identity.limits import LimitReached
-from app.identity.principal import ANONYMOUS, Principal, acting_as
+from app.identity.principal import ANONYMOUS, Principal, Role, acting, acting_as, client_of
 from app.identity.rows import Guest
 from app.observation.secrets import LENGTH, MARK, holds_key
 from app.storage.errors import DatabaseUnavailable
+from templates.core.errors import Fault, InvalidInputs
 
 SIGN_IN = "crankwright_sign_in"
 """The cookie of a browser in which somebody has signed in."""
@@ -28,7 +41,7 @@ HEALTH = frozenset({"/healthz", "/readyz"})
 STILL = "crankwright.still"
 """Key of an ASGI scope: asks whether the key or session of the request lets in the same roles as before."""
 _BEARER = re.compile(rb"bearer +([!-~]{1,200})", re.IGNORECASE)
-_IN_COOKIES = re.compile(rb"(?:^|;) *" + SIGN_IN.encode() + rb"=([A-Za-z0-9_-]{43})(?:;|$)")
+_SIGN_IN_COOKIE = re.compile(rb"(?:^|;) *" + SIGN_IN.encode() + rb"=([A-Za-z0-9_-]{43})(?:;|$)")
 _MOST_COOKIES = 8192  # bytes that are looked at
 _ESCAPED = b"%"
 
@@ -100,7 +113,7 @@ class Access:
                 return await door.by_key(sent[1].decode()) if sent else None
             if name == b"cookie":
                 cookies = value
-        match = _IN_COOKIES.search(cookies[:_MOST_COOKIES])
+        match = _SIGN_IN_COOKIE.search(cookies[:_MOST_COOKIES])
         return await door.by_session(match[1].decode()) if match else None
 
 
@@ -112,3 +125,156 @@ def _has_key_in_address(scope: Scope) -> bool:
     if len(query) < LENGTH or not (MARK.encode() in query or _ESCAPED in query):
         return False
     return holds_key(unquote_plus(query.decode("latin-1")))
+
+
+HEADER, COOKIE = "Crankwright-Client", "crankwright_session"
+_NAME = re.compile(r"[!-~][ -~]{0,98}[!-~]|[!-~]")  # up to 100 printable ASCII characters
+_SESSION = re.compile(r"[A-Za-z0-9_-]{16,64}")
+_SESSION_COOKIE = re.compile(rf"(?:^|;)[ ]*{COOKIE}=([A-Za-z0-9_-]{{16,64}})(?:;|$)")
+PRINCIPAL = "crankwright.principal"
+"""Key of an ASGI scope: the principal of the request, where keys are asked for."""
+
+
+def is_session(text: str) -> bool:
+    """Return whether a cookie's value can be a session of a page."""
+    return _SESSION.fullmatch(text) is not None
+
+
+async def get_client(request: Request) -> str:
+    """Return the client of a request; its prefix says how: `principal:`, `name:`, `session:` or `address:`.
+
+    Raises
+    ------
+    InvalidInputs
+        If the header is not a name.
+    """
+    if (who := request.scope.get(PRINCIPAL)) is not None:
+        return client_of(who.id)
+    if (named := request.headers.get(HEADER)) is not None:
+        if not _NAME.fullmatch(named):
+            detail = "a client's name has 1 to 100 printable ASCII characters, such as design-office-7"
+            raise InvalidInputs([Fault(HEADER, "client_name", detail)])
+        return f"name:{named}"
+    session = request.cookies.get(COOKIE, "")
+    if is_session(session):
+        return f"session:{session}"
+    return f"address:{request.client.host if request.client else 'unknown'}"
+
+
+def from_whom(scope: Scope) -> str:
+    """Return the client of a request as `get_client` has it; a name that is none counts as none."""
+    if (who := scope.get(PRINCIPAL)) is not None:
+        return client_of(who.id)
+    headers = Headers(scope=scope)
+    if _NAME.fullmatch(named := headers.get(HEADER, "")):
+        return f"name:{named}"
+    session = _SESSION_COOKIE.search(headers.get("cookie", "")[:_MOST_COOKIES])
+    if session:
+        return f"session:{session[1]}"
+    return f"address:{scope['client'][0] if scope.get('client') else 'unknown'}"
+
+
+TheClient = Annotated[str, Depends(get_client)]
+
+READING = frozenset({"GET", "HEAD", "OPTIONS"})
+OPEN_FOLDERS = frozenset({"/static", "/static-offline-docs"})
+"""Mounted files, which are those of the program: the page to sign in needs them."""
+
+
+@dataclass(frozen=True)
+class Needs:
+    """The roles of which a caller needs one; without any, who has signed in, or anybody if `is_public`."""
+
+    roles: tuple[Role, ...]
+    is_public: bool = False
+
+    async def __call__(self) -> None:
+        """As a dependency of a route it does nothing: the gate has read it."""
+
+    def check(self) -> None:
+        """Let the acting principal pass.
+
+        Raises
+        ------
+        NotSignedIn, RoleNeeded
+            If it may not.
+        """
+        if self.is_public:
+            return
+        who = acting()
+        if who is ANONYMOUS:
+            raise NotSignedIn
+        if self.roles and not any(who.may(role) for role in self.roles):
+            raise RoleNeeded(who, self.roles)
+
+
+VIEWER, AUTHOR, SIGNED_IN, PUBLIC = (
+    Needs(("viewer",)),
+    Needs(("author",)),
+    Needs(()),
+    Needs((), is_public=True),
+)
+
+
+def needs(*roles: Role) -> params.Depends:
+    """Declare that a route needs one of these roles; none: that whoever sends the request has signed in."""
+    return params.Depends(Needs(roles))
+
+
+def public() -> params.Depends:
+    """Declare that a route asks nobody for a key."""
+    return params.Depends(PUBLIC)
+
+
+def needs_of(route: BaseRoute) -> Needs:
+    """Return the roles that a route needs."""
+    declared = [one.dependency for one in getattr(route, "dependencies", ())]
+    needed = [one for one in declared if isinstance(one, Needs)]
+    if needed:
+        return needed[-1]
+    if isinstance(route, Mount) and route.path in OPEN_FOLDERS:
+        return PUBLIC
+    return VIEWER if isinstance(route, Route) and _only_reads(route.methods or ()) else AUTHOR
+
+
+def _only_reads(methods: Iterable[str]) -> bool:
+    methods = set(methods)
+    return bool(methods) and methods <= READING
+
+
+class Guarded:
+    """A route's or a router's way to handle a request, behind the check of the role."""
+
+    def __init__(self, handle: ASGIApp, needed: Needs) -> None:
+        self.handle, self.needed = handle, needed
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Check, then handle."""
+        self.needed.check()
+        await self.handle(scope, receive, send)
+
+
+def install(app: FastAPI) -> None:
+    """Guard all routes that an app has by now, and paths that it has not. Routes are shared by all apps."""
+    for route in routes_of(app):
+        if not isinstance(route.handle, Guarded):
+            route.handle = Guarded(route.handle, needs_of(route))  # type: ignore[method-assign]
+    app.router.default = Guarded(app.router.default, SIGNED_IN)
+
+
+def routes_of(app: FastAPI) -> list[BaseRoute]:
+    """Return all routes of an app, those of its routers included.
+
+    `fastapi.routing.iter_route_contexts` gives the same, but prepares each route for requests: 0.3 s at the
+    start that belong to the first requests. A test compares the two.
+    """
+    return list(_within(app.router.routes))
+
+
+def _within(routes: Iterable[BaseRoute]) -> Iterator[BaseRoute]:
+    for route in routes:
+        router = getattr(route, "original_router", None)  # of an included router, which FastAPI keeps whole
+        if router is None:
+            yield route
+        else:
+            yield from _within(router.routes)

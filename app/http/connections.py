@@ -1,6 +1,11 @@
-"""Connections that nobody holds for ever: uvicorn's protocol, with limits on slow heads and slow readers.
+"""Connections that nobody holds for ever: uvicorn's protocol, with limits on heads and on slow clients.
 
-uvicorn waits without limit for the head of a request, and until a client has read its answer.
+uvicorn waits without limit for the head of a request, and until a client has read its answer. It reads a
+head of any length, and copies all of it again whenever another piece comes in.
+
+From a target that is no mere path, such as `GET http://evil.example/healthz`, uvicorn drops the host and
+serves the path, although RFC 9112 wants that host to count instead of the header `Host`. No client of this
+service sends one: the protocol marks such a request, and the guard refuses it.
 """
 
 from __future__ import annotations
@@ -12,15 +17,17 @@ import struct
 from asyncio import Transport
 from dataclasses import dataclass
 
-from starlette.types import ASGIApp
-from uvicorn.protocols.http.httptools_impl import STATUS_LINE
+from starlette.types import ASGIApp, Scope
+from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol
 
-from app.http.heads import LONGEST_HEAD
-from app.http.targets import WholeTarget
-from app.http.timeouts import WHOLE
 from app.observation import logs, metrics
 from app.plain import JsonObject
 
+LONGEST_HEAD = 2**16  # bytes
+WHOLE = "crankwright.whole"
+"""Key of an ASGI scope of which all has come already: most have, and to time them costs a twentieth."""
+_NO_PATH = "crankwright.target"
+"""Name of an extension in an ASGI scope whose target is no mere path."""
 _RESERVE = 64  # connections beyond the limit that are still answered, with 503
 
 _DEAD = 60.0  # how much longer than a slow reader a silent machine is waited for [s]
@@ -49,7 +56,7 @@ class ConnectionLimits:
     rate: float
 
 
-class TimedProtocol(WholeTarget):
+class TimedProtocol(HttpToolsProtocol):
     """One connection. `limits` and `busy`, which answers beyond their count, are set by `protocol`."""
 
     limits: ConnectionLimits
@@ -58,6 +65,9 @@ class TimedProtocol(WholeTarget):
     _head_timer: asyncio.TimerHandle | None = None
     _write_timer: asyncio.TimerHandle | None = None
     _in_head = False
+    _pending = (
+        0  # bytes since the parser understood something: of a head, of a chunk's extension, of a trailer
+    )
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
         """Begin to wait for the first request."""
@@ -92,7 +102,13 @@ class TimedProtocol(WholeTarget):
         """
         before = self.cycle
         is_idle = before is None or before.response_complete
+        self._pending += len(data)
         super().data_received(data)
+        if self._pending > LONGEST_HEAD and not self.transport.is_closing():
+            if self.cycle is None or self.cycle.response_complete:
+                detail = f"send the request line and all headers in at most {LONGEST_HEAD} bytes"
+                self._refuse(431, "head-too-large", "The headers are too large", detail)
+            self.transport.close()
         if self.cycle is not before:
             if self._head_timer is not None:
                 self._head_timer.cancel()
@@ -110,11 +126,19 @@ class TimedProtocol(WholeTarget):
 
     def on_headers_complete(self) -> None:
         """Called by the parser at the end of a head."""
-        self._in_head = False
+        self._in_head, self._pending = False, 0
+        if not self.url.startswith(b"/"):
+            self.scope["extensions"] = {_NO_PATH: {}}
         super().on_headers_complete()
+
+    def on_body(self, body: bytes) -> None:
+        """Called by the parser at each piece of a body."""
+        self._pending = 0
+        super().on_body(body)
 
     def on_message_complete(self) -> None:
         """Called by the parser at the end of a request."""
+        self._pending = 0
         self.scope[WHOLE] = True  # type: ignore[literal-required]
         super().on_message_complete()
 
@@ -125,11 +149,6 @@ class TimedProtocol(WholeTarget):
             self._refuse(408, "too-slow", "The request arrives too slowly", detail)
         else:
             self._cut("silent")
-
-    def refuse_head(self) -> None:
-        """Answer a head that is too large."""
-        detail = f"send the request line and all headers in at most {LONGEST_HEAD} bytes"
-        self._refuse(431, "head-too-large", "The headers are too large", detail)
 
     def send_400_response(self, msg: str) -> None:
         """Answer what is not HTTP."""
@@ -198,3 +217,10 @@ class TimedProtocol(WholeTarget):
 def protocol(limits: ConnectionLimits, busy: ASGIApp) -> type[TimedProtocol]:
     """Return the protocol for a server with these limits; `busy` answers beyond the number of connections."""
     return type("Protocol", (TimedProtocol,), {"limits": limits, "busy": staticmethod(busy)})
+
+
+def is_mere_path(scope: Scope) -> bool:
+    """Return whether the target of a request is a path, or the `*` of OPTIONS."""
+    if scope["path"] == "*":
+        return True
+    return scope["path"].startswith("/") and _NO_PATH not in (scope.get("extensions") or {})

@@ -16,8 +16,8 @@ from collections.abc import Callable, Iterable
 from fastapi import FastAPI, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from app.http.connections import is_mere_path
 from app.http.strict_requests import HttpError
-from app.http.targets import is_mere_path
 from app.settings.hosts import LONGEST, SETTING, Authority, Hosts, parse
 
 logger = logging.getLogger(__name__)

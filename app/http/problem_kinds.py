@@ -14,10 +14,9 @@ from app.approvals import errors as approvals
 from app.calculations.errors import InvalidBody, NoArray, TooManyValues
 from app.designs import errors as designs
 from app.http.guard import BadHost, CrossSite, HostNotAllowed
+from app.http.limits import BodyTooLarge, BodyTooSlow, HeadTooLarge, ServiceStopping
 from app.http.streams import TooManyStreams
 from app.http.strict_requests import (
-    BodyTooLarge,
-    HeadTooLarge,
     NotCsv,
     NotForm,
     NotJson,
@@ -27,7 +26,6 @@ from app.http.strict_requests import (
     PreconditionRequired,
     TooIntricate,
 )
-from app.http.timeouts import BodyTooSlow
 from app.identity import errors as identity
 from app.identity.limits import LimitReached
 from app.identity.oidc import ProviderRefused
@@ -109,7 +107,7 @@ TABLE: dict[type[Exception], Kind] = {
     worksheets.TestsFailed: Kind(
         "tests-failed", 409, "The worksheet is not sound", "correct each of `errors`"
     ),
-    worksheets.Unresolved: Kind(
+    worksheets.UnresolvedRegions: Kind(
         "unresolved-import", 409, "Regions of the import are unresolved", "rewrite or remove each of `errors`"
     ),
     worksheets.OutOfOrder: Kind(
@@ -149,6 +147,7 @@ TABLE: dict[type[Exception], Kind] = {
     TooIntricate: Kind("body-too-intricate", 413, "The body is too intricate", "send less at once"),
     NoArray: Kind("no-array", 406, "The answer is not an array", "ask for application/json; see `detail`"),
     TooManyValues: Kind("too-many-values", 413, "Too many values", "ask for fewer points or outputs"),
+    ServiceStopping: Kind("stopping", 503, "The service is stopping", "send the request again once it runs"),
     BodyTooSlow: Kind("too-slow", 408, "The request arrives too slowly", "send it faster, or in parts"),
     TooManyStreams: Kind("too-many-streams", 429, "Too many streams are open", "close some, then retry"),
     identity.NotSignedIn: Kind(
@@ -224,7 +223,6 @@ HTTP = {
     405: Kind("method-not-allowed", 405, "Method not allowed here", "see the header Allow"),
 }
 
-STOPPING = Kind("stopping", 503, "The service is stopping", "send the request again once it runs")
 CROWDED = Kind("too-many-connections", 503, "Too many connections", "close some, then retry")
 BEFORE_HTTP = (
     CROWDED,
@@ -235,7 +233,7 @@ BEFORE_HTTP = (
 
 SLUGS = {
     kind.slug: kind
-    for kind in (*TABLE.values(), *HTTP.values(), *BEFORE_HTTP, STOPPING, NOT_READY, REBUILDING, INTERNAL)
+    for kind in (*TABLE.values(), *HTTP.values(), *BEFORE_HTTP, NOT_READY, REBUILDING, INTERNAL)
 }
 """Every kind, by its slug."""
 

@@ -5,7 +5,6 @@ A problem's `type` is a relative link, `/problems/<slug>`, which answers with it
 
 from __future__ import annotations
 
-import asyncio
 import logging
 from collections.abc import Callable, Iterable, Mapping
 
@@ -15,12 +14,11 @@ from fastapi.responses import JSONResponse, Response
 from pydantic_core import ErrorDetails
 from starlette.exceptions import HTTPException
 from starlette.routing import Match, Mount
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.calculations.errors import InvalidBody
 from app.designs import errors as designs
-from app.http.problem_kinds import HTTP, INTERNAL, SLUGS, STOPPING, TABLE, Kind, kind_of
-from app.http.roles import public
+from app.http.access import public
+from app.http.problem_kinds import HTTP, INTERNAL, SLUGS, TABLE, Kind, kind_of
 from app.jobs import errors as jobs
 from app.observation import logs, metrics
 from app.observation.secrets import without_keys
@@ -118,7 +116,7 @@ _CARRIED: dict[type[Exception], Callable[..., dict[str, object]]] = {
     },
     designs.NotConverged: lambda error: {"rounds": error.rounds},
     worksheets.TestsFailed: _untested,
-    worksheets.Unresolved: lambda error: {
+    worksheets.UnresolvedRegions: lambda error: {
         "errors": [{"name": "text", "code": "unresolved", "detail": text} for text in error.reasons]
     },
     RowsLost: lambda error: {"job": f"/api/v1/jobs/{error.job}"},
@@ -192,37 +190,6 @@ async def _handle_unexpected(request: Request, error: Exception) -> Response:
     metrics.FAILURES.labels("internal").inc()
     logger.error("%s %s failed", request.method, request.url.path, exc_info=error)
     return answer(describe(error))
-
-
-RETRY_AFTER = 5  # until the service is back, if it is started again [s]
-
-
-class StoppingAnswer:
-    """ASGI middleware that answers 503 when a request is cancelled before its response began.
-
-    uvicorn cancels what is in flight at the end of the drain time, and answers with a bare 500 where nothing
-    was sent yet. Nothing else in the service cancels a request.
-    """
-
-    def __init__(self, app: ASGIApp) -> None:
-        self.app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on, or answer in the application's stead."""
-        has_begun = False
-
-        async def noted(message: Message) -> None:
-            nonlocal has_begun
-            has_begun = True
-            await send(message)
-
-        try:
-            await self.app(scope, receive, noted)
-        except asyncio.CancelledError:
-            if scope["type"] != "http" or has_begun:
-                raise
-            about = problem(STOPPING, "the service stopped before the answer was ready")
-            await answer(about, {"Retry-After": str(RETRY_AFTER)})(scope, receive, send)
 
 
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")

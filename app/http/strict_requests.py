@@ -8,7 +8,9 @@ calls its endpoint without FastAPI's machinery.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import AsyncIterator, Awaitable, Callable, Container, Coroutine, Mapping
+import re
+from collections.abc import AsyncIterator, Awaitable, Callable, Container, Coroutine, Iterator, Mapping
+from itertools import islice
 from json import JSONDecodeError
 from typing import TYPE_CHECKING, Any
 
@@ -16,12 +18,13 @@ from fastapi import Request, Response
 from fastapi.exceptions import RequestValidationError
 from fastapi.routing import APIRoute
 from pydantic_core import from_json
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.exceptions import HTTPException
+from starlette.types import Receive, Scope, Send
 
-from app.http import nul
 from app.http.pace import Pace
 from app.plain import Json
 from app.workers.pieces import PIECE, Pieces
+from templates.core.errors import Fault, InvalidInputs, plain
 
 if TYPE_CHECKING:
     from fastapi._compat import ModelField
@@ -41,14 +44,6 @@ MOST_BRACKETS, MOST_QUOTES = 250_000, 400_000
 
 class HttpError(Exception):
     """A request that is refused before its meaning is looked at."""
-
-
-class BodyTooLarge(HttpError):
-    """The body is larger than the service takes."""
-
-
-class HeadTooLarge(HttpError):
-    """The address and the headers are longer than the service takes."""
 
 
 class TooIntricate(HttpError):
@@ -165,7 +160,7 @@ class StrictRoute(APIRoute):
             A text has U+0000.
         """
         await _refreshed(request)
-        nul.refuse_in_address(request)
+        refuse_nul_in_address(request)
         is_patch = "PATCH" in self.takes
         if (is_patch or "PUT" in self.takes) and "if-match" not in request.headers:
             raise PreconditionRequired('send If-Match with the ETag of what you read, such as "3"')
@@ -173,8 +168,8 @@ class StrictRoute(APIRoute):
             check_type(request, PATCH_TYPES if is_patch else JSON_TYPES)
             # here, because FastAPI answers whatever is raised in its reading with 400
             await self._admit(request)
-            if await _check_intricacy(request) and nul.has(await request.body()):
-                nul.refuse_in(await _read(request))
+            if await _check_intricacy(request) and has_nul(await request.body()):
+                refuse_nul_in(await _read(request))
 
     async def _admit(self, request: StrictRequest) -> None:
         try:
@@ -353,55 +348,21 @@ async def _check_intricacy(request: StrictRequest) -> bool:
     Returns whether a text may have U+0000.
     """
     brackets = quotes = 0
-    may_have_nul, end = False, b""
+    is_nul_possible, end = False, b""
     for number, piece in enumerate(await request.pieces()):
         if number:
             await request.pace.step()
         part = bytes(piece)
         brackets += part.count(b"[") + part.count(b"{")
         quotes += part.count(b'"')
-        may_have_nul = may_have_nul or nul.may_have(part) or nul.may_have(end + part[:5])
+        is_nul_possible = is_nul_possible or may_have_nul(part) or may_have_nul(end + part[:5])
         end = part[-5:]
     if brackets > MOST_BRACKETS or quotes > MOST_QUOTES:
         message = f"a body may open {MOST_BRACKETS} brackets and have {MOST_QUOTES // 2} texts and names"
         raise TooIntricate(
             f'{message}; send numbers as one list with one unit: {{"value": [1, 2], "unit": "mm"}}'
         )
-    return may_have_nul
-
-
-class BodyLimit:
-    """ASGI middleware that ends the reading of a body beyond the limit [bytes] with a 413 problem."""
-
-    # FastAPI's own max_body_size answers in plain text, not with a problem.
-    def __init__(self, app: ASGIApp, limit: int, refuse: Callable[[str], Response]) -> None:
-        self.app, self.limit, self.refuse = app, limit, refuse
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Refuse, or pass on."""
-        if scope["type"] != "http":
-            await self.app(scope, receive, send)
-            return
-        detail = f"a body may have at most {self.limit / 2**20:g} MiB"
-        length = dict(scope["headers"]).get(b"content-length", b"0")
-        if not length.isdigit() or int(length) > self.limit:
-            await self.refuse(detail)(scope, receive, send)
-            return
-        await self.app(scope, self._counted(receive, detail) if length == b"0" else receive, send)
-
-    def _counted(self, receive: Receive, detail: str) -> Callable[[], Awaitable[Message]]:
-        """For a body of unknown length: raise once it grows beyond the limit."""
-        size = 0
-
-        async def counted() -> Message:
-            nonlocal size
-            message = await receive()
-            size += len(message.get("body", b""))
-            if size > self.limit:
-                raise BodyTooLarge(detail)
-            return message
-
-        return counted
+    return is_nul_possible
 
 
 async def fingerprint(request: Request) -> str:
@@ -410,3 +371,85 @@ async def fingerprint(request: Request) -> str:
     if query := request.scope["query_string"]:
         digest.update(b"?" + query)
     return digest.hexdigest()
+
+
+NUL = "\0"
+"""U+0000, which no text of a request may have: PostgreSQL cannot store it. It is refused where requests are
+read, for both kinds of database, by the name of the field that has it."""
+MOST_NUL_PLACES = 20
+_NUL_DETAIL = "no text may have the character U+0000 (NUL); leave it out: {}"
+_ESCAPED_NUL = b"\\u0000"
+_JSON_NUL = re.compile(rb"(?<!\\)(?:\\\\)*\\u0000")
+"""It itself in JSON; an escaped backslash may stand before `u0000`."""
+
+
+def refuse_nul_in_address(request: Request) -> None:
+    """Refuse an address with U+0000.
+
+    Raises
+    ------
+    HTTPException
+        With 404, if the path has it: nothing is called so.
+    InvalidInputs
+        If parameters behind the path have it.
+    """
+    if NUL in request.scope["path"]:
+        raise HTTPException(404, "a name cannot contain U+0000")
+    if b"%00" in request.scope["query_string"]:
+        given = request.query_params.multi_items()
+        having = [(name, value) for name, value in given if NUL in name or NUL in value]
+        _refuse_nul({name: value if NUL in value else name for name, value in having})
+
+
+def may_have_nul(part: bytes) -> bool:
+    """Return whether a part of JSON may have U+0000 in a text."""
+    return _ESCAPED_NUL in part
+
+
+def has_nul(body: bytes) -> bool:
+    """Return whether JSON has U+0000 in a text; its time is linear in the length."""
+    return _JSON_NUL.search(body) is not None
+
+
+def refuse_nul_in(value: object) -> None:
+    """Refuse JSON with U+0000 in a text or a name.
+
+    Raises
+    ------
+    InvalidInputs
+        With the fields that have it.
+    """
+    _refuse_nul(dict(_nul_places(value)))
+
+
+def _refuse_nul(texts: Mapping[str, str]) -> None:
+    """Refuse fields by their names if there are any; each with the text, or the name, that has it."""
+    if texts:
+        raise InvalidInputs(
+            [
+                Fault(plain(name.replace(NUL, "\\0")), "nul", _NUL_DETAIL.format(_nul_position(text)))
+                for name, text in islice(texts.items(), MOST_NUL_PLACES)
+            ]
+        )
+
+
+def _nul_position(text: str) -> str:
+    """Return line and column of the first U+0000 in a text, as editors count."""
+    before = text[: text.index(NUL)]
+    line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
+    return f"line {line}, column {column}" if "\n" in text else f"character {column}"
+
+
+def _nul_places(value: object) -> Iterator[tuple[str, str]]:
+    """Yield the place of a U+0000 in JSON: the path with dots, and the text or name that holds it."""
+    waiting: list[tuple[str, object]] = [("", value)]
+    while waiting:
+        place, part = waiting.pop()
+        within = f"{place[:200]}." if place else ""
+        if isinstance(part, str) and NUL in part:
+            yield place or "body", part
+        elif isinstance(part, dict):
+            yield from ((f"{within}{name[:80]}", name) for name in part if NUL in name)
+            waiting += [(f"{within}{name[:80]}", inner) for name, inner in part.items()]
+        elif isinstance(part, list):
+            waiting += [(f"{within}{number}", inner) for number, inner in enumerate(part)]

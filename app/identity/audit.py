@@ -9,9 +9,9 @@ from sqlalchemy import insert
 from sqlalchemy.orm import Session
 
 from app.identity.principal import acting
-from app.storage.identity import now
-from app.storage.statements import Statement
+from app.storage.clock import now
 from app.storage.tables import AuditRow, Base
+from app.storage.units import Statement
 
 _RECORDED = Statement(
     insert(Base.metadata.tables[AuditRow.__tablename__]),

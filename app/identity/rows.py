@@ -11,8 +11,8 @@ from sqlalchemy.orm import Session
 
 from app.identity.keys import NO_HASH, is_same
 from app.identity.principal import BUILT_IN, LOCAL, SYSTEM, Principal, Role
+from app.storage.clock import now
 from app.storage.errors import NotFound
-from app.storage.identity import now
 from app.storage.tables import ApiKeyRow, PrincipalRow, SessionRow
 
 

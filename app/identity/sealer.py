@@ -14,8 +14,8 @@ from sqlalchemy.orm import Session
 
 from app.identity.chain import seal
 from app.storage.database import Database
-from app.storage.statements import Statement
 from app.storage.tables import AuditRow, Base
+from app.storage.units import Statement
 
 logger = logging.getLogger(__name__)
 

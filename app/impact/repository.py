@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 from app.designs import repository as designs
 from app.designs.document import Document
 from app.designs.filters import DesignFilter
-from app.designs.reader import settled
+from app.designs.graph import settled
 from app.impact.solids import Solids
 from app.impact.task import DesignAt
 from app.solids import analysis_rows

@@ -9,9 +9,9 @@ from typing import TypeVar, TypeVarTuple
 from sqlalchemy.orm import Session
 
 from app.jobs.events import Event, Events
-from app.jobs.job import FINAL, Job
-from app.jobs.progress import Keep, publish
+from app.jobs.repository import FINAL, Job
 from app.observation import metrics
+from app.plain import JsonObject
 from app.storage.database import after_commit
 from app.workers.base import Batch, Limits, Runner
 
@@ -21,6 +21,10 @@ Ts = TypeVarTuple("Ts")
 logger = logging.getLogger(__name__)
 
 _LINES = 200  # of the log that are kept
+
+
+Keep = Callable[[Job, float, list[str]], object]
+"""Takes how far a claimed job is (0 to 1) and its log, to be stored soon; never blocks."""
 
 
 class JobContext:
@@ -99,6 +103,12 @@ class _Quietly:
     def run(self, function: Callable[[*Ts], T], *args: *Ts, limits: Limits | None = None) -> T:
         """Run a function; see `JobContext.run`."""
         return self._batch.run(function, *args, limits=limits or self._limits, cancelled=self._cancelled)
+
+
+def publish(events: Events, job: Job, fraction: float, text: str) -> None:
+    """Send how far a job is to all who listen to it, or to its design, in this process."""
+    data: JsonObject = {"job": job.id, "revision": job.revision, "progress": fraction, "text": text}
+    events.publish(*map(partial(Event, name="progress", data=data), job.topics))
 
 
 def note(session: Session, events: Events, job: Job, name: str, **more: object) -> None:

@@ -1,22 +1,135 @@
-"""Events of designs and jobs: stored with the change itself, and sent to the subscribers of a topic.
+"""Events of designs and jobs: rows that are written with the change itself, and sent to subscribers.
+
+The topics are `design:<id>` and `job:<id>`; events are numbered within a topic without a gap. An event gets
+its number under the lock of its design's or job's own row, in the unit of work that makes it true. So a
+reader who sees a number sees all below it as well. A sequence does not promise that: its numbers precede the
+commits.
 
 The rows are the truth. What a subscriber is sent is a hint with its event at hand; see `Subscription`.
 """
 
 from __future__ import annotations
 
+import asyncio
 import threading
-from collections.abc import AsyncIterator, Callable, Iterable
-from contextlib import asynccontextmanager
+from collections import Counter
+from collections.abc import AsyncIterator, Callable, Iterable, Mapping
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
 from functools import partial
+from operator import attrgetter
 
+from sqlalchemy import Table, bindparam, insert, select, update
 from sqlalchemy.orm import Session
 
-from app.jobs.subscriptions import Subscription
-from app.storage import event_log
+from app.storage.clock import NAME, now
 from app.storage.database import Database, after_commit
-from app.storage.event_log import PAGE, TOPIC, Event
+from app.storage.tables import Base, CounterRow, EventRow
+from app.storage.units import Statement
+
+Data = Mapping[str, object]
+
+PAGE = 500  # events that are read at once
+_EVENTS = Base.metadata.tables["event"]
+_OWNERS: dict[str, Table] = {kind: Base.metadata.tables[kind] for kind in ("design", "job")}
+_OPERATED = select(CounterRow.value).where(CounterRow.name == NAME).scalar_subquery()
+_RAISED = {
+    kind: Statement(
+        update(owner)
+        .where(owner.c.id == bindparam("of"))
+        .values(event=owner.c.event + bindparam("more"))
+        .returning(owner.c.event),
+        "of",
+        "more",
+    )
+    for kind, owner in _OWNERS.items()
+}
+_NOTED = Statement(insert(_EVENTS).values(operated=_OPERATED), "topic", "number", "name", "data", "created")
+
+
+@dataclass(frozen=True)
+class Event:
+    """An event of a topic; one without a number is stored nowhere, such as progress."""
+
+    topic: str
+    name: str
+    data: Data
+    number: int | None = None
+
+    @property
+    def message(self) -> dict[str, object]:
+        """Return the event as its readers get it: a JSON object with its name."""
+        return {"event": self.name, **self.data}
+
+
+TOPIC: Callable[[Event], str] = attrgetter("topic")
+
+
+def note_event(session: Session, topic: str, name: str, data: Data) -> int:
+    """Write an event in the unit of work that makes it true; its number.
+
+    Nobody hears of it before they read the rows: services note events by `app.jobs.events.Events.note`.
+    """
+    (event,) = note_events(session, Event(topic, name, data))
+    assert event.number is not None
+    return event.number
+
+
+def note_events(session: Session, *events: Event) -> list[Event]:
+    """Write events in the unit of work that makes them true; the same events with their numbers.
+
+    The rows of jobs are locked before those of designs, as everywhere.
+    """
+    counts = Counter(map(TOPIC, events))
+    numbers = dict[str, int]()
+    session.flush()  # the rows of which these events tell
+    for topic in sorted(counts, reverse=True):
+        kind, _, id = topic.partition(":")
+        (raised,) = _RAISED[kind].run(session, {"of": id, "more": counts[topic]})
+        numbers[topic] = raised[0] - counts[topic]
+    created, noted, rows = now(), list[Event](), list[dict[str, object]]()
+    for event in events:
+        numbers[event.topic] += 1
+        number = numbers[event.topic]
+        noted.append(Event(event.topic, event.name, event.data, number))
+        rows.append(
+            {
+                "topic": event.topic, "number": number, "name": event.name,
+                "data": event.data, "created": created,
+            }
+        )  # fmt: skip
+    _NOTED.run_many(session, rows)
+    return noted
+
+
+def newest_numbers(session: Session, topics: Iterable[str]) -> dict[str, int]:
+    """Return the number of the newest event of each topic whose design or job there is; 0 if it has none."""
+    ids: dict[str, list[str]] = {kind: [] for kind in _OWNERS}
+    for topic in topics:
+        kind, _, id = topic.partition(":")
+        ids[kind].append(id)
+    return {
+        f"{kind}:{id}": number
+        for kind, owner in _OWNERS.items()
+        if ids[kind]
+        for id, number in session.execute(select(owner.c.id, owner.c.event).where(owner.c.id.in_(ids[kind])))
+    }
+
+
+def events_above(session: Session, topic: str, number: int, most: int = PAGE) -> list[Event]:
+    """Return the events of a topic above a number, in their order; not more than `most`."""
+    row = EventRow
+    later = select(row.name, row.data, row.number).where(row.topic == topic, row.number > number)
+    rows = session.execute(later.order_by(row.number).limit(most))
+    return [Event(topic, name, data, its) for name, data, its in rows]
+
+
+def are_events_kept(session: Session, topic: str, number: int, newest: int) -> bool:
+    """Return whether all events of a topic above a number are kept; not if it has not come to that number."""
+    if number >= newest:
+        return number == newest
+    return session.get(EventRow, (topic, number + 1)) is not None
+
 
 __all__ = ["Event", "Events", "Subscription"]
 
@@ -42,7 +155,7 @@ class Events:
 
     def note(self, session: Session, *events: Event) -> None:
         """Write events in the unit of work that makes them true; once it is durable, they are sent."""
-        noted = event_log.note_all(session, *events)
+        noted = note_events(session, *events)
         after_commit(session, partial(self._share, noted))
 
     def publish(self, *events: Event) -> None:
@@ -68,11 +181,11 @@ class Events:
         if not wanted:
             return
         with self._database.read() as session:
-            for topic, newest in event_log.newest(session, wanted).items():
+            for topic, newest in newest_numbers(session, wanted).items():
                 sent = heard[topic]
                 start = newest - 1 if sent is None else max(sent, newest - PAGE)
                 if newest > start:
-                    self.publish(*event_log.above(session, topic, start))
+                    self.publish(*events_above(session, topic, start))
 
     def heard(self, topics: Iterable[str] | None = None) -> set[str]:
         """Return those of these topics, or of all, to which somebody listens here."""
@@ -104,7 +217,7 @@ class Events:
 
     def _above(self, topic: str, number: int) -> list[Event]:
         with self._database.read() as session:
-            return event_log.above(session, topic, number)
+            return events_above(session, topic, number)
 
     def _add(self, topic: str, subscriber: Subscription) -> None:
         with self._lock:
@@ -118,3 +231,69 @@ class Events:
             subscribers.discard(subscriber)
             if not subscribers:
                 del self._topics[topic]
+
+
+Read = Callable[[str, int], list[Event]]
+"""Reads the events of a topic above a number: a page of them."""
+
+_ROOM = 100  # events that may wait for a slow reader before the oldest are dropped
+
+
+class Subscription:
+    """The events of a topic in the order of their numbers, none twice and none missing.
+
+    They come through a queue in the event loop of the reader; None in it is the end. Events may get lost on
+    the way there, overtake each other or come twice: the number after `number` is the next one, and what
+    lies between is read from the rows. Events without a number are handed over as they come.
+    """
+
+    def __init__(self, topic: str, read: Read) -> None:
+        self.number: int | None = None
+        """The newest event that the reader has; None: take them as they come."""
+        self._topic, self._read = topic, read
+        self._is_behind = False  # events above `number` came, and are not in the queue
+        self._loop = asyncio.get_running_loop()
+        self._queue: asyncio.Queue[Event | None] = asyncio.Queue(_ROOM)
+
+    def resume(self, number: int) -> None:
+        """Go on after an event that the reader got earlier, with what happened since."""
+        self.number, self._is_behind = number, True
+
+    def send(self, event: Event | None) -> None:
+        """Hand an event over; from any thread, never blocks."""
+        with suppress(RuntimeError):  # the loop has ended, and the reader with it
+            self._loop.call_soon_threadsafe(self._put, event)
+
+    async def __aiter__(self) -> AsyncIterator[Event]:
+        while True:
+            async for event in self._missed():
+                yield event
+            next_one = await self._queue.get()
+            if next_one is None:
+                return
+            if next_one.number is None:
+                yield next_one
+                continue
+            self._is_behind |= self.number is not None and next_one.number > self.number + 1
+            async for event in self._missed():
+                yield event
+            if self.number is None or next_one.number > self.number:
+                self.number = next_one.number
+                yield next_one
+
+    async def _missed(self) -> AsyncIterator[Event]:
+        """Yield the events above `number`, page by page, if some are missing."""
+        while self._is_behind and self.number is not None:
+            self._is_behind = False  # unless more is dropped from now on
+            page = await asyncio.to_thread(self._read, self._topic, self.number)
+            self._is_behind |= len(page) == PAGE
+            for event in page:
+                if event.number is not None and event.number > self.number:
+                    self.number = event.number
+                    yield event
+
+    def _put(self, event: Event | None) -> None:
+        if self._queue.full():
+            dropped = self._queue.get_nowait()
+            self._is_behind |= dropped is not None and dropped.number is not None
+        self._queue.put_nowait(event)

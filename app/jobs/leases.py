@@ -14,7 +14,7 @@ from app.jobs.context import note
 from app.jobs.dispatcher import MAX_LOSSES, Dispatcher, Problem
 from app.jobs.errors import JobLost
 from app.jobs.events import Events
-from app.jobs.job import Job
+from app.jobs.repository import Job
 from app.settings import Settings
 from app.storage.database import Database
 

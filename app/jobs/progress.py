@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Collection, Iterable
 from functools import partial
 
 from app.jobs import repository
-from app.jobs.events import Event, Events
-from app.jobs.job import Job
-from app.plain import JsonObject
+from app.jobs.context import publish
+from app.jobs.events import Events
+from app.jobs.repository import Job
 from app.storage.database import Database
 
 logger = logging.getLogger(__name__)
@@ -22,9 +22,6 @@ SUBJECT = "progress"  # of the hints by which other servers look at the row of a
 GRACE = 0.15  # a job that ends sooner has no progress stored [s]
 ALONE, SHARED = 0.5, 1.0  # between two writes for one job, where servers share the database or not [s]
 _PATIENCE = 5.0  # for the end of the thread [s]
-
-Keep = Callable[[Job, float, list[str]], object]
-"""Takes how far a claimed job is (0 to 1) and its log, to be stored soon; never blocks."""
 
 
 class ProgressKeeper:
@@ -56,7 +53,7 @@ class ProgressKeeper:
             self._thread.join(_PATIENCE)
 
     def keep(self, job: Job, fraction: float, log: list[str]) -> None:
-        """Have the progress of a job stored; see `Keep`."""
+        """Have the progress of a job stored; see `app.jobs.context.Keep`."""
         with self._lock:
             self._latest[job.id] = job, fraction, log
         self._some.set()
@@ -118,12 +115,6 @@ class ProgressFollower:
         if self._shown.get(job.id) != stands:
             self._shown[job.id] = stands
             publish(self._events, job, job.progress, job.log[-1])
-
-
-def publish(events: Events, job: Job, fraction: float, text: str) -> None:
-    """Send how far a job is to all who listen to it, or to its design, in this process."""
-    data: JsonObject = {"job": job.id, "revision": job.revision, "progress": fraction, "text": text}
-    events.publish(*map(partial(Event, name="progress", data=data), job.topics))
 
 
 def _topics(hint: str) -> Collection[str]:

@@ -9,30 +9,71 @@ queues again by `reap` what nobody has prolonged. Its times are those of the dat
 """
 
 from collections.abc import Collection, Mapping
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import cast
 
 from sqlalchemy import bindparam, func, insert, or_, select, update
 from sqlalchemy.orm import Session
 
 from app.identity.principal import ACTING
-from app.jobs.job import Job
 from app.jobs.schemas import State
 from app.jobs.turns import ALL_KINDS, LANES, UNFINISHED, Lane, next_turn
 from app.observation import logs
 from app.plain import JsonObject
-from app.storage.clock import operated, present
-from app.storage.identity import new_id, now
+from app.storage.clock import new_id, now, operated, present
 from app.storage.locks import lock
-from app.storage.statements import Statement
 from app.storage.tables import Base, JobRow, canonical_json
-from app.storage.units import repeatable
+from app.storage.units import Statement, repeatable
+
+FINAL: frozenset[State] = frozenset({"done", "failed", "cancelled"})
+
+
+@dataclass(frozen=True)
+class Job:
+    """A piece of work as it was when it was read.
+
+    `attempt` counts claims, `crashes` dead processes, `losses` dead workers and servers; `owner` runs it.
+    """
+
+    id: str
+    kind: str
+    state: State
+    design: str | None
+    revision: int | None
+    payload: JsonObject
+    attempt: int
+    crashes: int
+    progress: float
+    log: list[str]
+    problem: JsonObject | None
+    result: str | None
+    created: str
+    updated: str
+    principal: str | None = None
+    losses: int = 0
+    owner: str | None = None
+    cause: str = ""  # the id of the request that queued it, and the context of its trace
+    event: int = 0
+    """The number of its newest event."""
+
+    @cached_property
+    def topics(self) -> tuple[str, ...]:
+        """Return the topics of its events: its own, and its design's."""
+        own = f"job:{self.id}"
+        return (own,) if self.design is None else (own, f"design:{self.design}")
+
+    @property
+    def finished(self) -> bool:
+        """Return whether nothing will change any more."""
+        return self.state in FINAL
+
 
 _JOBS = Base.metadata.tables[JobRow.__tablename__]
 _ADDED = Statement(
     insert(_JOBS).values(state="queued", attempt=0, crashes=0, progress=0.0, log=[], others=[]),
     "id", "kind", "design_id", "revision", "payload", "created", "updated", "client", "turn", "operated",
-    "principal", "cause",
+    "principal", "cause", "question",
 )  # fmt: skip
 _AS_JOB = (
     _JOBS.c.id, _JOBS.c.kind, _JOBS.c.state, _JOBS.c.design_id, _JOBS.c.revision, _JOBS.c.payload,
@@ -52,6 +93,7 @@ def add(
     revision: int | None,
     client: str = "",
     turn: int = 0,
+    question: str | None = None,
 ) -> str:
     """Queue a job of a client, in its turn, and return its id."""
     session.flush()  # the revision it belongs to comes first
@@ -61,6 +103,7 @@ def add(
         "created": at, "updated": at, "client": client, "turn": turn, "operated": operated(session),
         "principal": ACTING.get().id,
         "cause": f"{logs.REQUEST_ID.get()} {logs.TRACE.get()}".rstrip() or None,
+        "question": question,
     }  # fmt: skip
     _ADDED.run(session, row)
     return id
@@ -101,6 +144,13 @@ def find_waiting(session: Session, kind: str, payload: JsonObject) -> str | None
     lock(session, f"job {kind} {canonical_json(payload)}")
     same = select(JobRow.id).where(JobRow.kind == kind, JobRow.payload == payload)
     return session.scalar(same.where(JobRow.state.in_(UNFINISHED)).limit(1))
+
+
+def asked(session: Session, question: str, states: Collection[State]) -> Job | None:
+    """Return the newest job of an equal question, by its key, that is in one of these states."""
+    equal = select(JobRow).where(JobRow.question == question, JobRow.state.in_(states))
+    row = session.scalar(equal.order_by(JobRow.id.desc()).limit(1))
+    return _job(row) if row else None
 
 
 def claim(

@@ -8,11 +8,10 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from app.api.dependencies import OneStream, TheJobs
 from app.api.event_streams import LastEvent, Whole, as_it_stands, listening
-from app.http.clients import TheClient
+from app.http.access import TheClient, needs
 from app.http.pages import Cursor, Limit, page
-from app.http.roles import needs
 from app.http.strict_requests import StrictRoute
-from app.jobs.job import Job
+from app.jobs.repository import Job
 from app.jobs.schemas import Job as JobAnswer
 from app.jobs.schemas import JobList
 from app.jobs.service import Jobs

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING
 
@@ -16,19 +16,20 @@ from app.identity.errors import NotOwn
 from app.identity.limits import Limits as PrincipalLimits
 from app.identity.principal import BUILT_IN, acting
 from app.jobs import repository, turns
-from app.jobs.admission import admit
 from app.jobs.context import JobContext, note
 from app.jobs.dispatcher import FAST, SLOW, Completion, Dispatcher, FailureHook, Handler, Kind, Problem
 from app.jobs.errors import JobFailed, JobFinished, JobNotFound, JobRests
 from app.jobs.events import Events
-from app.jobs.job import FINAL, Job
 from app.jobs.leases import Leases
 from app.jobs.progress import ProgressFollower
+from app.jobs.repository import FINAL, Job
 from app.jobs.schemas import State
+from app.jobs.turns import admit
 from app.plain import JsonObject
 from app.settings import Settings
 from app.storage.clock import operated
 from app.storage.database import Database
+from app.storage.locks import lock
 from app.workers.base import BatchWorker, Limits
 from app.workers.errors import JobCancelled
 
@@ -134,6 +135,7 @@ class Jobs:
         design: str | None = None,
         revision: int | None = None,
         client: str = "",
+        question: str | None = None,
     ) -> str:
         """Queue a job of a client in a unit of work and return its id; call `wake` when that is committed.
 
@@ -152,7 +154,7 @@ class Jobs:
         if limits is not None:
             usage.admit(session, limits)
         turn = turns.next_turn(session, client, lane)
-        id = repository.add(session, kind, payload, design, revision, client, turn)
+        id = repository.add(session, kind, payload, design, revision, client, turn, question)
         logger.info("job %s (%s) queued", id, kind, extra={"job": id})
         return id
 
@@ -167,9 +169,39 @@ class Jobs:
         id = self.waiting(session, kind, payload)
         if id is None:
             return self.enqueue(session, kind, payload, client=client)
+        self._join(session, kind, id, client)
+        return id
+
+    def ask(
+        self,
+        session: Session,
+        kind: str,
+        payload: JsonObject,
+        question: str,
+        states: Collection[State],
+        client: str = "",
+    ) -> tuple[str, bool]:
+        """Return the job of an equal question in one of these states, else a new one; and whether it is new.
+
+        `question` is its key. The client waits for the job with those who do already.
+
+        Raises
+        ------
+        QueueFull, LimitReached
+            As `enqueue`, for a new one.
+        """
+        lock(session, f"question {question}")
+        earlier = repository.asked(session, question, states)
+        if earlier is None:
+            return self.enqueue(session, kind, payload, client=client, question=question), True
+        if not earlier.finished:
+            self._join(session, kind, earlier.id, client)
+        return earlier.id, False
+
+    def _join(self, session: Session, kind: str, id: str, client: str) -> None:
+        """Let a client wait for a job that another has asked for."""
         share = self._share(usage.own_limits(session, self.settings))
         turns.join(session, id, client, self._dispatcher.lane(kind), share)
-        return id
 
     def _share(self, limits: PrincipalLimits | None) -> int:
         """Return most jobs of one client that may wait."""

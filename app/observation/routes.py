@@ -9,8 +9,8 @@ from prometheus_client import CONTENT_TYPE_LATEST
 from app.api.dependencies import TheDatabase, TheJobs, TheReadiness
 from app.api.responses import written
 from app.http import problems
+from app.http.access import needs, public
 from app.http.problem_kinds import NOT_READY
-from app.http.roles import needs, public
 from app.observation import metrics
 from app.observation.schemas import Health, Ready
 from app.schemas.problems import refusals

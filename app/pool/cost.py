@@ -9,12 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
+from itertools import zip_longest
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from app.plain import Raw
-from app.pool.size import arrays, spanned
 from templates.core.errors import InvalidInputs
 from templates.core.language.body import Body
 from templates.core.language.climbing import reachable
@@ -208,3 +208,39 @@ def _level_seconds(cls: type[Template], level: str, points: int) -> float:
     cost = measured.content["levels"].get(level, {}).get("cost", {}) if measured else {}
     single = float(cost.get("single", 0.0))
     return single if points <= 1 else single + points * float(cost.get("vectorised", single))
+
+
+Shape = tuple[int, ...]
+
+
+def points(inputs: Mapping[str, Raw]) -> int:
+    """Return the number of points that the arrays among inputs, as typed, span together."""
+    return spanned(arrays(inputs).values())
+
+
+def arrays(inputs: Mapping[str, Raw]) -> dict[str, Shape]:
+    """Return the shapes of the arrays among inputs, as typed."""
+    shapes: dict[str, Shape] = {}
+    for name, raw in inputs.items():
+        is_single = isinstance(raw, str) or (isinstance(raw, Typed) and isinstance(raw.si, float))
+        if not is_single and (axes := shape(raw)):
+            shapes[name] = axes
+    return shapes
+
+
+def spanned(shapes: Iterable[Shape]) -> int:
+    """Return the number of points that shapes span together; if they do not fit, at least the largest."""
+    # NumPy's own broadcast_shapes gives up on counts beyond 2^63.
+    axes = zip_longest(*map(reversed, shapes), fillvalue=1)
+    return math.prod(map(max, axes))
+
+
+def shape(raw: Raw) -> Shape:
+    """Return the shape of a quantity as typed: by its first items, as what is uneven is refused later."""
+    if isinstance(raw, Typed):
+        return np.shape(raw.si)
+    lengths: list[int] = []
+    while isinstance(items := raw.get("value") if isinstance(raw, Mapping) else raw, list) and items:
+        lengths.append(len(items))
+        raw = items[0]
+    return tuple(lengths)

@@ -5,6 +5,7 @@ Who calculates, and for which client, is set by the route or the job that calcul
 
 from __future__ import annotations
 
+import json
 import math
 import threading
 import time
@@ -13,19 +14,20 @@ from concurrent.futures import wait
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
+from hashlib import sha256
 from typing import TypeVar, TypeVarTuple
 
 from app.jobs.service import Job, JobContext
 from app.plain import Raw
 from app.pool.cost import EXPENSIVE, estimated_seconds
 from app.pool.errors import StepDeferred
-from app.pool.pending_calculations import PendingCalculations, fingerprint
 from app.pool.pool import Calculation, CalculationPool, Lane
 from app.pool.sources import Source, loaded, source_of
 from app.workers.errors import JobCancelled
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.template import Template
 from templates.core.progress import Reporter
+from templates.core.units.quantity import Typed
 
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
@@ -203,3 +205,58 @@ def call_as(caller: Caller) -> None:
 def present_caller() -> Caller | None:
     """Return for whom this context evaluates steps."""
     return _caller.get()
+
+
+class PendingCalculations:
+    """Calculations that a request has begun and left; a job takes them over, or they are cancelled.
+
+    Parameters
+    ----------
+    pool
+        Where the calculations run.
+    left
+        What was left to jobs, by job; all requests share it.
+    """
+
+    def __init__(self, pool: CalculationPool, left: dict[str, PendingCalculations]) -> None:
+        self._pool, self._left = pool, left
+        self._calculations: dict[Hashable, Calculation] = {}
+        self._job: str | None = None
+
+    def keep(self, key: Hashable, calculation: Calculation) -> None:
+        """Let a calculation go on if the pool has room for one more job; else it is cancelled."""
+        if calculation.future.done() or self._pool.keep(calculation):
+            self._calculations[key] = calculation
+        else:
+            self._pool.cancel(calculation)
+
+    def take(self, key: Hashable) -> Calculation | None:
+        """Return the calculation of a question, which is the caller's from now on."""
+        return self._calculations.pop(key, None)
+
+    def leave_to(self, job: str) -> None:
+        """Leave everything to a job; to be called in the transaction that queues it."""
+        self._withdraw()
+        self._job, self._left[job] = job, self
+
+    def close(self, *, failed: bool = False) -> None:
+        """Cancel what no job takes over; if the request failed, its job was not queued."""
+        if self._job is None or failed:
+            self._withdraw()
+            for calculation in self._calculations.values():
+                self._pool.cancel(calculation)
+            self._calculations.clear()
+
+    def _withdraw(self) -> None:
+        if self._job is not None:
+            self._left.pop(self._job, None)
+
+
+def fingerprint(inputs: Mapping[str, Raw]) -> bytes:
+    """Return a digest of inputs as typed, the same in whatever order their parts are written."""
+    return sha256(json.dumps(inputs, sort_keys=True, default=_plain).encode()).digest()
+
+
+def _plain(value: object) -> object:
+    """Return a value as JSON; a quantity that was read already becomes the text that its user typed."""
+    return [value.value, value.unit, value.extra] if isinstance(value, Typed) else repr(value)

@@ -14,12 +14,11 @@ from markupsafe import Markup
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import ExpensiveSteps, TheJobs, ThePress, TheReports, TheThreads, Units
-from app.api.responses import accepted_weights, finished, patience, written
-from app.api.threads import Threads
-from app.designs.routes.answers import Id, Number, Prefer, Within
+from app.api.responses import Threads, accepted_weights, finished, patience, written
+from app.designs.routes.designs import Id, Number, Prefer, Within
 from app.designs.schemas.designs import RevisionWorksheet
+from app.http.access import TheClient
 from app.http.attachments import named
-from app.http.clients import TheClient
 from app.http.guard import PAGE_POLICY
 from app.http.strict_requests import StrictRoute
 from app.jobs.service import Jobs

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import cast
 
 from sqlalchemy import Text, select, type_coerce
@@ -10,18 +10,34 @@ from sqlalchemy.orm import Session
 
 from app.identity import usage
 from app.solids.outputs import Outputs, StoredOutput
-from app.solids.questions import Question, in_order
+from app.solids.questions import Question, in_order, under_load
+from app.storage.clock import now
+from app.storage.database import Database
 from app.storage.errors import NotFound
-from app.storage.identity import now
 from app.storage.tables import AnalysisRow
-from app.storage.upserts import upsert
+from app.storage.units import upsert
 from cad.analysis.kinds import STRESSES, SURFACE
+from cad.model import CadModel
+from cad.regenerate import build_key
 
 
 def outputs_of(session: Session, key: str) -> Outputs:
     """Return the stored outputs of a question about a build, by output."""
     rows = session.scalars(select(AnalysisRow).where(AnalysisRow.key == key))
     return {row.output: _output(row) for row in rows}
+
+
+def analysed(database: Database) -> Callable[[CadModel, Question, tuple[str, ...]], Outputs | None]:
+    """Return a look-up of results of finite elements on models, where all wanted results are stored."""
+
+    def stored(shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Outputs | None:
+        with database.read() as session:
+            outputs = outputs_of(session, question.key(build_key(shape)))
+        if not set(wanted) <= outputs.keys():
+            return None
+        return under_load(question, {name: outputs[name] for name in wanted})
+
+    return stored
 
 
 def outputs_of_builds(session: Session, builds: Collection[str]) -> Mapping[str, Outputs]:

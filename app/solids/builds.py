@@ -8,25 +8,27 @@ from __future__ import annotations
 
 import hashlib
 import logging
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 
 from sqlalchemy.orm import Session
 
 from app.imported_models.programs import Programs
 from app.pool.sources import FileSource, Source, loaded, source_of
 from app.solids import measures, rows
-from app.solids.ages import is_fresh, renew
+from app.solids.rows import is_fresh, renew
 from app.solids.shapes import built_by_another, shape_of
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild
 from app.workers.base import Runner, may_share
-from cad.errors import ProgramMissing
+from cad.errors import AnalysisError, GeometryError, ProgramMissing
 from cad.export import DRAWINGS, derive
 from cad.imported_models import Drawn, ImportedModel, imported_description
 from cad.model import CadModel
 from cad.regenerate import (
     Build,
+    as_quantities,
     as_text,
     build_key,
     made_by,
@@ -141,7 +143,7 @@ class Builds:
             return rows.artifact(session, key, kind)
 
     def _record(self, session: Session, shape: CadModel, build: Build, sha: str) -> None:
-        parameters = measures.parameters(shape)
+        parameters = as_quantities(shape)
         units = {name: declared.meaning.unit for name, declared in shape.inputs.items()}
         dimensions = {n: {"value": value, "unit": units[n]} for n, value in build.dimensions.items()}
         measured: dict[str, object] = {
@@ -209,3 +211,16 @@ def rehearse(called: Callable[[], bool]) -> None:
             raise InterruptedError
 
     regenerate("ball_bearing", 1, {"inner_diameter": 0.05}, report=give_way)
+
+
+@contextmanager
+def failures_named(model: str, analysis: str = "") -> Iterator[None]:
+    """Let a failure of geometry name the model of the design, and one of its analysis that too."""
+    try:
+        yield
+    except GeometryError as error:
+        names = (f"{model}.{parameter}" for parameter in error.parameters)
+        raise GeometryError(error.code, f"{model}: {error.detail}", names) from error
+    except AnalysisError as error:
+        name = f"{model}.{analysis}"
+        raise AnalysisError(error.code, f"{name}: {error.detail}", name) from error

@@ -1,22 +1,14 @@
-"""Parameters and measurements of a solid in the units of the interface."""
+"""Measurements of a solid in the units of the interface."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from app.plain import JsonObject
 from app.schemas.answers import Quantity, Triple, Values
 from app.solids.schemas.models import BoundingBox, Clearance, Inertia, Measurements
 from cad.inspect import MEASURES
-from cad.model import CadModel
 from cad.overlaps import Clearance as Between
-from cad.regenerate import as_quantities
-
-
-def parameters(shape: CadModel) -> JsonObject:
-    """Return every parameter of a model in its declared unit, defaults included, as rows keep it."""
-    return as_quantities(shape)
 
 
 def clearance(one: Between) -> Clearance:

@@ -222,7 +222,7 @@ def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
     if has_throws(cls):
         return None
     if kind == CHAIN:
-        detail = f"{CHAIN} is of a shaft of throws from main to main, as crankshaft 2 is; {cls.id} is not one"
+        detail = f"{CHAIN} is of a shaft of throws from main to main, as crankshaft 1 is; {cls.id} is not one"
         return Fault("model", "no_throws", detail)
     detail = f"{cls.id} is not one throw of a crank, from mid-journal to mid-journal, as crank_throw is"
     return Fault("model", "no_throw", f"{UNIT_LOADS} is of a throw: {detail}")

@@ -1,19 +1,24 @@
-"""All SQL of builds and their artifacts."""
+"""All SQL of builds and their artifacts, and the ages of unused builds.
+
+A build that no revision uses is deleted after a time, see `app.retention`. Whoever wants a build renews its
+age in the unit of work that counts on it, or learns there that it is gone.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
+from functools import lru_cache
+from operator import itemgetter
 from typing import NamedTuple
 
-from sqlalchemy import bindparam, select
+from sqlalchemy import bindparam, select, update
 from sqlalchemy.orm import Session
 
 from app.identity import usage
 from app.identity.principal import ACTING, BUILT_IN
 from app.plain import JsonObject
-from app.storage.clock import operated
-from app.storage.identity import now
-from app.storage.statements import Statement
+from app.storage.clock import now, operated
+from app.storage.database import Database
 from app.storage.tables import (
     ApprovalRow,
     ArtifactRow,
@@ -23,7 +28,9 @@ from app.storage.tables import (
     RevisionModelRow,
     variant_of,
 )
-from app.storage.upserts import upsert_values
+from app.storage.units import Row, Statement, upsert_values
+from cad.model import CadModel
+from cad.regenerate import build_key
 
 _BUILDS = Base.metadata.tables[BuildRow.__tablename__]
 _ARTIFACTS = Base.metadata.tables[ArtifactRow.__tablename__]
@@ -73,6 +80,19 @@ def measures(session: Session, key: str) -> Mapping[str, float] | None:
     for (measured,) in _MEASURED.run(session, {"of": key}):
         return dict(measured["measures"])
     return None
+
+
+def built(database: Database) -> Callable[[CadModel], Mapping[str, float] | None]:
+    """Return a look-up of what built models measure.
+
+    A step may take minutes: so it is looked up when it is asked for, and no connection is held meanwhile.
+    """
+
+    def measured(shape: CadModel) -> Mapping[str, float] | None:
+        with database.read() as session:
+            return measures(session, build_key(shape))
+
+    return measured
 
 
 def artifact(session: Session, key: str, kind: str) -> Artifact | None:
@@ -170,3 +190,46 @@ def _use(design: str, number: int, model: str, head: int) -> dict[str, object]:
     variant = variant_of(model)
     more = {} if variant is None else {"variant": variant}
     return {"design": design, "revision": number, "current": number == head, **more}
+
+
+FRESH = (
+    3600  # a build wanted this recently need not be renewed: it is kept for a day or longer [s of operation]
+)
+
+
+def is_fresh(session: Session, keys: Collection[str]) -> bool:
+    """Return whether all of these builds exist, and will stay for as long as any request or job takes."""
+    wanted, present = set(keys), operated(session)
+    seen = _seen(session, wanted)
+    return len(seen) == len(wanted) and min(map(itemgetter(1), seen), default=present) >= present - FRESH
+
+
+def renew(session: Session, keys: Collection[str]) -> bool:
+    """Renew the age of builds in a unit of work; return whether all of them are there.
+
+    A build that was wanted within the last hour stays as it is, so units that share one do not wait for each
+    other: none of them locks its row.
+    """
+    if not keys:
+        return True
+    wanted, present = set(keys), operated(session)
+    seen = _seen(session, wanted)
+    old = {key for key, age in seen if age < present - FRESH}
+    if not old:
+        return len(seen) == len(wanted)
+    renewal = update(BuildRow).where(BuildRow.key.in_(old)).values(operated=present)
+    renewed = session.scalars(renewal.returning(BuildRow.key)).all()  # what is not deleted meanwhile
+    return len(seen) - len(old) + len(renewed) == len(wanted)
+
+
+def _seen(session: Session, keys: Collection[str]) -> Sequence[Row]:
+    """Return the key and age of those of these builds that are there."""
+    ages = _ages(len(keys))
+    return ages.run(session, dict(zip(ages.names, keys, strict=True)))
+
+
+@lru_cache(16)
+def _ages(count: int) -> Statement:
+    names = [f"key{n}" for n in range(count)]
+    seen = select(_BUILDS.c.key, _BUILDS.c.operated).where(_BUILDS.c.key.in_(list(map(bindparam, names))))
+    return Statement(seen, *names)

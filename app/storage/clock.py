@@ -1,7 +1,11 @@
-"""The clock of operation: a counter of the seconds for which the service has run, over all its starts.
+"""Times and identities of stored objects, and the clock of operation, from which their ages follow.
 
-The age of a stored thing is the difference of two readings. The counter stands in the database. So nothing
-ages while no server runs, or when the clock of a machine jumps.
+Identities and ages come from counters in the database, not from the wall clock, which may jump either way.
+On PostgreSQL identities come from a sequence: to raise a row in every unit would let one unit run at a time.
+
+The clock of operation counts the seconds for which the service has run, over all its starts. The age of a
+stored thing is the difference of two readings. So nothing ages while no server runs, or when the clock of a
+machine jumps.
 
 SQLite has one server, whose writer raises the counter by the monotonic clock of its process. A killed server
 loses the time since its last write.
@@ -15,19 +19,19 @@ and notes in `TICKED` when it did so, by the clock of the database. A reader add
 from __future__ import annotations
 
 import logging
+import secrets
 import threading
 import time
+from datetime import UTC, datetime
 
-from sqlalchemy import BigInteger, Connection, Double, cast, select, update
+from sqlalchemy import BigInteger, Connection, Double, cast, func, select, update
 from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.orm import Session
-from sqlalchemy.sql import func
 from sqlalchemy.sql.compiler import SQLCompiler
 from sqlalchemy.sql.functions import GenericFunction
 
-from app.storage.statements import DRIVER, Statement
 from app.storage.tables import Base, CounterRow
-from app.storage.units import Writer
+from app.storage.units import DRIVER, Statement, Writer
 
 logger = logging.getLogger(__name__)
 
@@ -138,3 +142,35 @@ _COUNTED = Statement(select(_COUNTER.c.value).where(_COUNTER.c.name == NAME))
 _THEN = select(CounterRow.value).where(CounterRow.name == TICKED).scalar_subquery()
 _SINCE = func.least(func.greatest(func.floor(present()) - _THEN, 0), LONGEST)
 _OPERATED = select(cast(CounterRow.value + _SINCE, BigInteger)).where(CounterRow.name == NAME)
+
+
+IDENTITY = "identity"
+_RAISED = Statement(
+    update(_COUNTER)
+    .where(_COUNTER.c.name == IDENTITY)
+    .values(value=_COUNTER.c.value + 1)
+    .returning(_COUNTER.c.value)
+)
+_NEXT = select(func.nextval(IDENTITY))
+
+
+def new_id(session: Session) -> str:
+    """Return a new identity of 24 hexadecimal digits; later ones sort after earlier ones.
+
+    It is counted up in the unit of work that uses it.
+    """
+    if DRIVER in session.info or session.get_bind().dialect.name == "sqlite":
+        ((number,),) = _RAISED.run(session)  # a migrated database has its counters
+    else:
+        number = session.connection().scalar(_NEXT)
+    return f"{number:014x}{secrets.token_hex(5)}"
+
+
+def now() -> str:
+    """Return the present time in UTC as text."""
+    return f"{datetime.now(UTC).replace(tzinfo=None).isoformat(timespec='microseconds')}Z"
+
+
+def as_text(moment: datetime) -> str:
+    """Return a moment in UTC as ISO 8601 text of constant length: text order is time order."""
+    return f"{moment.replace(tzinfo=None).isoformat(timespec='microseconds')}Z"

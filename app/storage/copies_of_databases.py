@@ -15,11 +15,11 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.storage.artifacts import Artifacts
+from app.storage.clock import now
 from app.storage.database import Database
 from app.storage.errors import StorageError
-from app.storage.identity import now
 from app.storage.tables import CounterRow
-from app.storage.upserts import upsert
+from app.storage.units import upsert
 
 NOTE = "sweeps"  # in the store: the number of the last collection, and whether there are copies
 LAST, NEXT = "sweep", "sweep_next"  # rows of `counter`; the store has one of the two, wherever a server died

@@ -11,11 +11,9 @@ from contextlib import contextmanager
 from sqlalchemy.orm import Session
 
 from app.storage.clock import OperationClock, SharedClock
-from app.storage.damage import Watch
 from app.storage.engines import is_sqlite, reading_engine, writing_engine
-from app.storage.group_writer import GroupWriter
-from app.storage.statements import READS
-from app.storage.units import T, Unit, Writer, after_commit, repeatable
+from app.storage.group_writer import GroupWriter, Watch
+from app.storage.units import READS, T, Unit, Writer, after_commit, repeatable
 
 __all__ = ["Database", "Unit", "after_commit", "repeatable"]
 

@@ -7,7 +7,7 @@ from sqlalchemy import Connection, Engine, create_engine, event, make_url
 from sqlalchemy.exc import OperationalError
 
 from app.storage.errors import NotForTeams
-from app.storage.statements import translated
+from app.storage.units import translated
 
 _SHARED = ("busy_timeout = 10000", "foreign_keys = on")
 _WRITER = (*_SHARED, "journal_mode = wal", "synchronous = full")

@@ -2,29 +2,104 @@
 
 SQLite takes one writer at a time and syncs the disk at every commit. One thread that runs all waiting units
 in one transaction pays one sync for all of them, and nobody ever meets a locked database.
+
+The file is watched while it is in use: once damage has shown, nothing is written any more.
 """
 
 from __future__ import annotations
 
 import contextvars
+import logging
+import os
 import queue
 import sqlite3
 import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 from sqlalchemy import Connection, Engine
 from sqlalchemy.orm import Session
 
 from app.storage.clock import OperationClock
-from app.storage.damage import Watch
-from app.storage.engines import rolled_back
+from app.storage.engines import rolled_back, sqlite_file
 from app.storage.errors import CommitFailed, DatabaseClosed, DatabaseDamaged
-from app.storage.statements import DRIVER
-from app.storage.units import AFTER, T, Unit, follow
+from app.storage.integrity import faults, is_damage, marker_of
+from app.storage.units import AFTER, DRIVER, T, Unit, follow
+
+logger = logging.getLogger(__name__)
+
+
+class Watch:
+    """Turns SQLite's errors about damage into DatabaseDamaged, and remembers the first.
+
+    It leaves a note of it beside the file: what is lost with SQLite's log shows at no later start.
+    """
+
+    def __init__(self, url: str) -> None:
+        self._path = sqlite_file(url)
+        self._file = self._path.stat() if self._path is not None and self._path.exists() else None
+        self._lock = threading.Lock()
+        self.damage: DatabaseDamaged | None = None
+
+    def refuse(self) -> None:
+        """Return if no damage has shown, and the file is still that of the start; raises DatabaseDamaged."""
+        if self.damage is not None:
+            raise self._again(self.damage)
+        self.require_file()
+
+    def require_file(self) -> None:
+        """Return if the file is still that of the start: SQLite would make an empty one in its place."""
+        if self._path is None or self._file is None:
+            return
+        with suppress(OSError):
+            if os.path.samestat(os.stat(self._path), self._file):
+                return
+        lost = "the file was deleted or replaced while the service used it"
+        raise self._named(DatabaseDamaged(str(self._path), [lost]))
+
+    def raise_if_damage(self, error: BaseException | None) -> None:
+        """Return unless an error says that the database is damaged; raises DatabaseDamaged."""
+        if error is not None and is_damage(error):
+            raise self._named(error) from error
+
+    def translated(self, error: Exception) -> Exception:
+        """Return DatabaseDamaged in place of an error that says so; any other error as it is."""
+        try:
+            self.raise_if_damage(error)
+        except DatabaseDamaged as damage:
+            return damage
+        return error
+
+    def _named(self, error: BaseException) -> DatabaseDamaged:
+        with self._lock:
+            if self.damage is None:
+                self.damage = error if isinstance(error, DatabaseDamaged) else self._diagnosed(error)
+                logger.critical("%s", self.damage)
+                self._note(self.damage)
+            return self._again(self.damage)
+
+    def _diagnosed(self, error: BaseException) -> DatabaseDamaged:
+        """Read the whole file once more, because the error names no page."""
+        path = self._path
+        try:
+            damage = faults(path) if path else []
+        except (sqlite3.Error, OSError) as failure:
+            damage = [f"it cannot be examined ({failure})"]
+        return DatabaseDamaged(str(path or "database"), damage or [str(getattr(error, "orig", error))])
+
+    def _note(self, damage: DatabaseDamaged) -> None:
+        if self._path is not None:
+            with suppress(OSError):  # the disk may be the reason
+                marker_of(self._path).write_text("; ".join(damage.faults), encoding="utf-8")
+
+    @staticmethod
+    def _again(damage: DatabaseDamaged) -> DatabaseDamaged:
+        """Return a fresh exception: one that is raised in several threads would collect their tracebacks."""
+        return DatabaseDamaged(damage.database, damage.faults)
+
 
 GROUP = 256  # units in one transaction: bounds how long the first of them waits for the last
 
@@ -41,7 +116,7 @@ class GroupWriter:
     ) -> None:
         self.engine = engine
         self._clock, self._watch, self._on_commit = clock, watch, on_commit
-        self._waiting: queue.SimpleQueue[_Pending | None] = queue.SimpleQueue()
+        self._waiting: queue.SimpleQueue[_PendingUnit | None] = queue.SimpleQueue()
         self._closing = threading.Lock()
         self._closed = False
         self._connection: Connection | None = None  # of the thread
@@ -58,7 +133,7 @@ class GroupWriter:
         """Queue a unit of work; its future raises as `write` does."""
         if self._watch.damage is not None:  # whether the file is still there shows when the group begins
             self._watch.refuse()
-        pending = _Pending(unit)
+        pending = _PendingUnit(unit)
         with self._closing:  # nothing may enter the queue behind its end
             if self._closed:
                 raise DatabaseClosed("The database is closed.")
@@ -89,9 +164,9 @@ class GroupWriter:
         if connection is not None:
             connection.close()
 
-    def _next_group(self) -> tuple[list[_Pending], bool]:
+    def _next_group(self) -> tuple[list[_PendingUnit], bool]:
         """Wait for a unit, then take those that came meanwhile; also return whether more may come."""
-        group: list[_Pending] = []
+        group: list[_PendingUnit] = []
         while not group or (len(group) < GROUP and not self._waiting.empty()):
             pending = self._waiting.get()
             if pending is None:
@@ -100,7 +175,7 @@ class GroupWriter:
                 group.append(pending)
         return group, True
 
-    def _commit(self, group: list[_Pending]) -> None:
+    def _commit(self, group: list[_PendingUnit]) -> None:
         start = time.perf_counter()
         try:
             connection = self._connection = self._connection or self.engine.connect()
@@ -142,7 +217,7 @@ def _savepoint(connection: Connection) -> Iterator[sqlite3.Connection]:
     driver.execute("RELEASE unit")
 
 
-class _Pending:
+class _PendingUnit:
     """A unit of work on its way through the writer thread."""
 
     # `Any`: one queue holds units of every type; `submit` returns the future under the type of its unit.

@@ -13,13 +13,10 @@ from sqlalchemy import bindparam, select
 from sqlalchemy.orm import Session
 
 from app.plain import JsonObject
-from app.storage.clock import operated
+from app.storage.clock import now, operated
 from app.storage.errors import KeyReused
-from app.storage.identity import now
-from app.storage.statements import DRIVER, Statement, Values
 from app.storage.tables import Base, IdempotencyRow
-from app.storage.units import repeatable
-from app.storage.upserts import insert_new_values, upsert_values
+from app.storage.units import DRIVER, Statement, Values, insert_new_values, repeatable, upsert_values
 
 _ROWS = Base.metadata.tables[IdempotencyRow.__tablename__]
 _KEPT = Statement(

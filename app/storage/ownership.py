@@ -18,8 +18,7 @@ from app.storage.errors import StoreRefused
 from app.storage.folder import DataFolder
 from app.storage.stores import opened_store
 from app.storage.tables import CounterRow
-from app.storage.units import repeatable
-from app.storage.upserts import insert_new
+from app.storage.units import insert_new, repeatable
 
 NAME = "database"  # of the row that holds the identity
 

@@ -1,14 +1,33 @@
-"""Units of work: functions that run in one transaction, and their attributes."""
+"""Units of work: functions that run in one transaction, and their statements, compiled once.
+
+At every execution SQLAlchemy looks up the compiled statement, prepares each value and wraps each row. That
+takes several times as long as SQLite itself. On SQLite a `Statement` hands its text and its values to the
+driver, in the transaction of the session; on PostgreSQL SQLAlchemy executes it.
+
+Upserts are rows that several servers may insert at the same time, without reading first.
+"""
 
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
+import sqlite3
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
+from dataclasses import dataclass
+from functools import cache, cached_property
 from typing import Protocol, TypeVar
 
-from sqlalchemy import Engine
+from sqlalchemy import ClauseElement, Engine, Executable, FromClause, Table, inspect
+from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.dialects.sqlite import dialect
+from sqlalchemy.engine.interfaces import Dialect
+from sqlalchemy.exc import DBAPIError
 from sqlalchemy.orm import Session
+from sqlalchemy.sql.compiler import SQLCompiler
+from sqlalchemy.sql.schema import ScalarElementColumnDefault
+
+from app.plain import Json
+from app.storage.tables import Base
 
 logger = logging.getLogger(__name__)
 
@@ -60,3 +79,176 @@ def follow(functions: list[Callable[[], object]]) -> None:
             function()
         except Exception:
             logger.exception("What was to follow a unit of work has failed; the unit is stored")
+
+
+DRIVER = "driver"
+"""Under which the session of a unit of work keeps, in its `info`, the connection of SQLite's driver."""
+READS = "reads by the driver"
+"""Under which the session of a snapshot of SQLite says, in its `info`, that it has such a connection."""
+
+Values = Mapping[str, object]
+Row = Sequence[Json]  # whoever selects columns knows their types
+_Convert = Callable[[object], object]
+_SQLITE: Dialect = dialect(paramstyle="qmark")
+
+
+class Statement:
+    """A statement of SQLAlchemy's Core with named values, to be executed in many units of work.
+
+    Rows that the session has not written yet do not exist for it: flush the session first.
+
+    Parameters
+    ----------
+    clause
+        The statement; defaults of columns that it inserts are constants.
+    names
+        The values that are given at every execution.
+    """
+
+    def __init__(self, clause: Executable, *names: str) -> None:
+        self.clause, self.names = clause, names
+
+    def run(self, session: Session, values: Values | None = None) -> Sequence[Row]:
+        """Execute it and return all rows, if it returns any."""
+        driver: sqlite3.Connection | None = session.info.get(DRIVER)
+        if driver is None and READS in session.info:
+            driver = session.connection().connection.driver_connection
+        if driver is None:
+            result = session.connection().execute(self.clause, values)
+            return result.all() if result.returns_rows else ()
+        compiled = self._compiled
+        row = compiled.parameters(values or {})
+        try:
+            rows = driver.execute(compiled.text, row).fetchall()
+        except sqlite3.Error as error:
+            raise translated(compiled.text, row, error) from error
+        if compiled.reading:
+            rows = list(map(list, rows))
+            for row in rows:
+                for n, convert in compiled.reading.items():
+                    row[n] = convert(row[n])
+        return rows
+
+    def scalar(self, session: Session, values: Values | None = None) -> int | None:
+        """Return the number in the first column of the first row; None if there is no row."""
+        for row in self.run(session, values):
+            number: int | None = row[0]
+            return number
+        return None
+
+    def run_many(self, session: Session, many: Sequence[Values]) -> None:
+        """Execute it once for each of several sets of values; it returns no rows."""
+        driver: sqlite3.Connection | None = session.info.get(DRIVER)
+        if driver is None:
+            session.connection().execute(self.clause, many)
+            return
+        compiled = self._compiled
+        rows = [compiled.parameters(values) for values in many]
+        try:
+            driver.executemany(compiled.text, rows)
+        except sqlite3.Error as error:
+            raise translated(compiled.text, rows, error) from error
+
+    @cached_property
+    def _compiled(self) -> _Compiled:
+        assert isinstance(self.clause, ClauseElement)
+        compiled = self.clause.compile(dialect=_SQLITE, column_keys=list(self.names))
+        assert isinstance(compiled, SQLCompiler)
+        assert compiled.positiontup is not None
+        late = compiled.literal_execute_params or compiled.post_compile_params or compiled.update_prefetch
+        assert not late, "it needs SQLAlchemy at every execution"
+        constants = compiled.construct_params(dict.fromkeys(self.names), _check=False)
+        for column in compiled.insert_prefetch:
+            assert isinstance(column.default, ScalarElementColumnDefault), "its value is computed"
+            constants[column.key] = column.default.arg
+        places = compiled.positiontup
+        assert set(self.names) <= set(places), "each name is that of a value"
+        types = [column.type for column in getattr(self.clause, "exported_columns", ())]
+        return _Compiled(
+            str(compiled),
+            places,
+            {name: constants[name] for name in places if name not in self.names},
+            {n: one for n, name in enumerate(places) if callable(one := compiled._bind_processors.get(name))},
+            {n: one for n, kind in enumerate(types) if (one := kind.result_processor(_SQLITE, None))},
+        )
+
+
+@dataclass(frozen=True)
+class _Compiled:
+    """A statement as SQLite's driver takes it.
+
+    `places` has for each parameter the name of its value; `constants` are those that no caller gives.
+    `writing` converts parameters by their places, `reading` columns of rows. None is NULL in all our columns.
+    """
+
+    text: str
+    places: list[str]
+    constants: Values
+    writing: dict[int, _Convert]
+    reading: dict[int, _Convert]
+
+    def parameters(self, values: Values) -> list[object]:
+        """Return the parameters of one execution."""
+        row = list(map({**self.constants, **values}.__getitem__, self.places))
+        for n, convert in self.writing.items():
+            if row[n] is not None:
+                row[n] = convert(row[n])
+        return row
+
+
+def translated(text: str, parameters: object, error: sqlite3.Error) -> BaseException:
+    """Return the error as SQLAlchemy raises it."""
+    return DBAPIError.instance(text, parameters, error, sqlite3.Error, dialect=_SQLITE)  # type: ignore[call-overload,no-any-return]
+
+
+def insert_new(session: Session, row: Base) -> bool:
+    """Insert a row unless there is one of its key; return whether it was inserted.
+
+    While another transaction is inserting it, this one waits for its end.
+    """
+    values = inspect(row).dict
+    statement = _insertion(row.__table__, tuple(values), _dialect(session))
+    return session.execute(statement.clause, values).first() is not None
+
+
+def insert_new_values(session: Session, table: FromClause, values: Values) -> bool:
+    """Insert a row given as the values of its columns unless its key exists; return whether it did."""
+    return bool(_insertion(table, tuple(values), _dialect(session)).run(session, values))
+
+
+def upsert(session: Session, row: Base) -> None:
+    """Insert a row, or give the one of its key its values; columns that it does not set stay."""
+    values = inspect(row).dict
+    session.execute(_replacement(row.__table__, tuple(values), _dialect(session)).clause, values)
+
+
+def upsert_values(session: Session, table: FromClause, values: Values) -> None:
+    """Insert a row given as the values of its columns, or set these columns of the row of its key."""
+    dialect = "sqlite" if DRIVER in session.info else _dialect(session)
+    _replacement(table, tuple(values), dialect).run(session, values)
+
+
+def _dialect(session: Session) -> str:
+    return "sqlite" if DRIVER in session.info else session.get_bind().dialect.name
+
+
+@cache
+def _insertion(table: FromClause, names: tuple[str, ...], dialect: str) -> Statement:
+    key = list(table.primary_key)
+    statement = _insert(table, dialect).on_conflict_do_nothing(index_elements=key).returning(*key)
+    return Statement(statement, *names)
+
+
+@cache
+def _replacement(table: FromClause, names: tuple[str, ...], dialect: str) -> Statement:
+    key = list(table.primary_key)
+    statement = _insert(table, dialect)
+    columns = {column.name for column in table.columns if not column.primary_key}
+    changed = {name: statement.excluded[name] for name in names if name in columns}
+    return Statement(statement.on_conflict_do_update(index_elements=key, set_=changed), *names)
+
+
+def _insert(table: FromClause, dialect: str) -> postgresql.Insert | sqlite.Insert:
+    """Return the insertion of the database's own kind: the standard knows no conflicts."""
+    assert isinstance(table, Table)
+    return sqlite.insert(table) if dialect == "sqlite" else postgresql.insert(table)

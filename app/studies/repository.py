@@ -11,8 +11,8 @@ from sqlalchemy.orm import Session
 from app.identity.usage import note_bytes
 from app.jobs.turns import UNFINISHED
 from app.plain import JsonObject
+from app.storage.clock import new_id, now
 from app.storage.errors import NotFound
-from app.storage.identity import new_id, now
 from app.storage.tables import StudyChunkRow, StudyRow
 
 

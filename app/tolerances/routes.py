@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request, Response
 
-from app.api.dependencies import ExpensiveSteps, TheThreads, TheTolerances, Units
-from app.api.responses import LATER
-from app.designs.questions import Asked
-from app.designs.routes.answers import Id, Prefer
-from app.designs.routes.solution import answer_asked
-from app.http.clients import TheClient
-from app.http.roles import needs
+from app.api.answers import answered
+from app.api.dependencies import TheTolerances, Units
+from app.api.responses import LATER, patience
+from app.designs.questions import DesignQuestion
+from app.designs.routes.designs import Id, Prefer
+from app.http.access import TheClient, needs
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
 from app.tolerances.bodies import ToleranceIn
 from app.tolerances.schemas import ToleranceAnalysis
 
-router = APIRouter(
-    prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
-)
+router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
 
 
 @router.post(
@@ -30,7 +27,6 @@ router = APIRouter(
 async def analyse_tolerances(
     id: Id,
     tolerances: TheTolerances,
-    threads: TheThreads,
     client: TheClient,
     request: Request,
     body: ToleranceIn | None = None,
@@ -38,5 +34,5 @@ async def analyse_tolerances(
     prefer: Prefer = None,
 ) -> Response:
     """Analyse the tolerances of the newest revision: worst case, scatter, shares, yields."""
-    asked = Asked(id, (body or ToleranceIn()).model_dump_json(exclude_unset=True), units=units)
-    return await answer_asked(tolerances, asked, threads, request, client, prefer)
+    asked = DesignQuestion(id, (body or ToleranceIn()).model_dump_json(exclude_unset=True), units=units)
+    return await answered(tolerances, asked, request, client, patience(prefer, tolerances.steps.deadline))

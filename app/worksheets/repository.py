@@ -9,8 +9,8 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from app.identity.usage import note_bytes
+from app.storage.clock import new_id, now
 from app.storage.errors import NotFound
-from app.storage.identity import new_id, now
 from app.storage.tables import WorksheetVersionRow as Row
 from app.worksheets.errors import StaleWorksheet
 

@@ -68,7 +68,7 @@ def steps(file: str, test: str) -> int | None:
 def tests() -> tuple[str, ...]:
     """Return all test files but those of the pages, which need a browser."""
     files = (file.relative_to(ROOT).as_posix() for file in (ROOT / "tests").rglob("test_*.py"))
-    return tuple(sorted(file for file in files if not file.startswith("tests/web/")))
+    return tuple(sorted(file for file in files if not file.startswith("tests/app/web/")))
 
 
 @cache

@@ -1,4 +1,4 @@
-"""The solid of a crank throw, with or without shaft ends: what is drawn, in millimetres.
+"""The solid of a crank throw: what is drawn, in millimetres.
 
 z is the axis of the main journals, x points from it to the crankpin, z = 0 is the middle of the pin. Each web
 lies at pin_length/2 ≤ |z| ≤ pin_length/2 + web_thickness; front is at -z, rear at +z.
@@ -46,8 +46,6 @@ class Throw:
     drilling: float  # radius
     inclination: float  # of the webs' outer faces [rad]
     incline_start: float  # x at which the outer faces begin to slope
-    front: End | None = None
-    rear: End | None = None
 
     @property
     def inner(self) -> float:
@@ -72,8 +70,8 @@ class Throw:
 
     def solid(self) -> Shape:
         """Return the pin, webs and journals joined, then bored and drilled at once."""
-        web, front, rear = self.web(), self.journal_solid(self.front), self.journal_solid(self.rear)
-        parts = web, web.mirror("XY"), self.pin_solid(), front.mirror("XY"), rear
+        web, journal = self.web(), self.journal_solid(None)
+        parts = web, web.mirror("XY"), self.pin_solid(), journal.mirror("XY"), journal
         whole = fuse(*parts, glue="partial")  # they touch and do not cross: half the time
         tools = [*self._bores()]
         return whole.cut(*tools) if tools else whole
@@ -89,9 +87,8 @@ class Throw:
         Bores go through the whole, not through its parts: where a bore crosses from part to part it would
         have an edge, and a drilling that touches such an edge came out wrong.
         """
-        beyond = max([end.length for end in (self.front, self.rear) if end], default=0.0) + self.journal
         if self.journal_bore > 0:
-            yield bore(self.journal_bore, self.journal_end + beyond, 0.0)
+            yield bore(self.journal_bore, self.journal_end + self.journal, 0.0)
         if self.pin_bore > 0:
             yield bore(self.pin_bore, self.outer + self.journal_length / 2, self.outline.throw)
         if self.drilling > 0:

@@ -16,9 +16,8 @@ from cad.cranks.throw import End, Throw
 
 
 def volume(throw: Throw) -> float:
-    """Return the webs, pin, journals and ends, less bores and drilling."""
-    ends = sum(end_volume(end, throw.journal_bore) for end in (throw.front, throw.rear) if end)
-    return 2 * web(throw) + pin(throw) + 2 * journal(throw) + ends - drilling(throw)
+    """Return the webs, pin and journals, less bores and drilling."""
+    return 2 * web(throw) + pin(throw) + 2 * journal(throw) - drilling(throw)
 
 
 def web(t: Throw) -> float:

@@ -41,7 +41,7 @@ class BearingAssembly(CadModel):
 
     Limits
     ------
-    Shells without groove, tang or relief (`plain_bearing` 2 has them), a housing of two boxes without bolts
+    Shells without groove, tang or relief (`plain_bearing` has them), a housing of two boxes without bolts
     (`bearing_housing` has them). Nothing is deformed: neither the tightened shell nor the pressure of its
     seat is calculated.
 

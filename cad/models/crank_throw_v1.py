@@ -5,11 +5,31 @@ Without oil drilling it is its own mirror image in z = 0, and always in y = 0. W
 the class below, which users read; parameters, rules and the solid are those of `cad.cranks`.
 """
 
-from cad.cranks.crank import CrankModel
+from collections.abc import Mapping
+from math import sin
+
+from cad.cranks.outline import Outline
+from cad.cranks.rules import CrankRules
+from cad.cranks.throw import Throw
+from cad.cranks.throw_readback import (
+    Webs,
+    counterweight,
+    drilling,
+    fillet,
+    inclination,
+    journal_bore,
+    pin,
+    stubs,
+)
+from cad.cranks.volume import volume
+from cad.fillets import Crank
+from cad.model import Box, Part, mm
+from cad.shaft import Shaft
+from cad.surfaces import Seen, Y
 from templates.core.language.template import Array, formula
 
 
-class CrankThrow(CrankModel):
+class CrankThrow(CrankRules):
     """Crank throw from mid-journal to mid-journal, solid or bored, with fillets and counterweights.
 
     z is the axis of the main journals, x points from it to the pin, z = 0 is mid-pin; the cut faces stand
@@ -67,3 +87,78 @@ class CrankThrow(CrankModel):
     @formula("mm", "journal length on each side", name="journal_side", symbol="L_s")
     def L_s(self) -> Array:
         return self.L_j / 2
+
+    def drawn(self) -> Throw:
+        """Return the parameters as radii, lengths and angles of what is drawn."""
+        return Throw(
+            outline=Outline(
+                throw=mm(self.R),
+                half_width=mm(self.W) / 2,
+                rectangular=self.web_shape == "rectangular",
+                counterweight=mm(self.R_w),
+                half_angle=float(self.phi_w) / 2,
+            ),
+            web_thickness=mm(self.L_w),
+            journal=mm(self.D_j) / 2,
+            journal_bore=mm(self.d_j) / 2,
+            journal_length=mm(self.L_s),
+            pin=mm(self.D_c) / 2,
+            pin_bore=mm(self.d_c) / 2,
+            pin_length=mm(self.L_c),
+            fillet=mm(self.r_f),
+            drilling=mm(self.d_o) / 2,
+            inclination=float(self.beta),
+            incline_start=mm(self.x_b),
+        )
+
+    def build(self) -> tuple[Part, ...]:
+        """Return one solid."""
+        throw = self.drawn()
+        return (Part(self.id, throw.solid(), volume(throw)),)
+
+    def bounding_box(self) -> Box:
+        """Return the webs and counterweights together."""
+        throw = self.drawn()
+        web, end = throw.outline, throw.journal_end
+        wide = max(web.half_width, web.counterweight * sin(web.half_angle))
+        return Box((-max(web.half_width, web.counterweight), -wide, -end), (web.tip, wide, end))
+
+    def shaft(self) -> Shaft:
+        """Return where it is held and loaded: by its end faces at -z and at +z."""
+        end = self.drawn().journal_end
+        return Shaft(-end, end)
+
+    @classmethod
+    def is_throw(cls) -> bool:
+        """Return True: it is one throw from mid-journal to mid-journal."""
+        return True
+
+    def throw_sizes(self) -> Crank:
+        """Return the plain sizes of the throw."""
+        drawn = self.drawn()
+        return Crank(
+            drawn.outline.throw,
+            drawn.pin,
+            drawn.pin_length,
+            drawn.journal,
+            drawn.web_thickness,
+            drawn.fillet,
+        )
+
+    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+        """Return every parameter; the angle of a counterweight only if there is one."""
+        surfaces, webs = seen[self.id], Webs.of(seen[self.id])
+        front, rear = (stub[0] for stub in stubs(surfaces, webs))
+        return {
+            "journal_diameter": max(front.diameter, rear.diameter),
+            "journal_length": front.reach[1] + webs.faces[0] + rear.reach[1] - webs.faces[3],
+            "journal_bore": journal_bore(surfaces, webs),
+            **pin(surfaces, webs),
+            "pin_length": webs.apart,
+            "web_thickness": webs.thickness,
+            "web_width": surfaces.length(Y),
+            "fillet": fillet(surfaces),
+            "oil_drilling_diameter": drilling(surfaces),
+            **counterweight(surfaces, webs),
+            "face_inclination": inclination(surfaces),
+        }

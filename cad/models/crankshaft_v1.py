@@ -1,68 +1,95 @@
-"""Crankshaft of a single-cylinder engine: a throw, its two main journals, a flywheel end and a timing end.
+"""Crankshaft of any number of throws, undivided or with split pins: journals, counterweights, nose, flange.
 
-For mass, inertia and torsion of a whole shaft. Its throw is that of `crank_throw`; what its words mean is
-said in the class below, which users read.
+The throw is that of `crank_throw`; what its words mean is said in the class below, which users read.
 """
 
 from collections.abc import Mapping
 
-from cad.cranks.crank import CrankModel
-from cad.cranks.throw import End
-from cad.cranks.throw_readback import Webs, stubs
-from cad.model import mm
+import numpy as np
+
+from cad.cranks.counterweights import count, sectors, stand_out, there_is_none, webs_of
+from cad.cranks.crankshaft_readback import ShaftSeen
+from cad.cranks.end_parameters import EndParameters
+from cad.cranks.outline import Outline
+from cad.cranks.rules import clear_of_corners, corner
+from cad.cranks.split_parameters import SplitParameters, are_split, shortest, where_split
+from cad.cranks.split_pins import SplitPins
+from cad.cranks.throw import Throw
+from cad.cranks.whole import Throws, WholeShaft
+from cad.model import Box, Dimension, Part, mm
+from cad.shaft import Shaft
 from cad.surfaces import Seen
-from templates.core.language.template import Array, Truth, derived, formula, require
+from templates.core.language.template import Array, Truth, curve, formula, profile, require
+
+MOST_THROWS = 16
 
 
-class Crankshaft(CrankModel):
-    """Crankshaft with one throw: two main journals, a flywheel end and a timing end.
+class Crankshaft(SplitParameters, EndParameters):
+    """Crankshaft with any number of throws, their pins undivided or split: counterweights, nose and flange.
 
-    z is the axis on which the shaft turns, x points from it to the pin, z = 0 is mid-pin. The timing end is
-    the front, at -z; the flywheel end is the rear, at +z. Both main journals are drawn in their whole length.
-    Beyond each stands a plain cylinder: a seat for a wheel or, if it is wider than the journal, a flange. A
-    bore, fillet, oil drilling, counterweight or inclination of 0 is none.
+    z is the axis on which the shaft turns; z = 0 is the middle of the first main journal. The nose is at -z,
+    the flange at +z, where an engine has its flywheel. Pin angles count from x towards y, as those of
+    `engine` 1; their number is that of the throws. All throws are alike but for their counterweights.
 
-    Fillets run round the pin and the journals where they meet a web. The journals' bore goes through the
-    whole shaft, the pin's through the pin and both webs. The oil drilling is straight: from mid-pin, on the
-    side away from the shaft, through the web at +z, to mid-length of the rear journal, on its other side. The
-    counterweights are sectors about the shaft opposite to the pin, as thick as their webs.
+    A pin split of 0 is none: one pin a throw. Else each throw has a front pin at its
+    pin angle and a rear pin further on by the split, each as long as the pin length, each for one rod, and
+    between them a middle web: two half circles about the pins, joined by lines. Each outer web, with its
+    counterweight, stands as the pin beside it.
 
-    The face inclination takes material off the outer face of each web, from beside the journal's fillet to
-    the end beyond the pin: 0 is the heaviest web. To add material there, as Punewale et al. do, make it
-    smaller.
+    A bore, fillet, oil drilling, counterweight, bolt hole or inclination of 0 is none. Counterweight radii
+    are one number, or one for each outer web from the nose on, two for each throw; their angle is common.
+
+    Fillets run round pins and journals where they meet a web. The journals' bore goes through the whole
+    shaft, each pin's through the pin and both webs; of split pins through its outer web up to the middle web.
+    An oil drilling runs straight from mid-pin, on the side away from the shaft, through the web towards the
+    flange, to mid-length of the next main journal, on its other side; that of a front pin likewise to the
+    main journal before it. The counterweights are sectors about the shaft opposite to the pin, as thick as
+    their webs. Bolt holes are blind with flat bottoms, the first on the line x.
+
+    The face inclination takes material off the outer face of each outer web, from beside the journal's fillet
+    to the end beyond the pin: 0 is the heaviest web.
+
+    The rotating couple, the integral of z (x + i y) over the mass, follows from what is measured:
+    mass centre_z centre_x - inertia_xz, and mass centre_z centre_y - inertia_yz.
 
     Limits
     ------
-    One throw with two webs alike, at least 2 % wider than journal and pin with their fillets. Journals, pin
-    and ends are plain cylinders without grooves, keyways, threads or fillets at the ends' shoulders; a
-    counterweight spans at most half a turn.
+    At most 16 throws of one size, all split by the same angle, of at least 1 deg; webs at least 2 % wider
+    than journal and pin with their fillets. Journals, pins, nose and flange are plain cylinders without
+    grooves, keyways, threads or fillets at the shoulders of the ends; a counterweight spans at most half a
+    turn. Two drillings that end in one journal keep apart, so throws whose neighbouring pins stand at nearly
+    one angle are refused with drillings. The analysis `unit_loads` does not know split pins.
 
     References
     ----------
-    Punewale, Khobragade, Chaudhari and Khandre 2015: a crankshaft changed at pin, journals, throw and on the
-        face inclination of its webs.
+    Own closed form of the volume: the parts touch in faces, so their volumes add.
     """
 
     example = {
-        "journal_diameter": "40 mm",
-        "journal_length": "32 mm",
+        "pin_angles": {"value": [0, 120, 240], "unit": "deg"},
+        "pin_split": "30 deg",
+        "middle_web_thickness": "9 mm",
+        "journal_diameter": "55 mm",
+        "journal_length": "26 mm",
         "journal_bore": "12 mm",
-        "pin_diameter": "36 mm",
-        "pin_length": "26 mm",
-        "pin_bore": "10 mm",
-        "web_thickness": "16 mm",
-        "web_width": "60 mm",
-        "web_shape": "rectangular",
-        "throw": "40 mm",
+        "pin_diameter": "48 mm",
+        "pin_length": "24 mm",
+        "pin_bore": "14 mm",
+        "web_thickness": "18 mm",
+        "web_width": "80 mm",
+        "throw": "43 mm",
         "fillet": "2.5 mm",
         "oil_drilling_diameter": "5 mm",
-        "counterweight_radius": "64 mm",
+        "counterweight_radius": {"value": [70, 0, 0, 0, 0, 70], "unit": "mm"},
         "counterweight_angle": "130 deg",
-        "face_inclination": "10 deg",
-        "front_length": "45 mm",
-        "front_diameter": "30 mm",
-        "rear_length": "12 mm",
-        "rear_diameter": "70 mm",
+        "face_inclination": "6 deg",
+        "nose_length": "45 mm",
+        "nose_diameter": "35 mm",
+        "flange_thickness": "16 mm",
+        "flange_diameter": "90 mm",
+        "bolt_holes": 6,
+        "bolt_hole_diameter": "10 mm",
+        "bolt_circle_diameter": "68 mm",
     }
     toleranced = {
         "journal_diameter": {"cylinders": "z", "datum": "A", "cylindricity": 0.5},
@@ -71,74 +98,150 @@ class Crankshaft(CrankModel):
         "pin_bore": {"beside": "z"},
         "throw": {"between": ["journal_diameter", "pin_diameter"]},
         "oil_drilling_diameter": {"askew": True},
-        "front_diameter": {"cylinders": "z", "end": "low", "cylindricity": 0.5},
-        "rear_diameter": {"cylinders": "z", "end": "high"},
+        "nose_diameter": {"cylinders": "z", "end": "low", "cylindricity": 0.5},
+        "flange_diameter": {"cylinders": "z", "end": "high"},
+        "bolt_hole_diameter": {"beside": "z"},
+        "journal_length": {"shoulders": "journal_diameter"},
+        "pin_length": {"shoulders": "pin_diameter", "perpendicularity": 1, "to": "A"},
+        "web_thickness": {"discs": ["journal_diameter", "pin_diameter", "nose_diameter", "flange_diameter"]},
+        "middle_web_thickness": {
+            "discs": ["journal_diameter", "pin_diameter", "nose_diameter", "flange_diameter"]
+        },
     }
+
+    R_w: Array = curve(
+        "mm",
+        "counterweight radius",
+        along="webs",
+        constant=True,
+        symbol="R_w",
+        default="0 mm",
+        ge=0,
+        le=10000,
+    )
 
     @formula("mm", "journal length on each side", name="journal_side", symbol="L_s")
     def L_s(self) -> Array:
         return self.L_j
 
-    @derived("mm", "front length", symbol="L_f", ge=0.05, le=5000)
-    def L_f(self) -> Array:
-        return 0.8 * self.D_j
+    @formula("1", "throws", symbol="n")
+    def n(self) -> Array:
+        return count(self.psi)
 
-    @derived("mm", "front diameter", symbol="D_f", ge=0.1, le=5000)
-    def D_f(self) -> Array:
-        return 0.8 * self.D_j
+    @formula("mm", "pitch of the mains", name="pitch", symbol="p")
+    def p(self) -> Array:
+        """Two pins and a middle web if they are split."""
+        return self.L_c + where_split(self.delta, self.L_c + self.L_m) + 2 * self.L_w + self.L_j
 
-    @derived("mm", "rear length", symbol="L_r", ge=0.05, le=5000)
-    def L_r(self) -> Array:
-        return 0.8 * self.D_j
-
-    @derived("mm", "rear diameter", symbol="D_r", ge=0.1, le=5000)
-    def D_r(self) -> Array:
-        return 0.9 * self.D_j
+    @profile("mm**2", "counterweight sector", along="webs", symbol="A_w")
+    def A_w(self) -> Array:
+        """Area of the sector that makes a counterweight, from the journal's axis on."""
+        return sectors(self.R_w, self.phi_w, self.n)
 
     @formula("mm", "overall length", symbol="L")
     def L(self) -> Array:
-        return self.L_f + 2 * (self.L_j + self.L_w) + self.L_c + self.L_r
+        return self.L_n + self.n * self.p + self.L_j + self.t_f
 
-    @formula("mm", "wall at the front end", name="front_wall", symbol="w_f")
-    def w_f(self) -> Array:
-        return (self.D_f - self.d_j) / 2
+    @require("pin_angles", remedy="give an angle for each throw, 1 to 16 of them")
+    def throws_are_few(self) -> Truth:
+        """There are at most 16 throws."""
+        return self.n <= MOST_THROWS
 
-    @formula("mm", "wall at the rear end", name="rear_wall", symbol="w_r")
-    def w_r(self) -> Array:
-        return (self.D_r - self.d_j) / 2
+    @require("counterweight_radius", "pin_angles", remedy="give one number, or two for each throw")
+    def each_web_has_its_counterweight(self) -> Truth:
+        """Counterweight radii are one number, or one for each web."""
+        return webs_of(self.R_w, self.n) == 2 * self.n
 
-    @require("front_diameter", "journal_bore", remedy="make the front end thicker or the bore smaller")
-    def front_has_wall(self) -> Truth:
-        """The journals' bore takes at most 98 % of the front end's diameter."""
-        return self.d_j <= 0.98 * self.D_f
+    @require("fillet", "journal_length", remedy="make the fillet smaller or the journal longer")
+    def fillets_fit_on_journal(self) -> Truth:
+        """The two fillets of a journal between two throws take at most 90 % of its length."""
+        return (self.n <= 1) | (2 * self.r_f <= 0.9 * self.L_j)
 
-    @require("rear_diameter", "journal_bore", remedy="make the rear end thicker or the bore smaller")
-    def rear_has_wall(self) -> Truth:
-        """The journals' bore takes at most 98 % of the rear end's diameter."""
-        return self.d_j <= 0.98 * self.D_r
+    @require(
+        "counterweight_radius", "web_width", "web_shape",
+        remedy="make the counterweight's radius larger, or 0 for none",
+    )  # fmt: skip
+    def counterweight_stands_out(self) -> Truth:
+        """A counterweight reaches at least 2 % further from the journal's axis than the web does there."""
+        return stand_out(self.R_w, 1.02 * corner(self.web_shape, self.W))
 
-    @require("front_diameter", "journal_diameter", remedy="make them equal, or change one by 0.1 %")
-    def front_shoulder_is_drawable(self) -> Truth:
-        """The front end is as thick as the journal, or differs from it by at least 0.1 %."""
-        return (abs(self.D_f - self.D_j) <= 1e-12 * self.D_j) | (abs(self.D_f - self.D_j) >= 1e-3 * self.D_j)
+    @require("counterweight_angle", "web_shape", remedy="meet the corner exactly, or keep off it by 0.1°")
+    def flanks_clear_corners(self) -> Truth:
+        """The counterweight's flanks meet corners (obround 180°, rectangular 90°) or miss by 0.1°."""
+        return there_is_none(self.R_w) | clear_of_corners(self.web_shape, self.phi_w)
 
-    @require("rear_diameter", "journal_diameter", remedy="make them equal, or change one by 0.1 %")
-    def rear_shoulder_is_drawable(self) -> Truth:
-        """The rear end is as thick as the journal, or differs from it by at least 0.1 %."""
-        return (abs(self.D_r - self.D_j) <= 1e-12 * self.D_j) | (abs(self.D_r - self.D_j) >= 1e-3 * self.D_j)
+    def drawn(self) -> WholeShaft:
+        """Return the parameters as radii, lengths and angles of what is drawn."""
+        angles = np.atleast_1d(self.psi).tolist()
+        radii = [mm(radius) for radius in np.broadcast_to(self.R_w, 2 * len(angles))]
+        throws = (
+            Throws(self._throw(radii[2 * k]), self._throw(radii[2 * k + 1]), angle)
+            for k, angle in enumerate(angles)
+        )
+        return WholeShaft(tuple(throws), *self.ends_drawn(), self._split())
 
-    def ends(self) -> tuple[End, End]:
-        """Return the timing end and flywheel end."""
-        return End(mm(self.D_f) / 2, mm(self.L_f)), End(mm(self.D_r) / 2, mm(self.L_r))
+    def _split(self) -> SplitPins | None:
+        if not are_split(self.delta):
+            return None
+        return SplitPins(float(shortest(self.delta)), mm(self.L_m), mm(self.W_m) / 2)
 
-    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
-        """Return those of the throw, and the cylinders that come last at either end."""
-        found = seen[self.id]
-        front, rear = stubs(found, Webs.of(found))
-        return {
-            **super().dimensions(seen),
-            "front_length": front[1].reach[1] - front[0].reach[1],
-            "front_diameter": front[1].diameter,
-            "rear_length": rear[1].reach[1] - rear[0].reach[1],
-            "rear_diameter": rear[1].diameter,
+    def _throw(self, counterweight: float) -> Throw:
+        return Throw(
+            outline=Outline(
+                throw=mm(self.R),
+                half_width=mm(self.W) / 2,
+                rectangular=self.web_shape == "rectangular",
+                counterweight=counterweight,
+                half_angle=float(self.phi_w) / 2,
+            ),
+            web_thickness=mm(self.L_w),
+            journal=mm(self.D_j) / 2,
+            journal_bore=mm(self.d_j) / 2,
+            journal_length=mm(self.L_j),
+            pin=mm(self.D_c) / 2,
+            pin_bore=mm(self.d_c) / 2,
+            pin_length=mm(self.L_c),
+            fillet=mm(self.r_f),
+            drilling=mm(self.d_o) / 2,
+            inclination=float(self.beta),
+            incline_start=mm(self.x_b),
+        )
+
+    def build(self) -> tuple[Part, ...]:
+        """Return one solid."""
+        shaft = self.drawn()
+        return (Part(self.id, shaft.solid(), shaft.volume()),)
+
+    def bounding_box(self) -> Box:
+        """Return the webs, counterweights, nose and flange together."""
+        return self.drawn().box()
+
+    def shaft(self) -> Shaft:
+        """Return where it is held and loaded: by the end of its nose and by its flange."""
+        shaft = self.drawn()
+        return Shaft(shaft.low, shaft.high)
+
+    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, Dimension]:
+        """Return every parameter; the angle of counterweights and the bolt circle only if there are any."""
+        split = bool(are_split(self.delta))
+        found = ShaftSeen(seen[self.id], split)
+        front, rear = found.ends
+        radii = found.counterweights()
+        near = np.degrees(np.atleast_1d(self.psi)).tolist()
+        dimensions: dict[str, Dimension] = {
+            "pin_angles": found.pin_angles(near),
+            **found.common(),
+            "pin_split": found.pin_split(float(np.degrees(self.delta))),
+            "counterweight_radius": radii,
+            "nose_length": front[1].reach[1] - front[0].reach[1],
+            "nose_diameter": front[1].diameter,
+            "flange_thickness": rear[1].reach[1] - rear[0].reach[1],
+            "flange_diameter": rear[1].diameter,
+            **found.bolts(),
         }
+        if split:
+            dimensions |= found.middle_web()
+        if max(radii) > 0:
+            wanted = float(np.degrees(self.phi_w))
+            dimensions["counterweight_angle"] = found.counterweight_angle(radii, wanted)
+        return dimensions

@@ -1,214 +1,257 @@
-"""Plain bearing shell, half or full, with an oil groove around the bore and an oil hole at the crown.
+"""Plain bearing: half shells, in their housing or free, or a full bush; see the class below.
 
-For crankshaft main, big-end and small-end bearings. The bore is the finished one: the caller adds the
-clearance. The half shell stands on the side +y, its joint in the plane y = 0; the hole points along +y in
-either shell. A hole of no diameter is no hole, a groove of no width or no depth is no groove. No crush
-height, locating lug or relief is drawn.
-
-References
-----------
-ISO 3548-1:2014, Plain bearings, thin-walled half bearings, part 1: tolerances, design features and methods of
-    test.
+Parameters and rules are in `cad.shells`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from math import acos, cos, pi, sin, sqrt
 
 import numpy as np
-from cadquery import Shape, Solid, Vector
-from cadquery.func import cut, face, polyline, revolve
-from scipy.integrate import quad
+from cadquery import Location, Vector
 
-from cad.model import BRONZE, Box, CadModel, Part, mm
-from cad.surfaces import Seen, Y, Z
-from templates.core.language.template import Array, Truth, choice, derived, formula, given, require, units
+from cad.model import BRIGHT_STEEL, STEEL, Box, Part, mm
+from cad.shells.half_shell import Flange, FullBush, Groove, HalfShell, Tang
+from cad.shells.parameters import joints
+from cad.shells.relief import Relief
+from cad.shells.rules import ShellRules
+from cad.shells.shell_readback import ShellSeen
+from cad.shells.spread import FreeShellSeen, half_angle, reach_of
+from cad.surfaces import Seen
+from templates.core.language.template import (
+    Array,
+    Truth,
+    choice,
+    derived,
+    formula,
+    require,
+    units,
+)
 
-
-@dataclass(frozen=True)
-class Shell:
-    """What is drawn [mm]: radii from the axis of the bore."""
-
-    bore: float
-    groove: float  # radius of its bottom; that of the bore if there is no groove
-    outside: float
-    half_width: float
-    half_groove: float  # half its width
-    hole: float  # radius
-    turn: float  # 180° or 360°
-
-    def outline(self) -> list[tuple[float, float]]:
-        """Return the cross-section as a closed line through (r, z)."""
-        r, g, R, b, w = self.bore, self.groove, self.outside, self.half_width, self.half_groove
-        groove = [(r, w), (g, w), (g, -w), (r, -w)] if g > r and w > 0 else []
-        return [(r, -b), (R, -b), (R, b), (r, b), *groove, (r, -b)]
-
-    def solid(self) -> Shape:
-        """Return the outline turned about z from +x over +y.
-
-        A full turn begins at -y, its seam off the hole.
-        """
-        start = (0, -1) if self.turn == 360 else (1, 0)
-        points = (Vector(r * start[0], r * start[1], z) for r, z in self.outline())
-        turned = revolve(face(polyline(*points)), (0, 0, 0), (0, 0, 1), self.turn)
-        return cut(turned, self.drill()) if self.hole > 0 else turned
-
-    def drill(self) -> Solid:
-        """Return what the oil hole takes away, from the axis to beyond the crown."""
-        return Solid.makeCylinder(self.hole, 1.1 * self.outside, Vector(0, 0, 0), Vector(0, 1, 0))
-
-    def volume(self) -> float:
-        """Return the turned outline less the hole [mm³]."""
-        wall = (self.outside**2 - self.bore**2) * self.half_width
-        groove = (self.groove**2 - self.bore**2) * self.half_groove
-        return 2 * pi * (wall - groove) * self.turn / 360 - self.hole_volume()
-
-    def hole_volume(self) -> float:
-        """What the hole takes out of the wall [mm³]: its chords along y, summed over the hole's circle.
-
-        With x = a sin t and z = a cos t on the circle of radius a the integrand is smooth; it has one kink,
-        where the circle crosses the edge of the groove.
-        """
-        a, w = self.hole, self.half_groove
-        if a == 0:
-            return 0.0
-        kink = acos(min(w / a, 1.0))
-        pieces = ((0.0, kink), (kink, pi / 2))
-        return 2 * sum(quad(self._slice, low, high, epsabs=0, epsrel=1e-11)[0] for low, high in pieces)
-
-    def _slice(self, t: float) -> float:
-        """Return the area of the hole's section at x = a sin t within the wall, times dx/dt [mm³]."""
-        x, z = self.hole * sin(t), self.hole * cos(t)
-        in_groove = min(z, self.half_groove)
-        outside, groove, bore = (sqrt(R * R - x * x) for R in (self.outside, self.groove, self.bore))
-        return 2 * z * (z * outside - in_groove * groove - (z - in_groove) * bore)
+LINING_DENSITY = 3110.0  # kg/m³, of AlSn20Cu: mixture of its elements by mass
+_ANGLE_DIGITS = 12  # decimals of an angle [rad], so that equal parameters give equal bytes
+WHOLE = 3.14159  # rad; a groove of so much goes from joint to joint
+LININGS = ("upper_lining", "lower_lining", "full_lining")
+BACKS = ("upper_back", "lower_back", "full_back")
 
 
-class PlainBearing(CadModel):
-    """Plain bearing shell, half or full, with an oil groove and an oil hole.
+@units(None, returns="1")
+def is_fitted(state: str) -> Truth:
+    """Return whether a shell is drawn as the housing holds it."""
+    return np.asarray(state == "fitted")
 
-    The shell is one solid of steel, by whose density its mass is computed. Its colour is that of the running
-    surface: the lining is too thin to be a body of its own.
+
+class PlainBearing(ShellRules):
+    """Plain bearing: a pair of half shells, one of them, or a full bush; in the housing or free.
+
+    z is along the shaft, the joint in the plane y = 0, the crown of the upper shell at +y. The upper shell
+    has the oil groove and the oil hole, the lower one is plain. Back and lining are bodies of their own, the
+    back of steel, the lining of an aluminium-tin alloy; a groove deeper than the lining, from joint to joint,
+    parts it in two rings. A shell without lining is one body of steel. The bore is the finished one: the
+    caller adds the clearance.
+
+    - *Full*: a bush all round with its oil hole at the crown, without joint, tang, relief and crush height.
+      Its groove of 180° runs all round, a shorter one about the crown.
+    - *Tang*: the lip at the back beside the joint on the side +x that locates the shell; its length is
+      along the wall, its middle at a quarter of the width, on the side -z. The lower shell mirrors the upper
+      one, so the tangs meet. The notch inside, where the tang was pressed out, is not drawn.
+    - *Relief*: beside each joint the bore opens gradually, to the relief's depth at the joint.
+    - *Chamfers* of 45°: of the bore at both ends, of the back at ends without a flange.
+    - *Groove angle*: the turn of the groove about the crown; 180° is from joint to joint.
+    - *Flanges*: collars of the back for thrust, one at +z or two.
+    - *Crush height*: by so much each end of the wall goes on straight beyond the half circle, as before the
+      cap is tightened. The upper shell's crown keeps its place; in a pair the shells stand apart by it.
+    - *Free spread*: by so much a shell that nothing holds is wider over the outer edges of its joints than
+      its outside in the housing. It is what holds a shell in its seat while the engine is put together.
+    - *State*: `fitted` draws the shell as its housing holds it, and the free spread is a number only. `free`
+      draws it as it lies on a table: an arc of larger radius and less than half a turn. The middle of its
+      wall is as long as in the housing, which makes the volume of a plain wall the same. Sizes at a joint
+      (tang, relief, crush height) are those beside that joint; the groove keeps its length along the wall.
+      Diameters and the groove's angle are given as in the housing for both states.
+
+    A lining, tang, relief, hole, flange or chamfer of no size is none, as is a groove of no depth.
+
+    Limits
+    ------
+    Which features a shell has, and what they are called, is as in ISO 3548-1; it gives no sizes of most of
+    them. Sizes by default are typical of engines and no standard's: the free spread is 1 % of the bore;
+    Cummins' manual states about 0.64 mm. The wall is of one thickness (no eccentric bore).
+
+    A free shell bends evenly: that a groove or a flange makes it stiffer or softer in places is left out, as
+    are the pressure of the seat and the spread that is lost when the engine is hot. A diameter of the bore,
+    and of a flange, carries no tolerance in the file of a free shell, because no face has it.
+
+    The tolerance of a wall with a lining lies between a face of the lining and one of the back, so in the
+    file it joins two parts.
+
+    References
+    ----------
+    ISO 3548-1:2014, Plain bearings, thin-walled half bearings, part 1: tolerances, design features and
+        methods of test; 4.4, free spread.
+    TM 5-3820-256-24-5 (Cummins CGES-185-3), Connecting rods, pistons, rings and sleeves, figure 11: bearing
+        spread, the width over the open ends beyond the bore of rod or crankcase.
+    ISO 4383:2012, Plain bearings, multilayer materials for thin-walled plain bearings: AlSn20Cu on steel. Its
+        density here is that of the mixture of its elements.
     """
 
-    example = {"inner_diameter": "48 mm"}
-    film_bore = "inner_diameter"
-    toleranced = {
-        "inner_diameter": {"of": "shell", "cylinders": "z", "datum": "A", "cylindricity": 0.5},
-        "wall": {"of": "shell", "walls": "z"},
-        "width": {"of": "shell", "planes": "z", "perpendicularity": 1, "to": "A"},
-        "oil_hole_diameter": {"of": "shell", "cylinders": "y"},
-        "oil_groove_width": {"of": "shell", "planes": "z", "levels": [[1, 2]]},
+    example = {
+        "inner_diameter": "48 mm",
+        "wall": "2.4 mm",
+        "width": "24 mm",
+        "shells": "upper",
+        "lining_thickness": "0.6 mm",
+        "oil_hole_diameter": "4 mm",
+        "oil_groove_width": "5 mm",
+        "oil_groove_depth": "0.8 mm",
+        "oil_groove_angle": "120 deg",
+        "tang_width": "4 mm",
+        "tang_length": "4 mm",
+        "tang_height": "1 mm",
+        "relief_height": "6 mm",
+        "relief_depth": "0.02 mm",
+        "inner_chamfer": "0.2 mm",
+        "outer_chamfer": "0.5 mm",
+        "flange_diameter": "64 mm",
+        "flange_thickness": "2.5 mm",
+        "flanges": 1,
+        "crush_height": "0.06 mm",
+        "state": "fitted",
+        "free_spread": "0.6 mm",
     }
+    film_bore = "inner_diameter"
+    rounds_noise = True
+    toleranced = {
+        "inner_diameter": {"of": [*LININGS, *BACKS], "cylinders": "z", "datum": "A", "cylindricity": 0.5},
+        "wall": {"of": BACKS, "inside": LININGS, "walls": "z"},
+        "lining_thickness": {"of": LININGS, "walls": "z"},
+        "width": {"of": BACKS, "planes": "z", "perpendicularity": 1, "to": "A"},
+        "flange_diameter": {"of": BACKS, "cylinders": "z"},
+        "flange_thickness": {"of": BACKS, "planes": "z", "levels": [[-2, -1]]},
+        "oil_hole_diameter": {"of": BACKS, "along": "y"},
+        "oil_groove_width": {"of": [*LININGS, *BACKS], "sides": "z"},
+    }  # fmt: skip
 
-    d: Array = given("mm", "inner diameter", symbol="d", ge=1, le=5000, also=("bearing diameter", "bore"))
+    state: str = choice("fitted", "free", words="state", default="fitted")
 
-    @derived("mm", "wall", symbol="t", ge=0.04, le=1000)
-    def t(self) -> Array:
-        return 0.05 * self.d
+    @derived("mm", "free spread", symbol="s_f", ge=0, le=500)
+    def s_f(self) -> Array:
+        """A hundredth of the bore; none of a full bush."""
+        return joints(self.shells) * 0.01 * self.d
 
-    @derived("mm", "width", symbol="B", ge=0.1, le=5000, also=("bearing width",))
-    def B(self) -> Array:
-        return 0.5 * self.d
+    @formula("mm", "length of the wall's middle from crown to leg", name="half_length", symbol="L_h")
+    def L_h(self) -> Array:
+        return np.pi / 4 * (self.d + self.t)
 
-    shell: str = choice("full", "half", words="shell", default="half")
+    @formula("mm", "width over the joints, free", name="free_width", symbol="W_f")
+    def W_f(self) -> Array:
+        return self.D + self.s_f
 
-    @derived("mm", "oil hole diameter", symbol="d_h", ge=0, le=1000)
-    def d_h(self) -> Array:
-        return np.minimum(0.08 * self.d, 0.2 * self.B)
+    @formula("deg", "angle from crown to joint, free", name="free_angle", symbol=r"\varphi_f")
+    def phi_f(self) -> Array:
+        return half_angle(self.L_h, self.t, self.a, self.W_f)
 
-    @derived("mm", "oil groove width", symbol="w_g", ge=0, le=1000)
-    def w_g(self) -> Array:
-        return np.minimum(1.25 * self.d_h, 0.9 * self.B)
+    @formula("mm", "bore's radius, free", name="free_bore_radius", symbol="r_f")
+    def r_f(self) -> Array:
+        return self.L_h / self.phi_f - self.t / 2
 
-    @derived("mm", "oil groove depth", symbol="t_g", ge=0, le=500)
-    def t_g(self) -> Array:
-        return 0.3 * self.t * np.sign(self.w_g)
+    @require("free_spread", "inner_diameter", remedy="make the free spread smaller")
+    def spread_is_small(self) -> Truth:
+        """The free spread is at most 10 % of the bore."""
+        return self.s_f <= 0.1 * self.d
 
-    @formula("mm", "outer diameter", symbol="D")
-    def D(self) -> Array:
-        return self.d + 2 * self.t
+    @require("state", "free_spread", "inner_diameter",
+             remedy="make the free spread larger, or draw the shell fitted")  # fmt: skip
+    def a_free_shell_is_spread(self) -> Truth:
+        """A shell that is drawn free has a free spread of at least 0.05 % of the bore."""
+        return is_fitted(self.state) | (self.s_f >= 0.0005 * self.d)
 
-    @require("oil_groove_width", "width", remedy="make the groove narrower or the bearing wider")
-    def groove_within_width(self) -> Truth:
-        """The oil groove takes at most 90 % of the width."""
-        return self.w_g <= 0.9 * self.B
-
-    @require("oil_groove_depth", "wall", remedy="make the groove shallower or the wall thicker")
-    def groove_within_wall(self) -> Truth:
-        """The oil groove takes at most 80 % of the wall."""
-        return self.t_g <= 0.8 * self.t
-
-    @require("oil_groove_depth", "oil_groove_width", remedy="give the groove a width, or no depth")
-    def groove_has_width(self) -> Truth:
-        """An oil groove that has a depth has a width."""
-        return (self.t_g == 0) | (self.w_g > 0)
-
-    @require("oil_hole_diameter", "width", remedy="make the hole smaller or the bearing wider")
-    def hole_within_width(self) -> Truth:
-        """The oil hole takes at most 90 % of the width, so that the shell stays one piece."""
-        return self.d_h <= 0.9 * self.B
-
-    @require("oil_hole_diameter", "inner_diameter", remedy="make the hole smaller")
-    def hole_within_bore(self) -> Truth:
-        """The oil hole takes at most 80 % of the bore, so that it has a wall all around."""
-        return self.d_h <= 0.8 * self.d
+    @require("state", "wall", "inner_diameter", remedy="make the wall thinner, or draw the shell fitted")
+    def a_free_shell_is_thin(self) -> Truth:
+        """The wall of a shell that is drawn free is at most 20 % of the bore."""
+        return is_fitted(self.state) | (self.t <= 0.2 * self.d)
 
     @require(
-        "oil_hole_diameter",
-        "oil_groove_width",
-        remedy="make the hole as wide as the groove, or change it by 1 %",
+        "state", "free_spread", "shells", remedy="draw it fitted with a free spread of 0, or half shells"
     )
-    def hole_clears_groove_edge(self) -> Truth:
-        """An oil hole wider than its groove is wider by 1 %; for less, OpenCASCADE returns wrong solids."""
-        return (self.t_g == 0) | (self.w_g == 0) | (self.d_h <= self.w_g) | (self.d_h >= 1.01 * self.w_g)
-
-    @require("oil_hole_diameter", "oil_groove_width", "oil_groove_depth", remedy="use 0 for none")
-    def features_are_drawable(self) -> Truth:
-        """The oil hole and the oil groove measure 0, or at least the 10 µm that the kernel draws reliably."""
-        return drawable(self.d_h) & drawable(self.w_g) & drawable(self.t_g)
+    def a_full_bush_is_fitted(self) -> Truth:
+        """A full bush has no free spread, and is drawn fitted."""
+        return (joints(self.shells) > 0) | (is_fitted(self.state) & (self.s_f <= 0))
 
     def build(self) -> tuple[Part, ...]:
-        """Return one shell."""
-        shell = self.drawn()
-        return (Part("shell", shell.solid(), shell.volume(), BRONZE),)
+        """Return the back and lining of each shell."""
+        if self.shells == "full":
+            return tuple(self._parts("full", self.drawn("full"), 1))
+        parts = []
+        for which, side in (("upper", 1), ("lower", -1)):
+            if self.shells in ("pair", which):
+                parts += self._parts(which, self.drawn(which), side)
+        return tuple(parts)
 
-    def drawn(self) -> Shell:
-        """Return the parameters as radii and halves."""
-        return Shell(
-            bore=mm(self.d) / 2,
-            groove=mm(self.d) / 2 + mm(self.t_g),
-            outside=mm(self.D) / 2,
+    def _parts(self, name: str, shell: HalfShell, side: int) -> list[Part]:
+        away = Location(Vector(0, side * shell.crush if self.shells == "pair" else 0, 0))
+        back = shell.back() if side > 0 else shell.back().mirror("XZ")
+        parts = [Part(f"{name}_back", back, shell.back_volume(), STEEL, places=(away,))]
+        if shell.is_lined:
+            lining = shell.lining_piece() if side > 0 else shell.lining_piece().mirror("XZ")
+            pieces = shell.lining_places()
+            places, volume = tuple(away * place for place in pieces), shell.lining_volume() / len(pieces)
+            parts.append(
+                Part(
+                    f"{name}_lining",
+                    lining,
+                    volume,
+                    BRIGHT_STEEL,
+                    LINING_DENSITY,
+                    places,
+                    material="AlSn20Cu",
+                )
+            )
+        return parts
+
+    def drawn(self, which: str) -> HalfShell:
+        """Return the parameters of one shell as radii and halves, in its state."""
+        upper, fitted = which != "lower", self.state == "fitted"
+        bore = mm(self.d / 2 if fitted else self.r_f)
+        angle = np.pi / 2 if fitted else round(float(self.phi_f), _ANGLE_DIGITS)
+        wider = bore - mm(self.d) / 2
+        form = FullBush if which == "full" else HalfShell
+        return form(
+            bore=bore,
+            lining=bore + mm(self.t_l),
+            outside=mm(self.D) / 2 + wider,
             half_width=mm(self.B) / 2,
-            half_groove=mm(self.w_g) / 2,
-            hole=mm(self.d_h) / 2,
-            turn=360 if self.shell == "full" else 180,
-        )
+            inner_chamfer=mm(self.c_i),
+            outer_chamfer=mm(self.c_o),
+            crush=mm(self.a),
+            relief=Relief(bore, mm(self.h_r), mm(self.d_r)) if self.d_r > 0 else None,
+            groove=Groove(
+                bore + mm(self.t_g), mm(self.w_g) / 2, float(self.phi_g) * angle / (np.pi / 2),
+                bool(self.phi_g > WHOLE),
+            ) if upper and self.t_g > 0 else None,
+            hole=mm(self.d_h) / 2 if upper else 0.0,
+            tang=Tang(mm(self.w_t), mm(self.l_t), mm(self.h_t), -mm(self.B) / 4) if self.w_t > 0 else None,
+            flange=Flange(mm(self.D_f) / 2 + wider, mm(self.b_f), round(float(self.n_f)))
+            if self.D_f > 0 else None,
+            lift=np.pi / 2 - angle,
+        )  # fmt: skip
 
     def bounding_box(self) -> Box:
-        """A half shell fills only the side of its crown."""
-        radius, half = mm(self.D) / 2, mm(self.B) / 2
-        return Box((-radius, 0 if self.shell == "half" else -radius, -half), (radius, radius, half))
+        """Return the back or its flanges, the tang on the side +x, and the legs."""
+        shell = self.drawn("full" if self.shells == "full" else "upper")
+        left, right, low = reach_of(shell)
+        high, b = shell.flange.radius if shell.flange else shell.outside, shell.half_width
+        far = high + shell.crush
+        bottom, top = {
+            "pair": (-far, far), "upper": (low, high), "lower": (-high, -low), "full": (-high, high),
+        }[self.shells]  # fmt: skip
+        return Box((-left, bottom, -b), (right, top, b))
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
-        """Return every length that the shell has; no groove and no hole show none."""
-        shell = seen["shell"]
-        diameters, levels, holes = shell.diameters(Z), shell.levels(Z), shell.diameters(Y)
-        found = {
-            "inner_diameter": diameters[0],
-            "wall": (diameters[-1] - diameters[0]) / 2,
-            "width": levels[-1] - levels[0],
-            "oil_hole_diameter": holes[0] if holes else 0.0,
-        }
-        if len(levels) == 4:  # both ends, and both sides of a groove
-            found["oil_groove_width"] = levels[2] - levels[1]
-            found["oil_groove_depth"] = (diameters[1] - diameters[0]) / 2
-        return found
-
-
-@units("m", returns="1")
-def drawable(length: Array) -> Truth:
-    """Return whether a length [m] is none, or one that the kernel can tell from none."""
-    return (length == 0) | (length >= 1e-5)
+        """Return every length that the shells have, of the upper one if it is there."""
+        which = "upper" if self.shells == "pair" else self.shells
+        back = seen[f"{which}_back"]
+        shown = back, seen.get(f"{which}_lining", back), self.drawn(which)
+        if self.state == "free":
+            return FreeShellSeen(*shown).free_sizes(with_oil=which == "upper")
+        side = {"upper": 1, "lower": -1, "full": 0}[which]
+        return ShellSeen(*shown).sizes(with_oil=which != "lower", side=side)

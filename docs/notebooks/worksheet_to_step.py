@@ -34,7 +34,7 @@ oil_film = get("oil_film", 2)
 # %% [markdown]
 # ## The question
 #
-# A load of 25 kN at 5000 rpm. How wide must a shell of 48 mm be so that its film is at least 4 µm? An
+# A load of 25 kN at 5000 rpm. How wide must half shells of 48 mm be so that their film is at least 4 µm? An
 # array of widths answers for all of them at once.
 
 # %%
@@ -62,20 +62,19 @@ axes.set(xlabel="bearing width [mm]", ylabel="minimum film thickness [µm]")
 axes.grid(alpha=0.3)
 
 # %% [markdown]
-# ## The shell
+# ## The shells
 #
 # The model `plain_bearing` takes the bore from the calculation: the bearing diameter of the film. Whatever
-# is not given has a default that fits. A parameter out of its range would be refused by name before
-# anything is drawn.
+# is not given has a default that fits: a pair of half shells with linings. A parameter out of its range would
+# be refused by name before anything is drawn.
 
 # %%
 film = oil_film(**{**bearing, "bearing_width": f"{width} mm"})
 plain_bearing = models().get("plain_bearing", 1)
-shell = plain_bearing.from_quantities(
+shells = plain_bearing.from_quantities(
     {
         "inner_diameter": f"{film.bearing_diameter.to('mm').magnitude} mm",
         "width": f"{width} mm",
-        "shell": "half",
     }
 )
 
@@ -87,12 +86,12 @@ shell = plain_bearing.from_quantities(
 # build only if all of them hold.
 
 # %%
-build = regenerate("plain_bearing", 1, shell.inputs_si())
+build = regenerate("plain_bearing", 1, shells.inputs_si())
 place = Path(tempfile.mkdtemp()) / "main_bearing.step"
 place.write_bytes(build.step)
 print(f"{place.name}: {len(build.step)} bytes, {1e3 * build.measures['mass']:.1f} g")
 for name, value in build.dimensions.items():
-    print(f"{name:24} {value:8.4f} mm")
+    print(f"{name:24} {value:8.4f} {plain_bearing.inputs[name].meaning.unit}")
 
 # %% [markdown]
 # These dimensions were measured on the file, not copied from the request:
@@ -108,5 +107,5 @@ Image(derive(build.step, "png"))
 # Equal parameters give equal bytes, so the file can be checked by its hash.
 
 # %%
-again = regenerate("plain_bearing", 1, shell.inputs_si())
+again = regenerate("plain_bearing", 1, shells.inputs_si())
 assert again.step == build.step

@@ -11,10 +11,12 @@ import numpy as np
 from templates.core.language.template import Array, formula, profile, shared
 from templates.groups.cylinder import DYREMI, NO_INERTIA, Cylinder
 from templates.physics.engine.crank_loads import (
+    CrankForces,
     axial_force,
     correction_torque,
     crankpin_load_x_Rao_Singh_1993,
     crankpin_load_y_Rao_Singh_1993,
+    greatest_force,
     main_load_x_Rao_Singh_1993,
     main_load_y_Rao_Singh_1993,
     torque_Rao_Singh_1993,
@@ -23,7 +25,8 @@ from templates.physics.engine.crank_loads import (
 )
 from templates.physics.engine.gas_pressure import peak_pressure, pressure_at
 from templates.physics.engine.slider_crank import Motion, crank_angles, crank_motion
-from templates.physics.numerics.arrays import largest_load, spread
+from templates.physics.numerics.arrays import spread
+from templates.physics.numerics.crank_grid import CrankGrid, crank_grid
 
 CYCLE = "crank_angle"
 PEAK = ("p_max",)
@@ -53,7 +56,9 @@ class BearingLoad(Cylinder):
     Gas forces go with the pressure less that of the crankcase. Polytropes (otto, diesel, four_stroke) need
     absolute pressures: give crankcase_pressure too, or the force is too large by the ambient pressure.
     A table is linear between its points; its pressures may be effective ones.
-    The mean torque is the exact work of the gas, whatever the step; curves are exact at their angles.
+    The mean torque is indicated, the work of the gas less none of friction: exact, whatever the step. Curves
+    are exact at their angles; greatest values come from a grid of at most 1 deg with both sides of each jump
+    of pressure, whatever the step.
     Speeds may be negative: the angle then falls with time, and forces are those of the same angle.
     crank_centre counts from the shaft's axis towards the crankpin, counterweight_centre away from it.
 
@@ -140,8 +145,32 @@ class BearingLoad(Cylinder):
 
     @shared
     def motion(self) -> Motion:
-        """The mechanism at all angles."""
+        """The mechanism at the angles of the curves."""
         return crank_motion(self.theta, self.n)
+
+    @shared
+    def grid(self) -> CrankGrid:
+        """The angles at which the greatest values are sought."""
+        return crank_grid(self.strokes, self.step, self.gas.corners())
+
+    @shared
+    def everywhere(self) -> Motion:
+        """The mechanism at these angles."""
+        return crank_motion(self.grid.theta, self.n)
+
+    @shared
+    def pressures(self) -> Array:
+        """The pressure at these angles [Pa], (…, K)."""
+        return pressure_at(self.gas, self.everywhere)
+
+    @shared
+    def forces(self) -> CrankForces:
+        """The forces at these angles."""
+        motion, p = self.everywhere, self.pressures
+        K = axial_force(self.m_rec, self.omega, self.r, self.A, motion, p, self.p_0)
+        wall = wall_force_Rao_Singh_1993(K, self.dI_c, self.omega, self.r, motion)
+        wristpin = wristpin_load_x(self.m_4, self.omega, self.r, self.A, motion, p, self.p_0)
+        return CrankForces(K, wall, wristpin, motion, self.omega, self.r)
 
     @profile("mm", "piston travel", along=CYCLE, symbol="x",
              latex=r"r\left(1+n-\cos\theta-n\cos\varphi\right)")  # fmt: skip
@@ -171,7 +200,7 @@ class BearingLoad(Cylinder):
     @formula("bar", "peak gas pressure", symbol=r"p_\mathrm{max}", absent="there is no gas",
              published=(1.5, 400), remedy="check the units of the pressures")  # fmt: skip
     def p_max(self) -> Array:
-        return peak_pressure(self.gas_cycle, self.p)
+        return peak_pressure(self.gas_cycle, self.pressures)
 
     @profile("N", "axial force", along=CYCLE, symbol="K", source=DYREMI, assumes=PEAK,
              latex=r"m_\mathrm{rec}\,a+\left(p-p_{0}\right)A")  # fmt: skip
@@ -185,7 +214,7 @@ class BearingLoad(Cylinder):
 
     @formula("N", "wall force max", symbol=r"F_\mathrm{41,max}")
     def F_41_max(self) -> Array:
-        return largest_load(self.F_41y, 0 * self.F_41y)
+        return greatest_force(self.forces.wall)
 
     @profile("N", "crankpin load x", along=CYCLE, symbol="F_{32x}", source=DYREMI,
              latex=r"m_{3A}\,\omega^{2}r\cos\theta-K")  # fmt: skip
@@ -199,7 +228,7 @@ class BearingLoad(Cylinder):
 
     @formula("N", "crankpin load max", symbol=r"F_\mathrm{32,max}")
     def F_32_max(self) -> Array:
-        return largest_load(self.F_32x, self.F_32y)
+        return greatest_force(self.forces.crankpin(self.m_3A))
 
     @profile("N", "main load x", along=CYCLE, symbol="F_{12x}", source=DYREMI,
              latex=r"K-M\,\omega^{2}r\cos\theta")  # fmt: skip
@@ -213,7 +242,7 @@ class BearingLoad(Cylinder):
 
     @formula("N", "main load max", symbol=r"F_\mathrm{12,max}")
     def F_12_max(self) -> Array:
-        return largest_load(self.F_12x, self.F_12y)
+        return greatest_force(self.forces.main(self.M))
 
     @profile("N", "wristpin load x", along=CYCLE, symbol="F_{34x}", source=DYREMI, assumes=PEAK,
              latex=r"m_{4}\,a+\left(p-p_{0}\right)A")  # fmt: skip
@@ -226,7 +255,7 @@ class BearingLoad(Cylinder):
 
     @formula("N", "wristpin load max", symbol=r"F_\mathrm{34,max}")
     def F_34_max(self) -> Array:
-        return largest_load(self.F_34x, self.F_34y)
+        return greatest_force(self.forces.wristpin())
 
     @profile("N*m", "correction torque", along=CYCLE, symbol="T_{c}", source=DYREMI, absent=NO_INERTIA,
              latex=r"\Delta I\,\ddot{\varphi}\,\frac{\cos\theta}{n\cos\varphi}")  # fmt: skip
@@ -239,10 +268,10 @@ class BearingLoad(Cylinder):
     def T(self) -> Array:
         return torque_Rao_Singh_1993(self.K, self.r, self.dI_c, self.omega, self.motion)
 
-    @formula("N*m", "mean torque", symbol=r"\overline{T}")
+    @formula("N*m", "indicated mean torque", name="mean_torque", symbol=r"\overline{T}")
     def T_mean(self) -> Array:
         return self.p_mi * self.A * self.s / (np.pi * self.strokes)
 
-    @formula("kW", "mean power", symbol="P")
+    @formula("kW", "indicated mean power", name="mean_power", symbol="P")
     def P(self) -> Array:
         return self.T_mean * self.omega

@@ -99,9 +99,11 @@ class Engine(ArticulatedEngine):
     direction; one that only turns points to x at that angle.
     Orders are of the pistons alone; shaking force and couple are exact and of all that moves, with balance
     shafts. Roll moment is what walls and heads put on the frame about the shaft.
-    Mean torque and power are those of the work of the gas, exact, whatever the step. Running energy and
-    energy areas are of the curve and its own mean, by the trapezoidal rule. An energy area is that between
-    torque and mean from crossing to crossing; energy_area shows at each angle the area in which it lies.
+    Mean torque and power are indicated, the work of the gas less none of friction: exact, whatever the step.
+    crank_angle_step says only at which angles curves are returned. Greatest loads, energy and areas come from
+    a grid of at most 1 deg with both sides of each jump of pressure. Energy is by the trapezoidal rule less
+    the mean of the same grid, so it closes. An energy area is that between torque and mean from crossing to
+    crossing; energy_area shows at each angle the area in which it lies.
     Main loads act from the frame on the shaft, crankpin loads from the rod on the pin, in the engine's axes;
     rows are bearings. oil_film_cycle asks for the sense: say load_sense sleeve_on_journal.
     main_load: determinate, every load on the two mains of its span by the lever.
@@ -235,8 +237,8 @@ class Engine(ArticulatedEngine):
     def loads(self) -> ShaftLoads:
         """All loads on the shaft."""
         return on_the_shaft(
-            self.places, self.pins + spun(self.throw_unbalance, self.omega, self.theta),
-            self.web_places, spun(self.webs, self.omega, self.theta),
+            self.places, self.pins + spun(self.throw_unbalance, self.omega, self.grid.theta),
+            self.web_places, spun(self.webs, self.omega, self.grid.theta),
         )  # fmt: skip
 
     @shared
@@ -264,22 +266,22 @@ class Engine(ArticulatedEngine):
             self.z_m, self.places, self.web_places, self.layout.throw, self.layout.pin, self.crank.r,
             self.sections,
         ) if self.supports.have_play else []  # fmt: skip
-        return with_play(self.z_m, self.loads, shafts, self.supports, self.theta) if shafts else None
+        return with_play(self.z_m, self.loads, shafts, self.supports, self.grid.theta) if shafts else None
 
     @shared
     def elastic_mains(self) -> Vectors:
         """Loads of the mains on elastic supports."""
         if self.played:
             return self.played.forces
-        return elastic(self.z_m, self.loads, self.reactions, self.theta)
+        return elastic(self.z_m, self.loads, self.reactions, self.grid.theta)
 
     @profile("N", "crankpin load x", along=CYCLE, axes=2, symbol="F_{px}")
     def F_px(self) -> Array:
-        return along_x(self.big_ends)
+        return along_x(self.big_ends, self.grid)
 
     @profile("N", "crankpin load y", along=CYCLE, axes=2, symbol="F_{py}")
     def F_py(self) -> Array:
-        return along_y(self.big_ends)
+        return along_y(self.big_ends, self.grid)
 
     @profile("N", "crankpin load max", along=EACH, symbol=r"F_\mathrm{p,max}")
     def F_p_max(self) -> Array:
@@ -287,11 +289,11 @@ class Engine(ArticulatedEngine):
 
     @profile("N", "main load x", along=CYCLE, axes=2, symbol="F_{mx}")
     def F_mx(self) -> Array:
-        return along_x(self.mains)
+        return along_x(self.mains, self.grid)
 
     @profile("N", "main load y", along=CYCLE, axes=2, symbol="F_{my}")
     def F_my(self) -> Array:
-        return along_y(self.mains)
+        return along_y(self.mains, self.grid)
 
     @profile("N", "main load max", along=MAINS, symbol=r"F_\mathrm{m,max}")
     def F_m_max(self) -> Array:
@@ -299,7 +301,7 @@ class Engine(ArticulatedEngine):
 
     @profile("deg", "main load max angle", along=MAINS, symbol=r"\theta_\mathrm{m,max}")
     def theta_m(self) -> Array:
-        return greatest_at(self.mains, self.theta)
+        return greatest_at(self.mains, self.grid)
 
     @formula("1", "governing main", symbol=r"i_\mathrm{m}")
     def i_m(self) -> Array:
@@ -307,11 +309,11 @@ class Engine(ArticulatedEngine):
 
     @profile("N", "elastic main load x", along=CYCLE, axes=2, symbol="F_{ex}")
     def F_ex(self) -> Array:
-        return along_x(self.elastic_mains)
+        return along_x(self.elastic_mains, self.grid)
 
     @profile("N", "elastic main load y", along=CYCLE, axes=2, symbol="F_{ey}")
     def F_ey(self) -> Array:
-        return along_y(self.elastic_mains)
+        return along_y(self.elastic_mains, self.grid)
 
     @profile("N", "elastic main load max", along=MAINS, symbol=r"F_\mathrm{e,max}")
     def F_e_max(self) -> Array:

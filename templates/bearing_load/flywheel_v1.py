@@ -36,6 +36,7 @@ from templates.physics.engine.balance import (
     two_planes,
 )
 from templates.physics.engine.flywheel import (
+    corners,
     cylinder_motion,
     energy_fluctuation,
     inertia_of_fluctuation,
@@ -43,6 +44,7 @@ from templates.physics.engine.flywheel import (
     total_torque,
 )
 from templates.physics.engine.slider_crank import Motion, crank_angles
+from templates.physics.numerics.crank_grid import CrankGrid, crank_grid
 
 CYCLE = "crank_angle"
 EVEN = "nothing is out of balance"
@@ -72,8 +74,9 @@ class Flywheel(Cylinder):
     second harmonic.
     Balancing masses (mass times radius) in the planes of flywheel and damper take away forces and couples of
     the rotating masses.
-    The running integral of the torque is that of its curve, by the trapezoidal rule: at 1° steps good to
-    1e-4; the mean torque is exact.
+    The mean torque is indicated, the work of the gas less none of friction: exact, whatever the step. The
+    energy is summed over a grid of at most 1 deg with both sides of each jump of pressure, less the mean of
+    that grid; crank_angle_step says only at which angles curves are returned.
     A flywheel inertia below zero says that what is installed suffices.
 
     Errata
@@ -204,6 +207,20 @@ class Flywheel(Cylinder):
         """The mechanisms of all cylinders."""
         return cylinder_motion(self.theta, self.strokes, self.N, self.n)
 
+    @shared
+    def grid(self) -> CrankGrid:
+        """The angles over which the energy is summed."""
+        return crank_grid(self.strokes, self.step, corners(self.gas, self.strokes, self.N))
+
+    @shared
+    def torques(self) -> Array:
+        """Torque of all cylinders at these angles [N m], (…, K)."""
+        theta = self.grid.theta
+        motion = cylinder_motion(theta, self.strokes, self.N, self.n)
+        return total_torque(
+            self.m_rec, self.omega, self.r, self.A, self.dI_c, motion, self.gas, self.p_0, theta
+        )
+
     @profile("deg", "crank angle", along=CYCLE, symbol=r"\theta", latex=r"k\,\Delta\theta")
     def theta(self) -> Array:
         return crank_angles(self.strokes, self.step)
@@ -215,18 +232,18 @@ class Flywheel(Cylinder):
             self.m_rec, self.omega, self.r, self.A, self.dI_c, self.motion, self.gas, self.p_0, self.theta
         )
 
-    @formula("N*m", "mean torque", symbol=r"\overline{T}")
+    @formula("N*m", "indicated mean torque", name="mean_torque", symbol=r"\overline{T}")
     def T_mean(self) -> Array:
         return self.N * self.p_mi * self.A * self.s / (np.pi * self.strokes)
 
-    @formula("kW", "mean power", symbol="P")
+    @formula("kW", "indicated mean power", name="mean_power", symbol="P")
     def P(self) -> Array:
         return self.T_mean * self.omega
 
     @formula("J", "energy fluctuation", symbol="E", source=DYREMI,
              latex=r"\Delta\int\left(T-\overline{T}\right)d\theta")  # fmt: skip
     def E(self) -> Array:
-        return energy_fluctuation(self.theta, self.T)
+        return energy_fluctuation(self.torques, self.grid)
 
     @formula("kg*m**2", "cylinder inertia", symbol="I_{c}", source=DYREMI)
     def I_c(self) -> Array:

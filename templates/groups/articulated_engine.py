@@ -108,5 +108,5 @@ class ArticulatedEngine(EngineMotion):
             piston_shaking(self.m_rec, omega, self.motion, bank)
             + off_the_circle(self.rods.at_crank, omega, self.motion, bank),
             self.places,
-            tuple((one.forces(self.omega, self.theta), one.place) for one in (*self.turning, self.balancers)),
+            self.rotors,
         )  # fmt: skip

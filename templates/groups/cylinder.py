@@ -34,6 +34,7 @@ from templates.physics.engine.gas_checks import (
 from templates.physics.engine.gas_cycle import Charge, Valves, gas_cycle
 from templates.physics.engine.gas_pressure import GasCycle, mean_effective
 from templates.physics.engine.slider_crank import steps_in
+from templates.physics.numerics.crank_grid import COARSE
 
 DYREMI = "Rao & Singh 1993"
 NO_INERTIA = "needs rod_inertia or rod_pendulum_period"
@@ -44,7 +45,7 @@ class Cylinder(Template):
 
     levels = ("lumped", "rigid")
     default_level = "rigid"
-    most_points = {"lumped": 50_000, "rigid": 50_000}
+    most_points = {"lumped": 2_700, "rigid": 2_700}
 
     omega: Array = given("rpm", "speed")
     s: Array = given("mm", "stroke", gt=0, le=1e5)
@@ -103,8 +104,14 @@ class Cylinder(Template):
 
     @require("crank_angle_step", remedy="take a larger step, or fewer points at once")
     def manageable(self) -> Truth:
-        """There are at most 2 000 000 points times crank angles."""
-        return is_manageable(self.shape_of_points(), self.steps)
+        """There are at most 2 000 000 points times crank angles of 1 deg or the step."""
+        return is_manageable(self.shape_of_points(), self.strokes, self.step)
+
+    @require("crank_angle_step", warning="coarse_curves",
+             remedy="take 5 deg or less for curves; greatest loads and energy do not change")  # fmt: skip
+    def shows_peaks(self) -> Truth:
+        """Curves are returned at steps of at most 5 deg, which show their peaks."""
+        return self.step <= COARSE
 
     @require("rod_centre", "rod_ratio", "stroke", remedy="it is counted from the big end")
     def centre_on_the_rod(self) -> Truth:

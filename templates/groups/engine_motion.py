@@ -13,6 +13,7 @@ from templates.physics.crankshaft.main_bearings import (
     moment_about_x,
     moment_about_y,
 )
+from templates.physics.engine.crank_loads import greatest_force
 from templates.physics.engine.engine_curves import (
     Parts,
     Rotors,
@@ -20,17 +21,20 @@ from templates.physics.engine.engine_curves import (
     areas_in_words,
     balancers,
     balancers_are_whole,
+    energy_curve,
     piston_shaking,
+    pressure_curves,
     roll_moment,
     running_energy,
     swing_of,
     torque,
+    torque_curve,
 )
-from templates.physics.engine.engine_gas import gas_force, indicated, pressures, torque_of_work
+from templates.physics.engine.engine_gas import corners, gas_force, indicated, pressures, torque_of_work
 from templates.physics.engine.engine_sizes import is_manageable
 from templates.physics.engine.offset_crank import RodMotion, axial_force, pin_force, rod_speed, wall_force
 from templates.physics.engine.slider_crank import crank_angles
-from templates.physics.numerics.arrays import largest_load
+from templates.physics.numerics.crank_grid import COARSE, CrankGrid, crank_grid
 
 CYCLE, SHAFTS = "crank_angle", "balance_shafts"
 STILL = "no torque that varies"
@@ -48,8 +52,14 @@ class EngineMotion(EngineBalance):
 
     @require("crank_angle_step", remedy="take a larger step, or fewer points at once")
     def manageable(self) -> Truth:
-        """There are at most 200 000 points times crank angles."""
-        return is_manageable(self.shape_of_points(), self.steps)
+        """There are at most 6 000 000 points times cylinders times crank angles of 1 deg or the step."""
+        return is_manageable(self.shape_of_points(), self.layout.throw, self.strokes, self.step)
+
+    @require("crank_angle_step", warning="coarse_curves",
+             remedy="take 5 deg or less for curves; greatest loads and energy do not change")  # fmt: skip
+    def shows_peaks(self) -> Truth:
+        """Curves are returned at steps of at most 5 deg, which show their peaks."""
+        return self.step <= COARSE
 
     @require("balancer_unbalance", "balancer_ratios", "balancer_positions", missing=True,
              remedy="give three lists, of one value for each balance shaft")  # fmt: skip
@@ -63,14 +73,24 @@ class EngineMotion(EngineBalance):
         return crank_angles(self.strokes, self.step)
 
     @shared
+    def grid(self) -> CrankGrid:
+        """The angles at which all is calculated, of which some are returned."""
+        return crank_grid(self.strokes, self.step, corners(self.gas, self.layout))
+
+    @shared
     def motion(self) -> RodMotion:
         """The mechanisms at all angles."""
-        return self.crank.at(self.layout.alpha(self.theta))
+        return self.crank.at(self.layout.alpha(self.grid.theta))
+
+    @shared
+    def pressures(self) -> Array:
+        """The pressure in each cylinder [Pa], (…, N, K)."""
+        return pressures(self.gas, self.layout, self.motion, self.grid.theta)
 
     @shared
     def gas_forces(self) -> Array:
         """Force of the gas on each piston [N], (…, N, K)."""
-        return gas_force(self.p, self.p_0, self.f_p, self.D)
+        return gas_force(self.pressures, self.p_0, self.f_p, self.D)
 
     @shared
     def axial(self) -> Array:
@@ -98,12 +118,19 @@ class EngineMotion(EngineBalance):
         return balancers(self.U_b, self.i_b, self.a_b, self.z_b)
 
     @shared
+    def rotors(self) -> tuple[tuple[Vectors, Array], ...]:
+        """Forces of all that turns at constant speed [N], and their places [m]."""
+        rotors = (*self.turning, self.balancers)
+        return tuple((one.forces(self.omega, self.grid.theta), one.place) for one in rotors)
+
+    @shared
     def moving(self) -> Parts:
         """All that moves, by the forces that it puts on the frame."""
         return Parts(
-            piston_shaking(self.m_rec, self.omega[..., None], self.motion, self.layout.bank), self.places,
-            tuple((one.forces(self.omega, self.theta), one.place) for one in (*self.turning, self.balancers)),
-        )  # fmt: skip
+            piston_shaking(self.m_rec, self.omega[..., None], self.motion, self.layout.bank),
+            self.places,
+            self.rotors,
+        )
 
     @shared
     def shaking(self) -> Vectors:
@@ -120,12 +147,22 @@ class EngineMotion(EngineBalance):
     )
     def p(self) -> Array:
         """In each cylinder."""
-        return pressures(self.gas, self.layout, self.motion, self.theta)
+        return pressure_curves(self.pressures, self.grid)
+
+    @shared
+    def torques(self) -> Array:
+        """Torque of all rods on the crank [N m], (…, K)."""
+        return torque(self.rod_forces, self.motion)
+
+    @shared
+    def energies(self) -> Array:
+        """Running energy [J], (…, K)."""
+        return running_energy(self.torques, self.grid)
 
     @profile("N*m", "torque", along=CYCLE, symbol="T", latex=r"\sum r\times F")
     def T(self) -> Array:
         """Of all rods on the crank."""
-        return torque(self.rod_forces, self.motion, self.theta)
+        return torque_curve(self.torques, self.grid)
 
     @profile("bar", "indicated mean effective pressure", along=EACH, symbol="p_{mi}",
              latex=r"\frac{1}{A\,s}\oint p\,dV")  # fmt: skip
@@ -133,13 +170,13 @@ class EngineMotion(EngineBalance):
         """Of each cylinder; exact, whatever the step."""
         return indicated(self.gas, self.f_p, self.layout)
 
-    @formula("N*m", "mean torque", symbol=r"\overline{T}",
+    @formula("N*m", "indicated mean torque", name="mean_torque", symbol=r"\overline{T}",
              latex=r"\frac{1}{\pi\,z}\sum p_{mi}\,A\,s")  # fmt: skip
     def T_mean(self) -> Array:
         """That of the work of the gas; exact, whatever the step."""
         return torque_of_work(self.p_mi, self.D, self.crank.stroke, self.strokes)
 
-    @formula("kW", "mean power", symbol="P")
+    @formula("kW", "indicated mean power", name="mean_power", symbol="P")
     def P(self) -> Array:
         """Mean torque times speed."""
         return self.T_mean * self.omega
@@ -148,54 +185,54 @@ class EngineMotion(EngineBalance):
              latex=r"\int\left(T-\overline{T}\right)d\theta")  # fmt: skip
     def E_r(self) -> Array:
         """From the first angle on."""
-        return running_energy(self.theta, self.T)
+        return energy_curve(self.energies, self.grid)
 
     @formula("J", "energy fluctuation", symbol=r"\Delta E")
     def dE(self) -> Array:
-        """Largest less smallest running energy."""
-        return swing_of(self.E_r)
+        """Largest less smallest running energy, whatever the step."""
+        return swing_of(self.energies)
 
     @profile("J", "energy area", along=CYCLE, symbol="A_{E}")
     def A_E(self) -> Array:
         """The whole area in which each angle lies."""
-        return area_curve(self.theta, self.T)
+        return area_curve(self.theta, self.torques, self.grid)
 
     @text("energy areas", absent=STILL)
     def areas(self) -> str | Array:
         """All of them."""
-        return areas_in_words(self.theta, self.T)
+        return areas_in_words(self.torques, self.grid)
 
     @profile("N", "shaking force x", along=CYCLE, symbol="F_{x}")
     def F_x(self) -> Array:
         """Of all that moves, on the frame."""
-        return along_x(self.shaking)
+        return along_x(self.shaking, self.grid)
 
     @profile("N", "shaking force y", along=CYCLE, symbol="F_{y}")
     def F_y(self) -> Array:
         """Of all that moves, on the frame."""
-        return along_y(self.shaking)
+        return along_y(self.shaking, self.grid)
 
     @formula("N", "shaking force max", symbol=r"F_\mathrm{max}")
     def F_max(self) -> Array:
-        """On the way round."""
-        return largest_load(self.F_x, self.F_y)
+        """On the way round, whatever the step."""
+        return greatest_force(self.shaking)
 
     @profile("N*m", "shaking moment x", along=CYCLE, symbol="M_{x}")
     def M_x(self) -> Array:
         """Of all that moves, about the reference position."""
-        return moment_about_x(self.couple)
+        return moment_about_x(self.couple, self.grid)
 
     @profile("N*m", "shaking moment y", along=CYCLE, symbol="M_{y}")
     def M_y(self) -> Array:
         """Of all that moves, about the reference position."""
-        return moment_about_y(self.couple)
+        return moment_about_y(self.couple, self.grid)
 
     @profile("N*m", "roll moment", along=CYCLE, symbol="M_{z}")
     def M_z(self) -> Array:
         """What walls and heads put on the frame."""
-        return roll_moment(self.wall, self.gas_forces, self.motion)
+        return roll_moment(self.wall, self.gas_forces, self.motion, self.grid)
 
     @profile("rad/s", "rod angular velocity", along=CYCLE, axes=2, symbol=r"\omega_{3}")
     def omega_3(self) -> Array:
         """Of each rod."""
-        return rod_speed(self.omega, self.motion)
+        return rod_speed(self.omega, self.motion, self.grid)

@@ -2,6 +2,18 @@
 
 from __future__ import annotations
 
+
+def hot_oil(temperature: str) -> dict[str, object]:
+    """Return the criterion of the hottest oil with which plain bearings run at all, for a temperature."""
+    return {
+        "require": f"{temperature} <= 125 degC",
+        "words": "the oil is no hotter than plain bearings run with, in exceptional cases too",
+        "source": "DIN 31652-3, largest value in its table of temperatures, as textbooks quote it",
+        "unverified": "no public copy of DIN 31652-3 was at hand",
+        "warning": "oil_too_hot",
+    }
+
+
 CRITERIA: dict[str, dict[str, object]] = {
     "film": {
         "require": "minimum_film_thickness >= smallest_permissible_film",
@@ -87,6 +99,7 @@ CRITERIA: dict[str, dict[str, object]] = {
             }
         },
     },
+    "hot_oil": hot_oil("film_temperature"),
     "laminar": {
         "require": "film_reynolds_number <= laminar_limit",
         "words": "the flow in the film is laminar",

@@ -20,6 +20,7 @@ from templates.core.language.template import (
     shared,
 )
 from templates.groups.fed_bearing import FedBearing
+from templates.groups.journal_criteria import hot_oil
 from templates.groups.oil import Oil
 from templates.physics.heat.cycle_heat import (
     CycleBearing,
@@ -155,12 +156,13 @@ class CycleHeatBalance(Oil, FedBearing):
                 }
             },
         },
+        "hot_oil": hot_oil("outlet_temperature"),
         "temperature_rise": {
             "require": "temperature_rise <= permissible_temperature_rise",
             "words": "the oil grows no warmer on its way than its user permits",
             "limits": {
                 "permissible_temperature_rise": {
-                    "unit": "K",
+                    "unit": "delta_degC",
                     "words": "largest temperature rise from supply to outlet",
                 }
             },
@@ -281,7 +283,7 @@ class CycleHeatBalance(Oil, FedBearing):
         """Where the oil leaves."""
         return 2 * self.T_film - self.T_s
 
-    @formula("K", "temperature rise", symbol=r"\Delta T", source=ISO)
+    @formula("delta_degC", "temperature rise", symbol=r"\Delta T", source=ISO)
     def rise(self) -> Array:
         """From supply to outlet."""
         return self.T_ex - self.T_s

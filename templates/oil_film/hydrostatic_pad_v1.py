@@ -48,6 +48,8 @@ class HydrostaticPad(Template):
     small beside the recess pressure.
     Restrictor constant_flow is a pump of fixed displacement; its supply pressure is that of its relief valve.
     Of all the power nothing leaves through the walls: the temperature rise is the largest that the oil has.
+    The viscosity is that given, at every temperature. Mineral oil loses half of it in some 15 to 20 K, so
+    give that of the mean temperature on the lands; above a rise of 60 K a warning says so.
     The film and the viscosity of least power are those for the same load and lands, with a restrictor that is
     chosen anew for them; they need a speed.
 
@@ -98,10 +100,17 @@ class HydrostaticPad(Template):
             "words": "the oil grows no warmer on its way than its user permits",
             "limits": {
                 "permissible_temperature_rise": {
-                    "unit": "K",
+                    "unit": "delta_degC",
                     "words": "largest temperature rise from supply to edge",
                 }
             },
+        },
+        "warm_oil": {
+            "require": "temperature_rise <= 60 K",
+            "words": "oil supplied at 40 degC leaves at 100 degC at most; it is much thinner there",
+            "source": "ISO 7902-3, 100 degC as the general limit with pressure feed, as textbooks quote it",
+            "unverified": "no public copy of ISO 7902-3 was at hand",
+            "warning": "oil_too_hot",
         },
     }
 
@@ -232,7 +241,7 @@ class HydrostaticPad(Template):
     def P(self) -> Array:
         return self.P_p + self.P_f
 
-    @formula("K", "temperature rise", symbol=r"\Delta T")
+    @formula("delta_degC", "temperature rise", symbol=r"\Delta T")
     def dT(self) -> Array:
         return self.P / (self.rho_c * self.Q)
 

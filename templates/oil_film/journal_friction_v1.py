@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from templates.core.language.template import Array, Template, Truth, formula, given, require
+from templates.groups.journal_criteria import CRITERIA
 from templates.physics.journals.loaded_journal import eccentricity_of_load, friction_over_Petrov, load_number
 from templates.physics.journals.petrov import friction_Petrov_1883
 
 PETROV = "Petrov 1883"
+ISO = "ISO 7902-1:1998"
 AT_REST = "without speed there is no film"
 BEYOND = "no film bears this load, or the Reynolds solution ends: B/D 0.01 … 100, eps to 1 − 1e-7"
 USE = "the loaded film rubs more by this factor; oil_film 2 calculates it"
@@ -28,7 +32,8 @@ class JournalFriction(Template):
     The course's own load of 3 kN gives its worked case So = 32, eps = 0.965 and 5.3 times Petrov's friction:
     it lies far outside.
     The film is laminar and isothermal, and fills the whole circle; the load stands still, and the speed is
-    the journal's against the bearing.
+    the journal's against the bearing. Above Re = 41.3 √(r/c) (Taylor's vortices) a warning says that the film
+    rubs more; the density matters for that alone.
 
     References
     ----------
@@ -63,6 +68,7 @@ class JournalFriction(Template):
             "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
             "warning": "film_too_thin",
         },
+        "laminar": CRITERIA["laminar"],
         "specific_load": {
             "require": "radial_load / (journal_diameter * bearing_width) <= permissible_specific_load",
             "words": "the load over journal times width is within what the bearing material bears",
@@ -82,6 +88,7 @@ class JournalFriction(Template):
     omega: Array = given("rpm", "speed", ge=0)
     eta: Array = given("mPa*s", "dynamic viscosity", gt=0)
     F: Array = given("N", "radial load", optional=True, ge=0)
+    rho: Array = given("kg/m**3", "density", default="875 kg/m**3", gt=0)
 
     @require("radial_clearance", "journal_diameter", remedy="give half of bore minus journal")
     def clearance_within_journal(self) -> Truth:
@@ -103,6 +110,14 @@ class JournalFriction(Template):
     @formula("1", "relative clearance")
     def psi(self) -> Array:
         return self.c / (self.d / 2)
+
+    @formula("1", "film Reynolds number", symbol=r"\mathrm{Re}", source=ISO)
+    def Re(self) -> Array:
+        return self.rho * self.omega * self.d / 2 * self.c / self.eta
+
+    @formula("1", "laminar limit", symbol=r"\mathrm{Re}_{cr}", source=ISO)
+    def Re_cr(self) -> Array:
+        return 41.3 / np.sqrt(self.psi)
 
     @formula("1", "width ratio", symbol=r"\lambda")
     def ratio(self) -> Array:

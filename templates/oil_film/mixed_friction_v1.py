@@ -18,7 +18,7 @@ from templates.core.language.template import (
     text,
 )
 from templates.groups.oil import Oil
-from templates.physics.journals.lubrication_regime import film_parameter, lubrication_regime
+from templates.physics.journals.lubrication_regime import film_parameter, regime_of_contact
 from templates.physics.journals.mixed_journal import (
     FULL_FILM,
     LEVELS,
@@ -78,6 +78,9 @@ class MixedFriction(Oil):
     The transition speed is that at which the smallest gap is the transition film: three times the roughness
     unless given, as the smallest permissible film of ISO 7902-3.
     The curve runs over 41 speeds from a thousandth of the speed to a hundred times it.
+    The lubrication regime follows from the share of the load that the contact bears: boundary above half,
+    full_film up to 0.01 %, mixed between. The film parameter alone does not tell it: under heavy load a
+    film of high pressure bears nearly all at a parameter below 1.
     Wear: contact pressure times sliding speed, summed over the surface and at its largest. What it removes is
     for the user's own coefficient to say.
 
@@ -111,9 +114,9 @@ class MixedFriction(Oil):
     }
     criteria = {
         "full_film": {
-            "require": "film_parameter >= 3",
-            "words": "the film parts the surfaces wholly",
-            "source": "Hamrock, Schmid, Jacobson 2004, section 1.3: mixed friction from 1 to 3",
+            "require": "contact_load <= 0.0001 * radial_load",
+            "words": "the contact bears at most 0.01 % of the load",
+            "source": "Greenwood, Tripp 1970, for the share of the contact",
         },
         "above_transition": {
             "require": "speed >= transition_speed",
@@ -241,7 +244,7 @@ class MixedFriction(Oil):
 
     @text("lubrication regime")
     def regime(self) -> str:
-        return lubrication_regime(self.film_parameter)
+        return regime_of_contact(self.film.contact_share)
 
     @formula("N", "film load", symbol=r"F_\mathrm{f}")
     def F_f(self) -> Array:

@@ -38,6 +38,7 @@ class ThermalClearance(Template):
         "runs": {
             "require": "diametral_clearance >= 0 um",
             "words": "the journal does not seize in its housing",
+            "warning": "seized",
         },
         "least_clearance": {
             "require": "diametral_clearance >= smallest_permissible_clearance",

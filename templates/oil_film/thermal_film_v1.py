@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from templates.core.language.template import Array, Template, Truth, formula, given, profile, require, shared
+from templates.groups.journal_criteria import hot_oil
 from templates.groups.oil import Oil
 from templates.physics.journals.lubrication_regime import friction_coefficient
 from templates.physics.journals.oil import by_law
@@ -133,6 +134,7 @@ class ThermalFilm(Oil, Template):
                 }
             },
         },
+        "hot_oil": hot_oil("outlet_temperature"),
         "laminar": {
             "require": "film_reynolds_number <= laminar_limit",
             "words": "the flow in the film is laminar",
@@ -215,7 +217,7 @@ class ThermalFilm(Oil, Template):
     def case(self) -> ThermalCase:
         """The bearing with its oil."""
         return ThermalCase(
-            F=self.F, D=self.D, W=self.W, psi=self.psi, omega=self.omega, pressure=self.p_s,
+            F=self.F, D=self.D, W=self.b * self.D, psi=self.psi, omega=self.omega, pressure=self.p_s,
             angle=self.phi_g, extent=self.ext_g, length=self.l_g, carry_over=self.kappa, supply=self.T_film,
             heat_capacity=self.rho_c, conductivity=self.k_o, held=self.T_b, transfer=self.h_b,
             ambient=self.T_amb, journal=self.T_j, A=self.A, B=self.B, a=by_law(self.law, np.nan, self.a_V),
@@ -259,7 +261,7 @@ class ThermalFilm(Oil, Template):
         """Anywhere in the oil or at the bush's surface."""
         return in_kelvin(self.film.T_max)
 
-    @formula("K", "mesh change", symbol="e_{T}", absent=ONE_HAS_NONE)
+    @formula("delta_degC", "mesh change", symbol="e_{T}", absent=ONE_HAS_NONE)
     def mesh_change(self) -> Array:
         """Change of the largest temperature from half the mesh."""
         return in_kelvin(self.film.mesh_change)
@@ -365,7 +367,7 @@ class ThermalFilm(Oil, Template):
         """Loss of one temperature over that of all."""
         return self.P_one / self.P
 
-    @formula("K", "unseen rise", symbol=r"\Delta T_{1}")
+    @formula("delta_degC", "unseen rise", symbol=r"\Delta T_{1}")
     def unseen(self) -> Array:
         """Return by how much the film is hotter somewhere than the one temperature."""
         return self.T_max - self.T_one

@@ -9,13 +9,15 @@ from __future__ import annotations
 import numpy as np
 
 from templates.core.language.template import Array, Truth, formula, given, require, shared
+from templates.groups.journal_criteria import hot_oil
 from templates.groups.oil import Oil
 from templates.physics.journals.oil import by_law, viscosity_at
-from templates.physics.pads.thrust_collar import LEVELS, SECTOR, Collar, CollarFilm, working_collar
+from templates.physics.pads.thrust_collar import Collar, CollarFilm, working_collar
 
 NO_SUPPLY = "needs supply_temperature"
 UNBORNE = "no film ratio from 1.000001 to 100 bears this load: change taper, speed, viscosity or pads"
 MEC = "MEC 315"
+SECTOR = "sector"
 
 
 class ThrustBearing(Oil):
@@ -28,14 +30,11 @@ class ThrustBearing(Oil):
     ------
     Each pad slopes over its whole angle: the film falls in proportion to the angle, by the taper, and is the
     same at all radii. Pads with a flat part, and pads that tilt, have other films.
-    Level sector solves the Reynolds equation of a sector; level mean_rectangle that of a rectangle of the
-    pad's mean length and its width, which is what slider_bearing 1 calculates. Measured by
-    `c29dd3ed:benchmarks/thrust_bearing.py` for pads of 15° to 60°, the rectangle's torque is 3 to 4 % low
-    at outer over inner diameter 1.5, 8 to 10 % at 2 and 16 to 20 % at 3; its smallest film at a load
-    within 0.2, 2 and 8 %. So the sector, which costs as little, is the default.
-    Both solve 16 × 4 and 32 × 8 intervals and extrapolate. Against finer meshes the sector's load errs by
-    0.1 %, its flows by 0.06 % of the inlet's for film ratios to 5, b/l 0.3 to 3 and diameters to 3; at the
-    worst corner of what is taken (film ratio 100, b/l 10, diameters 5) by 0.7 % and 7 %.
+    Each pad is solved as a sector, on 16 × 4 and 32 × 8 intervals, which are extrapolated. Against finer
+    meshes its load errs by 0.1 %, its flows by 0.06 % of the inlet's for film ratios to 5, b/l 0.3 to 3 and
+    diameters to 3; at the worst corner of what is taken (film ratio 100, b/l 10, diameters 5) by 0.7 % and
+    7 %. A rectangle of the pad's mean length, which slider_bearing 1 calculates, has 8 to 10 % less torque at
+    outer over inner diameter 2 (`c29dd3ed:benchmarks/thrust_bearing.py`).
     The load is spread evenly over all pads: the collar runs true.
     Heat: the oil of a pad leaves at its outlet with the outlet's temperature, and at its sides with the mean
     of inlet and outlet, which is the film's. Of the outlet's oil the share that is carried over goes on under
@@ -52,9 +51,9 @@ class ThrustBearing(Oil):
     ASTM D341 (Walther) or Vogel: Physikalische Zeitschrift 22, 1921, p. 645, for the viscosity.
     """
 
-    levels = LEVELS
+    levels = (SECTOR,)
     default_level = SECTOR
-    most_points = dict.fromkeys(LEVELS, 10_000)
+    most_points = {SECTOR: 10_000}
     precision = 1e-8
 
     example = {
@@ -106,6 +105,7 @@ class ThrustBearing(Oil):
                 }
             },
         },
+        "hot_oil": hot_oil("outlet_temperature"),
         "laminar": {
             "require": "film_reynolds_number <= 1000",
             "words": "the flow in the film is laminar",
@@ -181,7 +181,7 @@ class ThrustBearing(Oil):
     def film(self) -> CollarFilm:
         """The film that bears the load, with the heat balance, dimensionless."""
         return working_collar(
-            self.level, self.collar, viscosity_at, self.A, self.B, by_law(self.law, np.nan, self.a_V),
+            self.collar, viscosity_at, self.A, self.B, by_law(self.law, np.nan, self.a_V),
             self.b_V, self.c_V, self.as_given("eta"), self.rho_ref, self.T_ref,
         )  # fmt: skip
 
@@ -217,7 +217,7 @@ class ThrustBearing(Oil):
     def Q(self) -> Array:
         return self.Q_i - self.k * (self.Q_i - self.Q_s)
 
-    @formula("K", "temperature gain", symbol=r"\delta T")
+    @formula("delta_degC", "temperature gain", symbol=r"\delta T")
     def gain(self) -> Array:
         return self.P / (self.rho_c * (self.Q_i - self.Q_s / 2))
 
@@ -234,7 +234,7 @@ class ThrustBearing(Oil):
     def T_film(self) -> Array:
         return (self.T_i + self.T_e) / 2
 
-    @formula("K", "temperature rise", symbol=r"\Delta T", absent=NO_SUPPLY)
+    @formula("delta_degC", "temperature rise", symbol=r"\Delta T", absent=NO_SUPPLY)
     def rise(self) -> Array:
         return self.T_e - self.T_s
 

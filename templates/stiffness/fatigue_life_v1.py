@@ -141,6 +141,7 @@ class FatigueLife(SteelEndurance):
             "require": "greatest_von_mises <= yield_strength",
             "words": "the greatest von Mises stress of every point is within the yield strength",
             "source": SHIGLEY,
+            "warning": "yields",
         },
         "life": {
             "require": "damage * required_cycles <= 1",

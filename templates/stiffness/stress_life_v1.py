@@ -115,6 +115,7 @@ class StressLife(Template):
             "require": "abs(mean_stress) + stress_amplitude <= yield_strength",
             "words": "the largest stress, in tension or compression, is within the yield strength",
             "source": "Budynas, Nisbett 2011",
+            "warning": "yields",
         },
         "life": {
             "require": "equivalent_amplitude <= allowable_amplitude",

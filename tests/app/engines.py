@@ -1,6 +1,6 @@
 """The gallery's engines for tests that ask for a part of them."""
 
-from app.web.gallery_engine import FOUR
+from app.web.gallery.engine import FOUR
 
 
 def four_cylinders(**inputs):

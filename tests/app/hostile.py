@@ -125,7 +125,7 @@ KINDS_OF_PATHS = [
     "/healthz",
     "/readyz",
     "/metrics",
-    "/static/design.js",
+    "/static/design/design.js",
     "/static/plotly.min.js",
     "/static-offline-docs/swagger-ui-bundle.js",
     "/problems/cross-site",

@@ -2,6 +2,7 @@
 
 from copy import deepcopy
 
+from bare_shells import BUSH
 from row_designs import CATALOGUES
 
 from app.designs.document import Document
@@ -34,9 +35,12 @@ PAPER = {
             "id": "plain_bearing",
             "version": 1,
             "parameters": {
+                **BUSH,
                 "inner_diameter": "= film.bearing_diameter + film.minimum_film_thickness",
                 "wall": "2 mm",
                 "width": "= film.bearing_width",
+                "tang_length": "4 mm",  # by default a share of the bore, as is the height of the relief
+                "relief_height": "6 mm",
             },
         }
     },

@@ -113,7 +113,7 @@ ALLOWED = {
     "/api/v1/templates/oil_film/versions/1/evaluate": "POST",
     "/healthz": "GET",
     "/": "GET",
-    "/static/style.css": "GET, HEAD",
+    "/static/shared/style.css": "GET, HEAD",
 }
 
 

@@ -1,6 +1,7 @@
 """Criteria and verdicts over HTTP: of evaluations, worksheets, designs, previews and revisions."""
 
 import pytest
+from bare_shells import BUSH
 from serving import API, created, faults, patched, revision
 
 from app.calculations.schemas.evaluations import Evaluation
@@ -150,7 +151,9 @@ def test_a_wrong_criterion_is_refused_and_nothing_is_saved(http, design):
 
 
 def test_a_criterion_of_a_solid_is_judged_once_it_is_built(http):
-    shell = {"shell": {"id": "plain_bearing", "parameters": {"inner_diameter": "= film.bearing_diameter"}}}
+    shell = {
+        "shell": {"id": "plain_bearing", "parameters": {**BUSH, "inner_diameter": "= film.bearing_diameter"}}
+    }
     mass = {"mass": {"require": "shell.mass <= 1 kg"}}
     design = created(http, document(models=shell, criteria=mass))
     judged = by_name(revision(http, design))["mass"]

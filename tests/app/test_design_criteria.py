@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.calculations.criteria import rendered
+from app.calculations.json_values import rendered
 from app.designs import results
 from app.designs.document import Document, merge
 from app.designs.engine.calculate import calculate

@@ -19,7 +19,7 @@ from app.designs.engine.verdicts import judged
 from app.designs.graph import Catalogues, build_graph
 from app.designs.service import resolved
 from app.reference import Reference
-from app.web.gallery import GALLERY
+from app.web.gallery.gallery import GALLERY
 from cad.catalogue import models
 from cad.regenerate import build_key
 from templates.door import built_in

@@ -11,7 +11,7 @@ from described import APP
 from fastapi.routing import iter_route_contexts
 from starlette.routing import Mount
 
-from app.http.roles import needs_of, routes_of
+from app.http.access import needs_of, routes_of
 from app.identity.principal import INCLUDED, ROLES
 
 PUBLIC = {
@@ -139,7 +139,7 @@ def test_the_gate_sees_all_routes_that_fastapi_serves():
 
 
 def test_no_route_of_an_app_is_left_unguarded():
-    from app.http.roles import Guarded
+    from app.http.access import Guarded
 
     unguarded = [path for _, path, route in ROUTES if not isinstance(route.handle, Guarded)]
     assert unguarded == []

@@ -7,7 +7,7 @@ from serving import API, created
 
 from app.calculations.bodies import OIL_FILM
 from app.designs import worksheet
-from app.web import sections
+from app.web.design import sections
 
 
 @pytest.fixture

@@ -11,7 +11,8 @@ from openpyxl import load_workbook
 from serving import API, HANG, created, problem
 
 from app.designs.parameter_explanation import DEEPEST
-from app.http.heads import LONGEST_HEAD, MOST_FIELDS, MOST_HEADERS
+from app.http.connections import LONGEST_HEAD
+from app.http.limits import MOST_FIELDS, MOST_HEADERS
 from tests.app.hostile_texts import EVERY
 
 ANSWERED = {

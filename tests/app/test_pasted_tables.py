@@ -6,7 +6,7 @@ import pytest
 
 from app.calculations.tables import MOST_CHARACTERS, MOST_ROWS, read_table
 from app.schemas.tables import ChosenColumn, PastedTable, TableField
-from app.web.table_columns import paste
+from app.web.lists.columns import paste
 from templates.core.errors import InvalidInputs
 
 FIELDS = [

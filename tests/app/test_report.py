@@ -7,6 +7,7 @@ from html.parser import HTMLParser
 
 import pypdf
 import pytest
+from bare_shells import BUSH
 from serving import API, created, moody, paper, patched, problem
 
 from app.designs.bodies import PAPER
@@ -312,7 +313,7 @@ class TestStates:
             "steps": {"film": film},
             "models": {
                 "ball": {**PAPER["model"]},
-                "shell": {"id": "plain_bearing", "version": 1, "parameters": {"inner_diameter": "48 mm"}},
+                "shell": {"id": "plain_bearing", "parameters": {**BUSH, "inner_diameter": "48 mm"}},
             },
             "iterations": [{"through": "ball.mass", "start": "1 kg", "tolerance": 1e-3}],
         }  # fmt: skip

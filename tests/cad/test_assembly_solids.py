@@ -171,7 +171,7 @@ def test_a_drawing_of_an_assembly_cuts_its_parts():
 
     cls, _ = assembly()
     assert not _is_shaft(cls)
-    assert _is_shaft(models().get("crankshaft", 2))
+    assert _is_shaft(models().get("crankshaft", 1))
 
 
 def many(number, apart=0.0):

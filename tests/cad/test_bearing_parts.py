@@ -22,8 +22,7 @@ from templates.core.language.spec import Choice, Derived
 NEW = [
     ("thrust_washer", 1),
     ("flanged_bush", 1),
-    ("plain_bearing", 2),
-    ("plain_bearing", 3),
+    ("plain_bearing", 1),
     ("bearing_housing", 1),
     ("bearing_assembly", 1),
     ("connecting_rod", 1),
@@ -45,13 +44,10 @@ LIMITS = {  # what a random set must reach: the least share of 300 that makes a 
 HOSTILE_VALUES = (math.nan, math.inf, -math.inf, -1.0, -1e-3, 0.0, 1e-12, 1e-9, 1e-7, 1e-6, 1e9, 1e300)
 BAD = (*HOSTILE_VALUES[:5], 1e9, 1e300)
 
-BY_DEFAULT = {("plain_bearing", 2): {"oil_groove_width", "tang_width"}}
-"""Sizes that a version refuses by name where both are its defaults; `plain_bearing` 3 has others."""
-
 EVERY = [pytest.param(models().get(*one), id=f"{one[0]}_v{one[1]}") for one in NEW]
 BEARING = pytest.param(models().get("deep_groove_bearing", 1), id="deep_groove_bearing_v1")
-QUICK = [one for one in EVERY if one.id not in ("bearing_assembly_v1", "plain_bearing_v2")]
-"""An assembly consists of two of the others; the next version of the shells covers version 2."""
+QUICK = [one for one in EVERY if one.id != "bearing_assembly_v1"]
+"""An assembly consists of two of the others."""
 
 
 def sample(cls: type[CadModel], rng: np.random.Generator) -> dict[str, Any]:
@@ -92,7 +88,7 @@ def drawn(cls: type[CadModel], given: dict[str, Any]) -> bool:
     """Whether a solid was made of it, each of its dimensions as asked; refusals name what was given."""
     if named := refused(cls, given):
         assert named <= set(cls.inputs)
-        assert named & set(given) or named == BY_DEFAULT.get((cls.id, cls.version))
+        assert named & set(given)
         return False
     model, result = cls.from_si(given), regenerate(cls.id, cls.version, given)
     for name, value in result.dimensions.items():
@@ -167,7 +163,7 @@ def test_property_hostile_parts(cls: type[CadModel]) -> None:
 @pytest.mark.parametrize("changed", [{"oil_hole_diameter": "6 mm"}, {"oil_groove_width": "2.4 mm"}])
 def test_a_hole_wider_than_its_groove_has_the_volume_of_its_closed_form(changed: dict[str, str]) -> None:
     """Each part to 1e-10 of itself; `BRepGProp`, whatever its accuracy, is off by some 1e-9 of it here."""
-    model = models().get("plain_bearing", 3)
+    model = models().get("plain_bearing", 1)
     shell = model.from_quantities({**model.example, **changed})
     build = regenerate(shell.id, shell.version, shell.inputs_si())
     for part, body in zip(shell.build(), read_step(build.step), strict=True):

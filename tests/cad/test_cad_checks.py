@@ -2,8 +2,10 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from math import pi
 
 import pytest
+from bare_shells import BUSH
 from cadquery import func
 
 from cad.catalogue import models
@@ -27,9 +29,14 @@ def refused(model: CadModel, draw: Callable[[tuple[Part, ...]], tuple[Part, ...]
     return caught.value
 
 
+def bush(**given: str) -> PlainBearing:
+    """Return a bush of one body."""
+    return PlainBearing.from_quantities({**BUSH, "inner_diameter": "48 mm", **given})
+
+
 @pytest.fixture
 def shell() -> PlainBearing:
-    return PlainBearing.from_quantities(PlainBearing.example)
+    return bush()
 
 
 def test_missing_part(shell: PlainBearing) -> None:
@@ -42,12 +49,12 @@ def test_two_solids_in_one_part(shell: PlainBearing) -> None:
         slit = func.cut(parts[0].shape, func.box(1000, 1000, 1).moved(z=5))
         return (replace(parts[0], shape=slit),)
 
-    with pytest.raises(GeometryError, match="shell should be one solid; it is 2"):
+    with pytest.raises(GeometryError, match="full_back should be one solid; it is 2"):
         write_step(halved(shell.build()), Header(shell.id, 1, {}, ""))
 
 
 def test_hole_that_is_not_there(shell: PlainBearing) -> None:
-    plain = PlainBearing.from_quantities({**PlainBearing.example, "oil_hole_diameter": "0 mm"})
+    plain = bush(oil_hole_diameter="0 mm")
     error = refused(shell, lambda _: plain.build())
     assert error.code == "volume"
     assert "mm³" in error.detail
@@ -56,14 +63,14 @@ def test_hole_that_is_not_there(shell: PlainBearing) -> None:
 def test_groove_that_the_kernel_loses() -> None:
     # A drilling 10 nm wider than its groove: OpenCASCADE 7.9 returns a valid solid that is 12 % too small.
     # The rule of the model refuses it; without the rule the volume would tell.
-    kept = {"inner_diameter": 0.048, "oil_groove_width": 0.005}
-    unruly = PlainBearing({"shell": "half", "d": 0.048, "w_g": 0.005, "d_h": 0.00500001})
-    assert PlainBearing.from_si({**kept, "oil_hole_diameter": 0.005}).build()
+    bare = {"shells": "full", "state": "fitted", "t_l": 0.0, "c_i": 0.0, "c_o": 0.0, "phi_g": pi}
+    unruly = PlainBearing({**bare, "d": 0.048, "w_g": 0.005, "d_h": 0.00500001})
+    assert bush(oil_groove_width="5 mm", oil_hole_diameter="5 mm").build()
     assert refused(unruly, lambda parts: parts).code == "volume"
 
 
 def test_shape_of_another_size_names_the_dimension(shell: PlainBearing) -> None:
-    wider = PlainBearing.from_quantities({**PlainBearing.example, "width": "24.00001 mm"})
+    wider = bush(width="24.00001 mm")
     bodies = read_step(write_step(wider.build(), Header(shell.id, 1, {}, "")))
     with pytest.raises(GeometryError) as caught:
         check_dimensions(shell, look_at(bodies))
@@ -73,7 +80,7 @@ def test_shape_of_another_size_names_the_dimension(shell: PlainBearing) -> None:
 
 
 def test_no_surface_to_read_from(shell: PlainBearing) -> None:
-    block = Part("shell", func.box(1, 1, 1), 1.0)
+    block = Part("full_back", func.box(1, 1, 1), 1.0)
     bodies = read_step(write_step([block], Header(shell.id, 1, {}, "")))
     with pytest.raises(GeometryError, match="does not show"):
         check_dimensions(shell, look_at(bodies))

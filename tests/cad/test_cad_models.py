@@ -1,6 +1,6 @@
 """What holds for one model: standard sizes, limits that are known in closed form, and rules."""
 
-from math import isclose, pi
+from math import isclose
 from typing import Any
 
 import numpy as np
@@ -9,7 +9,6 @@ from netgen.occ import OCCGeometry
 
 from cad.inspect import look_at
 from cad.models.ball_bearing_v1 import SIZES, BallBearing, standard_outer_diameter, standard_width
-from cad.models.plain_bearing_v1 import PlainBearing, Shell
 from cad.regenerate import Build, regenerate
 from cad.step import read_step
 from templates.core.errors import InvalidInputs
@@ -102,71 +101,3 @@ class TestBallBearing:
     )
     def test_what_cannot_be_built_is_refused_by_name(self, given: dict[str, str], named: set[str]) -> None:
         assert named <= set(faults(BallBearing, **given))
-
-
-class TestPlainBearing:
-    @pytest.mark.parametrize("shell", ["half", "full"])
-    @pytest.mark.parametrize("hole", ["0 mm", "3 mm", "5 mm", "5.1 mm", "12 mm"])
-    @pytest.mark.parametrize(("groove", "depth"), [("0 mm", "0 mm"), ("5 mm", "0 mm"), ("5 mm", "0.8 mm")])
-    @pytest.mark.sampled(8)
-    def test_every_combination_is_the_solid_it_should_be(
-        self, shell: str, hole: str, groove: str, depth: str
-    ) -> None:
-        result = build(
-            PlainBearing, inner_diameter="48 mm", shell=shell, oil_hole_diameter=hole,
-            oil_groove_width=groove, oil_groove_depth=depth,
-        )  # fmt: skip
-        assert f"{result.dimensions['oil_hole_diameter']:g} mm" == hole
-        assert result.dimensions.get("oil_groove_depth", 0.0) == (0.8 if depth == "0.8 mm" else 0.0)
-        assert result.measures["low_y"] == (0 if shell == "half" else -26.4)
-
-    def test_analytic_half_ring(self) -> None:
-        result = build(PlainBearing, inner_diameter="48 mm", oil_hole_diameter="0 mm").measures
-        outer, inner = 26.4, 24.0
-        assert result["volume"] == pytest.approx(pi / 2 * (outer**2 - inner**2) * 24, rel=1e-9)
-        centroid = 4 / (3 * pi) * (outer**3 - inner**3) / (outer**2 - inner**2)
-        assert result["centre_y"] == pytest.approx(centroid, rel=1e-9)
-
-    def test_analytic_two_halves_are_a_whole(self) -> None:
-        half, full = (build(PlainBearing, inner_diameter="48 mm", shell=shell) for shell in ("half", "full"))
-        hole = Shell(24, 24.72, 26.4, 12, 2.4, 1.92, 180).hole_volume()
-        assert full.measures["volume"] == pytest.approx(2 * half.measures["volume"] + hole, rel=1e-6)
-
-    def test_analytic_small_hole_is_a_cylinder_through_the_wall(self) -> None:
-        shell = Shell(bore=24, groove=24, outside=26, half_width=10, half_groove=0, hole=1e-4, turn=360)
-        assert shell.hole_volume() == pytest.approx(pi * 1e-8 * 2, rel=1e-6)
-
-    def test_analytic_groove_wider_than_the_hole_is_a_larger_bore(self) -> None:
-        deep = Shell(bore=24, groove=25, outside=26, half_width=10, half_groove=5, hole=4, turn=360)
-        wide = Shell(bore=25, groove=25, outside=26, half_width=10, half_groove=0, hole=4, turn=360)
-        assert deep.hole_volume() == pytest.approx(wide.hole_volume(), rel=1e-10)
-
-    @pytest.mark.parametrize(
-        ("given", "named"),
-        [
-            ({"wall": "0 mm"}, {"wall"}),
-            ({"wall": "-1 mm"}, {"wall"}),
-            ({"oil_hole_diameter": "24 mm"}, {"oil_hole_diameter", "width"}),
-            ({"oil_hole_diameter": "47 mm", "width": "100 mm"}, {"oil_hole_diameter", "inner_diameter"}),
-            (
-                {"oil_hole_diameter": "5.00001 mm", "oil_groove_width": "5 mm"},
-                {"oil_hole_diameter", "oil_groove_width"},
-            ),
-            ({"oil_hole_diameter": "1 nm"}, {"oil_hole_diameter"}),
-            ({"oil_groove_depth": "2.4 mm"}, {"oil_groove_depth", "wall"}),
-            ({"oil_groove_width": "23 mm"}, {"oil_groove_width", "width"}),
-            (
-                {"oil_groove_width": "0 mm", "oil_groove_depth": "1 mm"},
-                {"oil_groove_width", "oil_groove_depth"},
-            ),
-            ({"shell": "third"}, {"shell"}),
-            ({"colour": "red"}, {"colour"}),
-        ],
-    )
-    def test_what_cannot_be_built_is_refused_by_name(self, given: dict[str, str], named: set[str]) -> None:
-        assert named <= set(faults(PlainBearing, **given))
-
-    def test_refusal_says_the_values_and_the_remedy(self) -> None:
-        detail = faults(PlainBearing, oil_groove_depth="2.4 mm")["oil_groove_depth"]
-        assert "2.4 mm" in detail
-        assert "shallower" in detail

@@ -23,6 +23,7 @@ REFERENCE = {
     "throw": "42 mm", "web_thickness": "18 mm", "web_width": "80 mm", "fillet": "3 mm",
 }  # fmt: skip
 PLAIN = {**REFERENCE, "fillet": "0 mm"}
+ONE_PIN = "[0] deg"
 
 
 def build(cls: Any, given: dict[str, str]) -> Build:
@@ -89,8 +90,8 @@ class TestClosedForms:
         assert whole.measures["volume"] - less.measures["volume"] == pytest.approx(wedges, rel=1e-9)
 
     def test_analytic_bores_through_everything(self) -> None:
-        solid = build(Crankshaft, {"journal_diameter": "40 mm", "throw": "45 mm"})
-        bored = build(Crankshaft, {"journal_diameter": "40 mm", "throw": "45 mm", "journal_bore": "10 mm"})
+        given = {"pin_angles": ONE_PIN, "journal_diameter": "40 mm", "throw": "45 mm"}
+        solid, bored = (build(Crankshaft, {**given, "journal_bore": bore}) for bore in ("0 mm", "10 mm"))
         length = bored.measures["high_z"] - bored.measures["low_z"] - 0.6 * 40  # not where the pin is beside
         gone = solid.measures["volume"] - bored.measures["volume"]
         assert gone == pytest.approx(pi * 5**2 * length, rel=1e-8)
@@ -133,7 +134,7 @@ class TestSolids:
 
     def test_less_inclination_is_more_material(self) -> None:
         masses = [
-            build(Crankshaft, {"journal_diameter": "40 mm", "face_inclination": f"{angle} deg"}).measures[
+            build(CrankThrow, {"journal_diameter": "40 mm", "face_inclination": f"{angle} deg"}).measures[
                 "mass"
             ]
             for angle in (0, 5, 10, 15)
@@ -146,17 +147,19 @@ class TestSolids:
             assert 1e3 * model.s == pytest.approx(overlap, abs=1e-9)
             assert build(CrankThrow, {**REFERENCE, "throw": throw}).dimensions["throw"] == float(throw[:-3])
 
-    def test_front_and_rear_are_where_they_should_be(self) -> None:
-        given = {"journal_diameter": "40 mm", "front_length": "50 mm", "rear_length": "20 mm"}
-        measures = build(Crankshaft, {**given, "rear_diameter": "90 mm"}).measures
-        throw = 0.6 * 40 / 2 + 0.33 * 40 + 0.7 * 40
-        assert measures["low_z"] == pytest.approx(-throw - 50, abs=1e-6)
-        assert measures["high_z"] == pytest.approx(throw + 20, abs=1e-6)
+    def test_nose_and_flange_are_where_they_should_be(self) -> None:
+        given = {"journal_diameter": "40 mm", "nose_length": "50 mm", "flange_thickness": "20 mm"}
+        measures = build(Crankshaft, {**given, "pin_angles": ONE_PIN, "flange_diameter": "90 mm"}).measures
+        journal, rest = 0.7 * 40, (0.6 + 2 * 0.33) * 40  # rest: of the pitch
+        assert measures["low_z"] == pytest.approx(-journal / 2 - 50, abs=1e-6)
+        assert measures["high_z"] == pytest.approx(rest + 1.5 * journal + 20, abs=1e-6)
         assert measures["high_y"] == 45
 
     def test_end_as_thick_as_the_journal_is_separated_from_it(self) -> None:
-        result = build(Crankshaft, {"journal_diameter": "40 mm", "rear_diameter": "40 mm"}).dimensions
-        assert (result["rear_diameter"], result["rear_length"], result["journal_length"]) == (40, 32, 28)
+        given = {"pin_angles": ONE_PIN, "journal_diameter": "40 mm", "flange_diameter": "40 mm"}
+        result = build(Crankshaft, given).dimensions
+        assert (result["flange_diameter"], result["flange_thickness"]) == (40, 12)
+        assert result["journal_length"] == 28
 
     @pytest.mark.slow
     def test_drilling_whose_mouth_touches_the_bore_at_the_web_is_whole(self) -> None:
@@ -164,8 +167,8 @@ class TestSolids:
         given = {
             "journal_diameter": "3.7156 mm", "pin_length": "1.8532 mm", "web_thickness": "1.6412 mm",
             "web_width": "5.8961 mm", "journal_bore": "1.8398 mm", "pin_bore": "0.5687 mm",
-            "oil_drilling_diameter": "0.3936 mm", "web_shape": "rectangular", "front_length": "1.8361 mm",
-            "rear_diameter": "2.4562 mm",
+            "oil_drilling_diameter": "0.3936 mm", "web_shape": "rectangular", "nose_length": "1.8361 mm",
+            "flange_diameter": "2.4562 mm", "flange_thickness": "2.97248 mm", "pin_angles": ONE_PIN,
         }  # fmt: skip
         for width in np.linspace(0.39, 0.396, 7):
             drilled = build(Crankshaft, {**given, "oil_drilling_diameter": f"{width:.4f} mm"})
@@ -220,11 +223,11 @@ class TestRefusals:
     @pytest.mark.parametrize(
         ("given", "named"),
         [
-            ({"front_diameter": "10 mm", "journal_bore": "12 mm"}, {"front_diameter", "journal_bore"}),
-            ({"rear_diameter": "40.001 mm"}, {"rear_diameter", "journal_diameter"}),
-            ({"rear_length": "0 mm"}, {"rear_length"}),
+            ({"nose_diameter": "10 mm", "journal_bore": "12 mm"}, {"nose_diameter", "journal_bore"}),
+            ({"flange_diameter": "40.001 mm"}, {"flange_diameter", "journal_diameter"}),
+            ({"flange_thickness": "0 mm"}, {"flange_thickness"}),
         ],
     )
     def test_ends_that_cannot_be_built(self, given: dict[str, str], named: set[str]) -> None:
-        shaft = {"journal_diameter": "40 mm", "throw": "45 mm"}
+        shaft = {"pin_angles": ONE_PIN, "journal_diameter": "40 mm", "throw": "45 mm"}
         assert named <= refused(Crankshaft, {**shaft, **given})

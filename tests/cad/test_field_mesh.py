@@ -13,7 +13,7 @@ from cad.cranks.shaft_fields import along_shaft, at_fillets, in_throw, places_of
 from cad.field_mesh import Field, Glb
 from cad.gltf import write_glb
 from cad.mesh import closed_mesh
-from cad.models.crankshaft_v2 import Crankshaft
+from cad.models.crankshaft_v1 import Crankshaft
 from cad.step import Body
 
 SIZES = {

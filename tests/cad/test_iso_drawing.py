@@ -7,11 +7,13 @@ from xml.etree import ElementTree
 
 import ezdxf
 import pytest
+from bare_shells import BUSH, HALF
 from ezdxf import path
 from ezdxf.document import Drawing
 from ezdxf.math import is_point_in_polygon_2d
 from PIL import ImageFont
 from slow_models import DRAWN
+from undivided import TWO_THROWS
 
 from benchmarks.drawings import SIZES, latest, sized
 from cad.catalogue import models
@@ -163,7 +165,7 @@ def test_no_words_overlap_at_three_sizes(
 
 
 def toleranced(texts: dict[str, str]) -> Build:
-    model = models().get("plain_bearing", 1).from_quantities({"inner_diameter": "48 mm", **texts})
+    model = models().get("plain_bearing", 1).from_quantities({**HALF, "inner_diameter": "48 mm", **texts})
     return regenerate_from_text(model.id, model.version, as_text(model))
 
 
@@ -343,12 +345,9 @@ def test_a_rod_is_cut_across_its_shank(rod: Build, font: ImageFont.FreeTypeFont)
 @pytest.mark.slow  # test_pmi.py reads counted lengths in the quick lane
 def test_lengths_that_repeat_are_given_once_and_counted() -> None:
     """ISO 129-1: a shaft of two throws has 3 journals, 2 pins, 4 webs; its overall length is the solid's."""
-    model = models().get("crankshaft", 2)
-    angles = {"value": [0, 180], "unit": "deg"}
-    texts = as_text(
-        model.from_quantities({**model.example, "pin_angles": angles, "counterweight_radius": "0 mm"})
-    )
-    build = regenerate_from_text(model.id, 2, {**texts, "pin_length": "32 mm ±0.1 mm"})
+    model = models().get("crankshaft", 1)
+    texts = as_text(model.from_quantities({**TWO_THROWS, "counterweight_radius": "0 mm"}))
+    build = regenerate_from_text(model.id, 1, {**texts, "pin_length": "32 mm ±0.1 mm"})
     drawing = read(derive(build.step, "dxf"))
     result = labels(drawing)
     assert (result["journal_length"], result["web_thickness"]) == ("3×26", "4×18")
@@ -412,7 +411,7 @@ def test_extension_lines_begin_at_the_outline(example_of) -> None:
 
 
 def test_arcs_of_the_svg_are_arcs() -> None:
-    build = toleranced({"shell": "full"})
+    build = toleranced(BUSH)
     root = ElementTree.fromstring(derive(build.step, "drawing.svg"))
     outlines = [p.attrib["d"] for p in root.iter(f"{SVG}path") if p.attrib.get("stroke-width") == "0.6"]
     assert any("A" in d for d in outlines)

@@ -5,11 +5,12 @@ import subprocess
 import sys
 
 import pytest
+from bare_shells import BUSH
 
 from cad import on_demand
 from cad.regenerate import regenerate_from_text
 
-BUSH = {"inner_diameter": "46.75 mm"}
+BORE = {**BUSH, "inner_diameter": "46.75 mm"}
 IMPORTS = """
 from cad import on_demand
 on_demand.postpone()
@@ -22,7 +23,7 @@ print(len(found.versions))
 DRAWS = f"""
 import hashlib
 from cad.regenerate import regenerate_from_text
-build = regenerate_from_text("plain_bearing", 1, {BUSH})
+build = regenerate_from_text("plain_bearing", 1, {BORE})
 assert on_demand.is_loaded() and not on_demand.is_postponed()
 stale = [f"{{place}}.{{name}}" for place, module in list(sys.modules.items()) if place.startswith("cad.")
          for name, value in vars(module).items() if type(value) is on_demand.StandIn]
@@ -53,7 +54,7 @@ def test_property_the_server_and_all_models_are_imported_without_the_kernel():
 
 @pytest.mark.slow
 def test_the_first_use_loads_the_kernel_and_gives_equal_bytes():
-    digest = hashlib.sha256(regenerate_from_text("plain_bearing", 1, BUSH).step).hexdigest()
+    digest = hashlib.sha256(regenerate_from_text("plain_bearing", 1, BORE).step).hexdigest()
     assert run(f"import sys\n{IMPORTS}{DRAWS}")[1:] == [digest]
 
 

@@ -6,18 +6,20 @@ from dataclasses import replace
 
 import ezdxf
 import pytest
+from bare_shells import BUSH
 from cadquery import Location, func
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from seeds import examples
 
+from cad.catalogue import models
 from cad.drafting.letter_width import clipped, width_of
 from cad.export import derive
 from cad.file_names import plain_name, stem, wide_stem
 from cad.header import Header
 from cad.model import Part
 from cad.part21 import end_of_string, plain, quoted
-from cad.regenerate import regenerate
+from cad.regenerate import as_text, regenerate_class
 from cad.stamp import Stamp, is_copy, stamped, takes_stamp
 from cad.step import read_step, write_step
 
@@ -37,7 +39,8 @@ NAME = st.text(st.characters(exclude_categories=["Cs", "Cc"]), min_size=1, max_s
 
 @pytest.fixture(scope="module")
 def shell():
-    return regenerate("plain_bearing", 1, {"inner_diameter": 0.05}).step
+    model = models().get("plain_bearing", 1)
+    return regenerate_class(model, as_text(model.from_quantities({**BUSH, "inner_diameter": "50 mm"}))).step
 
 
 def moved_box():
@@ -45,7 +48,7 @@ def moved_box():
 
 
 def stamp(design):
-    return Stamp(design, "shell", 3, "2026-11-22T05:47:46", {"shell": "CuSn8 (8800 kg/m³)"})
+    return Stamp(design, "shell", 3, "2026-11-22T05:47:46", {"full_back": "CuSn8 (8800 kg/m³)"})
 
 
 @pytest.mark.parametrize("design", NAMES)

@@ -47,7 +47,7 @@ def test_limits_stand_beside_the_value_of_a_row_and_are_read_again():
 def test_a_key_holds_the_tolerances_that_faces_carry_and_no_others():
     plain = shell()
     assert build_key(shell("48 mm H7")) not in (build_key(plain), build_key(shell("48 mm H6")))
-    assert build_key(shell(oil_groove_depth="0.72 mm ± 0.1 mm")) == build_key(
+    assert build_key(shell(oil_groove_depth="0.84 mm ± 0.1 mm")) == build_key(
         plain
     )  # no face carries a depth
     assert build_key(shell("48 mm ± 0 mm")) == build_key(plain)
@@ -56,7 +56,7 @@ def test_a_key_holds_the_tolerances_that_faces_carry_and_no_others():
 
 def test_a_key_of_a_toleranced_build_holds_what_the_model_declares(monkeypatch):
     plain, fitted = build_key(shell()), build_key(shell("48 mm H7"))
-    other = {**SHELL.toleranced, "inner_diameter": {"of": "shell", "cylinders": "z", "datum": "A"}}
+    other = {**SHELL.toleranced, "inner_diameter": {"of": "upper_lining", "cylinders": "z", "datum": "A"}}
     monkeypatch.setattr(SHELL, "toleranced", other)
     assert build_key(shell()) == plain
     assert build_key(shell("48 mm H7")) != fitted

@@ -88,9 +88,10 @@ class TestTable:
         assert checks.table_closes("otto", FOUR, angle, p)
 
     def test_curves_fit_into_memory(self):
-        assert checks.is_manageable((1000,), np.asarray(2000))
-        assert not checks.is_manageable((1000,), np.asarray(2001))
-        assert checks.is_manageable((), np.asarray(2_000_000))
+        """The internal grid has 720 angles at any step from 1 deg on, 7200 at 0.1 deg."""
+        for degrees, most in ((1, 2777), (30, 2777), (0.1, 277)):
+            assert checks.is_manageable((most,), FOUR, np.radians(degrees))
+            assert not checks.is_manageable((most + 1,), FOUR, np.radians(degrees))
 
 
 class TestPressure:

@@ -5,9 +5,9 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 
 from app.jobs.events import Event, Events
+from app.storage.clock import now
 from app.storage.database import Database
 from app.storage.errors import StorageError
-from app.storage.identity import now
 from app.storage.notices import Notices
 from app.storage.tables import DesignRow
 

@@ -4,6 +4,7 @@ import hashlib
 
 import httpx
 import pytest
+from bare_shells import BUSH
 from by_hand import Stack, require_namespaces
 from patience import patient, until
 from serving import API
@@ -84,7 +85,7 @@ def ready(http):
 def one_builds_and_the_other_has_it(one, two):
     made = one.post(
         f"{API}/models/plain_bearing/versions/1/build",
-        json={"parameters": {"inner_diameter": "46.75 mm"}},
+        json={"parameters": {**BUSH, "inner_diameter": "46.75 mm"}},
         headers={"Prefer": "wait=120"},
     )
     assert made.status_code == 200, made.text

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 import victims
+from bare_shells import BUSH
 from dask_processes import Network, process_in, until_gone
 from patience import patient, until
 
@@ -57,7 +58,7 @@ def test_what_a_function_returns_comes_back(engine):
 
 
 def test_a_solid_has_the_bytes_that_it_has_here(engine):
-    shape = models().get("plain_bearing", 1).from_quantities({"inner_diameter": "45 mm", "width": "18 mm"})
+    shape = models().get("plain_bearing", 1).from_quantities({**BUSH, "inner_diameter": "45 mm"})
     task = build_in_worker, source_of(type(shape)), as_text(shape)
     assert engine.run(*task) == Inline().run(*task)
 

@@ -13,7 +13,7 @@ from listening import NEVER, designs, followed, side
 from patience import until
 from sqlalchemy import text
 
-from app.storage import event_log
+from app.jobs.events import events_above, note_event
 from app.storage.database import Database
 
 pytest.importorskip("psycopg", reason="the driver of PostgreSQL is not installed")
@@ -24,7 +24,6 @@ import sys
 sys.path.append(sys.argv[1])
 from listening import side
 from app.jobs.events import Event
-from app.storage import event_log
 from app.storage.database import repeatable
 from app.storage.errors import StorageError
 
@@ -36,7 +35,7 @@ with side(url) as own:
 
             def unit(session):
                 repeatable(session)
-                if event_log.newest(session, [topic])[topic] == n:
+                if newest_numbers(session, [topic])[topic] == n:
                     own.events.note(session, Event(topic, "revision", {"revision": n}))
 
             while True:
@@ -169,7 +168,7 @@ def test_numbers_of_a_topic_are_its_own_even_if_units_wait_for_each_other(own_po
         began, go_on = threading.Event(), threading.Event()
 
         def slow(session):
-            number = event_log.note(session, topic, "slow", {})
+            number = note_event(session, topic, "slow", {})
             began.set()
             assert go_on.wait(60)
             return number
@@ -178,10 +177,10 @@ def test_numbers_of_a_topic_are_its_own_even_if_units_wait_for_each_other(own_po
             first = pool.submit(one.database.write, slow)
             assert began.wait(60)
             second = pool.submit(
-                other.database.write, lambda session: event_log.note(session, topic, "quick", {})
+                other.database.write, lambda session: note_event(session, topic, "quick", {})
             )
             with other.database.read() as session:
-                assert event_log.above(session, topic, 0) == []
+                assert events_above(session, topic, 0) == []
             go_on.set()
             assert (first.result(60), second.result(60)) == (1, 2)
 

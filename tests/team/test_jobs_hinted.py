@@ -10,9 +10,9 @@ from patience import until
 from sqlalchemy import text
 
 from app.jobs.dispatcher import FAST
+from app.jobs.events import events_above
 from app.jobs.service import Jobs
 from app.settings import Settings
-from app.storage import event_log
 from app.storage.database import Database
 from app.workers.errors import JobCancelled
 from app.workers.inline import Inline
@@ -199,6 +199,6 @@ def names(url, id):
     """The events of a job."""
     database = Database(url)
     with database.read() as session:
-        noted = [event.name for event in event_log.above(session, f"job:{id}", 0)]
+        noted = [event.name for event in events_above(session, f"job:{id}", 0)]
     database.close()
     return noted

@@ -5,7 +5,7 @@ from sqlalchemy import select, text, update
 from sqlalchemy.exc import OperationalError
 from sqlalchemy.orm import Session
 
-from app.solids.ages import FRESH, renew
+from app.solids.rows import FRESH, renew
 from app.storage.clock import operated
 from app.storage.database import Database
 from app.storage.engines import writing_engine

@@ -16,10 +16,10 @@ from app.designs.errors import StaleRevision
 from app.designs.labels import key_of
 from app.jobs import repository
 from app.settings import Settings
+from app.storage.clock import new_id
 from app.storage.database import Database, after_commit
 from app.storage.errors import CommitUnknown
 from app.storage.idempotency import Once
-from app.storage.identity import new_id
 from app.storage.tables import DesignRow, JobRow, RevisionRow
 from app.team.postgres import Cluster
 
@@ -181,7 +181,7 @@ class TestUnits:
 
     @pytest.mark.slow
     def test_one_of_eight_appends_wins(self, database):
-        written = designs.Written({"name": "a"}, None, [], "current", None)
+        written = designs.StoredRevision({"name": "a"}, None, [], "current", None)
         id, _ = database.write(lambda session: designs.create(session, "a", written))
 
         def append():

@@ -7,7 +7,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.calculations.curves import read_curves
 from app.calculations.schemas.curves import Curves
-from app.http.roles import needs
+from app.http.access import needs
 from app.http.strict_requests import NotCsv, StrictRoute
 
 router = APIRouter(prefix="/api/v1", tags=["curves"], route_class=StrictRoute)

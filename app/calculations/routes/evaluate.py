@@ -13,9 +13,9 @@ from fastapi import APIRouter, Header, Request, Response
 from pydantic_core import to_json
 from starlette.concurrency import run_in_threadpool
 
+from app.api.answers import answered
 from app.api.dependencies import Units, services_of
-from app.api.expensive_answers import to_try
-from app.api.responses import LATER
+from app.api.responses import LATER, patience
 from app.calculations.array_files import NPY, Form, npy
 from app.calculations.bodies import EvaluateIn, SolveIn
 from app.calculations.operations import LARGE, OPERATIONS, Question
@@ -23,10 +23,9 @@ from app.calculations.schemas.evaluations import Evaluation, Solution, Worksheet
 from app.calculations.service import evaluated, run_evaluate, run_solve
 from app.calculations.worksheet import run_worksheet
 from app.catalogue.routes.templates import Id, Number
-from app.http.roles import needs
+from app.http.access import get_client, needs
 from app.http.strict_requests import PlainRoute, StrictRequest
-from app.pool.cost import EXPENSIVE, estimated_seconds, is_quick, solving_seconds, writing_seconds
-from app.pool.size import points
+from app.pool.cost import EXPENSIVE, estimated_seconds, is_quick, points, solving_seconds, writing_seconds
 from app.presentation.units import System
 from app.schemas.problems import Responses, refusals
 from app.workers.pieces import Pieces
@@ -54,7 +53,7 @@ class LargeRoute(PlainRoute):
     async def admit(self, request: StrictRequest) -> None:
         """Refuse a large body before it comes, if the pool has no room for its calculation."""
         if int(request.headers.get("content-length", 0)) > LARGE and _system(request) and _is_plain(request):
-            await services_of(request).answering.admit(request, *_template(request))
+            await _admit(request)
 
     async def shortcut(self, request: StrictRequest) -> Response | None:
         """Return the answer to a large body."""
@@ -63,7 +62,34 @@ class LargeRoute(PlainRoute):
             return None
         operation = self.path.rpartition("/")[2]
         question = Question(*_template(request), operation, body, system, _form(request, operation))
-        return await services_of(request).answering.answer(request, question)
+        return await _answered(request, question)
+
+
+async def _admit(request: Request) -> None:
+    """Ask, before a large body comes, whether there is room for its calculation.
+
+    Raises
+    ------
+    UnknownTemplate, InvalidInputs, TooManyCalculations
+        What its answer would raise now.
+    """
+    services = services_of(request)
+    await services.catalogues.tried(*_template(request))
+    client = await get_client(request)
+    if _patience(request) > 0:  # else a job waits for its turn
+        services.calculations.admit(client)
+
+
+async def _answered(request: Request, question: Question) -> Response:
+    """Return the answer of a calculation process; 202 with a job once nobody waits for it any longer."""
+    questions, client = services_of(request).evaluations, await get_client(request)
+    return await answered(questions, question, request, client, _patience(request), question.media_type)
+
+
+def _patience(request: Request) -> float:
+    """Return the time that a request waits for its answer [s]."""
+    deadline = services_of(request).steps.deadline
+    return min(deadline, patience(request.headers.get("prefer"), deadline))
 
 
 def _is_plain(request: Request) -> bool:
@@ -100,12 +126,12 @@ async def evaluate_template(
 ) -> Response:
     """Evaluate a template: inputs in any unit, scalars or arrays; only what is asked for is computed."""
     services = services_of(request)
-    cls = await to_try(services.catalogues, id, number)
+    cls = await services.catalogues.tried(id, number)
     form = _form(request, "evaluate")
     if form == "json" and points(body.inputs) <= FEW and len(body.inputs) <= FEW and is_quick(cls):
         return _json(to_json(run_evaluate(cls, body)))
     if estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs) > EXPENSIVE:
-        return await services.answering.answer(request, await _question(request, id, number, "evaluate"))
+        return await _answered(request, await _question(request, id, number, "evaluate"))
     if form == "npy":
         return Response(await run_in_threadpool(lambda: npy(evaluated(cls, body))), media_type=NPY)
     return _json(await run_in_threadpool(lambda: to_json(run_evaluate(cls, body))))
@@ -126,10 +152,10 @@ async def solve_template(
 ) -> Response:
     """Find the input that gives a wanted output, between bounds."""
     services = services_of(request)
-    cls = await to_try(services.catalogues, id, number)
+    cls = await services.catalogues.tried(id, number)
     seconds = solving_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs, body.target)
     if seconds > EXPENSIVE:
-        return await services.answering.answer(request, await _question(request, id, number, "solve"))
+        return await _answered(request, await _question(request, id, number, "solve"))
     return _json(await run_in_threadpool(lambda: to_json(run_solve(cls, body))))
 
 
@@ -152,12 +178,10 @@ async def write_worksheet(
 ) -> Response:
     """Evaluate a template, with every formula written out: symbol = expression = numbers = result."""
     services = services_of(request)
-    cls = await to_try(services.catalogues, id, number)
+    cls = await services.catalogues.tried(id, number)
     seconds = estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs)
     if seconds + writing_seconds(cls, body.outputs) > EXPENSIVE:
-        return await services.answering.answer(
-            request, await _question(request, id, number, "worksheet", units)
-        )
+        return await _answered(request, await _question(request, id, number, "worksheet", units))
     return _json(await run_in_threadpool(lambda: to_json(run_worksheet(cls, body, units))))
 
 

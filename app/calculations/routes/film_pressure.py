@@ -9,7 +9,7 @@ from starlette.concurrency import run_in_threadpool
 from app.api.dependencies import Units
 from app.calculations.film_pressure import TYPICAL, solve_film_pressure
 from app.calculations.schemas.film_pressure import FilmPressure
-from app.http.roles import needs
+from app.http.access import needs
 from app.http.strict_requests import StrictRoute
 from app.schemas.bounds import Bounded
 from app.schemas.values import GIVEN, Given

@@ -12,7 +12,7 @@ from starlette.concurrency import run_in_threadpool
 from app.api.dependencies import TheCatalogues, services_of
 from app.calculations.spreadsheet_line import MOST_INPUTS, MOST_POINTS, csv_of
 from app.catalogue.routes.templates import Id, Number
-from app.http.clients import TheClient
+from app.http.access import TheClient
 from app.http.strict_requests import StrictRoute
 from app.plain import Raw
 from app.pool.cost import EXPENSIVE, estimated_seconds

@@ -18,8 +18,8 @@ from app.designs.engine.relations import limit_operations, limit_values, related
 from app.designs.engine.steps import memory, step_rows
 from app.designs.network import Block, Cell, Graph, Node, Solid, SolidAnalysis
 from app.plain import Raw
+from app.pool.cost import points, spanned
 from app.pool.errors import StepDeferred
-from app.pool.size import points, spanned
 from app.reference import Reference
 from cad.model import CadModel
 from templates.core.arrays import Array
@@ -245,7 +245,7 @@ def literal(cell: Cell) -> Typed:
     FaultyText
         If it is none.
     """
-    return read(cell.raw, cell.declared.meaning.unit) if cell.declared else read_any(cell.raw)
+    return read(cell.raw, cell.declared.meaning.accepted) if cell.declared else read_any(cell.raw)
 
 
 def _related(result: Calculation, cell: Cell) -> None:
@@ -293,7 +293,7 @@ def _joined(cell: Cell, uses: Mapping[str, Column]) -> Column:
 def _item(cell: Cell, item: Raw, uses: Mapping[str, Column]) -> Column:
     if is_relation(item):
         return related(cell.relations_by_text[str(item).strip()], uses)
-    return Column(read(item, cell.declared.meaning.unit).si if cell.declared else read_any(item).si)
+    return Column(read(item, cell.declared.meaning.accepted).si if cell.declared else read_any(item).si)
 
 
 def _admitted(

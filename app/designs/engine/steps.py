@@ -22,9 +22,8 @@ from app.designs.engine.columns import Column, Indices, RowEstimate, scattered
 from app.designs.engine.refusals import Refusal, is_of_all_rows, masked, refusal_of
 from app.designs.network import Block
 from app.plain import Raw
-from app.pool.pending_calculations import fingerprint
-from app.pool.size import shape
-from app.pool.steps import evaluated_step
+from app.pool.cost import shape
+from app.pool.steps import evaluated_step, fingerprint
 from templates.core.arrays import Mask
 from templates.core.errors import InvalidInputs
 from templates.core.judging.bands import Estimate
@@ -331,7 +330,7 @@ def _column(
     return whole.without(step.refused()) if step.refusals else whole
 
 
-class _Kept(NamedTuple):
+class _StepState(NamedTuple):
     evaluation: Evaluation
     values: int  # that its template had computed: it computes further ones when asked, and grows
 
@@ -353,7 +352,7 @@ class Memory:
             The caller does not wait for an expensive step.
         """
         key = (block.cls, block.level, block.tolerance, wanted, fingerprint(raw))
-        kept: _Kept | None = self._cache.get(key)
+        kept: _StepState | None = self._cache.get(key)
         if kept is None:
             return self._keep(key, evaluated_step(block.cls, raw, wanted, block.level, block.tolerance))
         if kept.values != _count(kept.evaluation):
@@ -361,7 +360,7 @@ class Memory:
         return kept.evaluation
 
     def _keep(self, key: Hashable, evaluation: Evaluation) -> Evaluation:
-        self._cache.keep(key, _Kept(evaluation, _count(evaluation)))
+        self._cache.keep(key, _StepState(evaluation, _count(evaluation)))
         return evaluation
 
 

@@ -16,7 +16,7 @@ from app.designs.engine.relations import limit_operations, limit_values
 from app.designs.engine.shifts import Shifts, Upstream
 from app.designs.engine.steps import Evaluations, estimate_rows
 from app.designs.network import LIMITS, Block, Demand, Subject, subjects
-from app.pool.size import spanned
+from app.pool.cost import spanned
 from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import FaultyText, listed

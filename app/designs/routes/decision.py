@@ -4,20 +4,18 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request, Response
 
-from app.api.dependencies import ExpensiveSteps, TheDecisions, TheThreads, Units
-from app.api.responses import accepted, later, patience, written
+from app.api.answers import answered
+from app.api.dependencies import TheDecisions, Units
+from app.api.responses import later, patience
 from app.designs.bodies import DecideIn
-from app.designs.decisions import LONGEST_BUDGET, Asked, read_budget
-from app.designs.routes.answers import Id, Prefer
+from app.designs.decisions import LONGEST_BUDGET, DecisionQuestion, read_budget
+from app.designs.routes.designs import Id, Prefer
 from app.designs.schemas.decision import Decision
-from app.http.clients import TheClient
-from app.http.roles import needs
+from app.http.access import TheClient, needs
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
 
-router = APIRouter(
-    prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
-)
+router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
 
 
 @router.post(
@@ -29,7 +27,6 @@ router = APIRouter(
 async def decide_criteria(
     id: Id,
     decisions: TheDecisions,
-    threads: TheThreads,
     client: TheClient,
     request: Request,
     body: DecideIn | None = None,
@@ -38,7 +35,5 @@ async def decide_criteria(
 ) -> Response:
     """Decide the criteria of the newest revision: finer levels where they are undecided; nothing is saved."""
     wanted = body or DecideIn()
-    asked = Asked(id, wanted.criteria, read_budget(wanted.budget), units=units)
-    seconds = patience(prefer, LONGEST_BUDGET)
-    answer, job = await threads.run_within(seconds, request, decisions.in_parts, asked, client)
-    return accepted(job, answer) if job else written(answer)
+    asked = DecisionQuestion(id, wanted.criteria, read_budget(wanted.budget), units=units)
+    return await answered(decisions, asked, request, client, patience(prefer, LONGEST_BUDGET))

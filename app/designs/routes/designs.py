@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Body, Path, Query, Request, Response
+from fastapi import APIRouter, Body, Header, Path, Query, Request, Response
 from pydantic import WithJsonSchema
 from pydantic.config import JsonDict
+from starlette.concurrency import run_in_threadpool
 
+from app.api.answers import answered
 from app.api.dependencies import (
     ExpensiveSteps,
     IdempotencyKey,
@@ -24,23 +27,13 @@ from app.api.dependencies import (
     get_once,
     services_of,
 )
-from app.api.responses import accepted, later, written
+from app.api.responses import LONGEST, finished, later, patience, written
 from app.designs import repository, views
 from app.designs.bodies import LONGEST_NOTE, PATCH, CopyIn, DesignIn
 from app.designs.filters import TEMPLATE, DesignFilter
 from app.designs.labels import key_of, tags_of
-from app.designs.preview import Previewed
+from app.designs.preview import PreviewRequest
 from app.designs.releases import released_of
-from app.designs.routes.answers import (
-    CHANGED,
-    Id,
-    IfMatch,
-    Prefer,
-    Within,
-    answer_saved,
-    seconds_waited,
-    shown,
-)
 from app.designs.schemas.designs import (
     Design,
     DesignList,
@@ -49,20 +42,61 @@ from app.designs.schemas.designs import (
     MappedDesign,
     ModelMeasurements,
     Preview,
+    Proposal,
     Proposals,
     State,
 )
 from app.designs.schemas.labels import MOST_TAGS, Tag
-from app.designs.service import Saved
-from app.http.clients import TheClient, get_client
+from app.designs.service import Designs, SaveResult
+from app.http.access import TheClient, get_client, needs
 from app.http.pages import Cursor, Limit, page
-from app.http.roles import needs
 from app.http.strict_requests import PlainRoute, StrictRequest, StrictRoute
+from app.jobs.service import Jobs
 from app.plain import JsonObject
 from app.schemas.problems import refusals
 from app.storage.idempotency import Once
 from app.storage.tables import DesignRow
 from templates.core.errors import Fault, InvalidInputs
+
+Id = Annotated[str, Path(max_length=64)]
+Number = Annotated[int, Path(ge=1, le=10**9)]
+Prefer = Annotated[str | None, Header(description="`wait=5` or `respond-async`")]
+IfMatch = Annotated[str | None, Header(description='the ETag of the design that was read, such as `"3"`')]
+Within = Annotated[
+    float | None,
+    Query(ge=0, le=LONGEST, description="leave pending what takes longer [s], instead of queueing a job"),
+]
+CHANGED = {**later(Design), **refusals(404, 429)}
+
+
+def seconds_waited(prefer: str | None) -> float:
+    """Return how long a request waits for expensive steps [s]; at most until the deadline."""
+    return patience(prefer, math.inf)
+
+
+async def answer_saved(
+    designs: Designs,
+    jobs: Jobs,
+    saved: SaveResult,
+    prefer: str | None,
+    proposals: Sequence[Proposal] | None = None,
+) -> Response:
+    """Return the design: 200 or 201 if its job ended in time, else 202 with the job in Location."""
+    done = not saved.is_deferred and await finished(jobs, saved.job, prefer)
+    status = (201 if saved.created else 200) if done else 202
+    place = f"/api/v1/jobs/{saved.job}" if saved.job and not done else f"/api/v1/designs/{saved.design}"
+    design = saved.answer
+    if design is None:
+        design = await run_in_threadpool(designs.show, saved.design, saved.revision)
+    if proposals is not None:
+        design = MappedDesign(**dict(design), proposals=list(proposals))
+    return shown(design, status, {"Location": place})
+
+
+def shown(design: Design, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
+    """Return a design as an answer; the ETag is its revision."""
+    return written(design, status, {**(headers or {}), "ETag": f'"{design.revision}"'})
+
 
 PRINTABLE = r"^[^\x00-\x1f\x7f]*$"  # no control characters, as in names of designs
 
@@ -163,12 +197,12 @@ async def change_design(
     A new name alone keeps all results: nothing is calculated.
     """
     patch, note = noted(body)
-    change = services_of(request).labelling.change
+    change = services_of(request).designs.change
     return await _saved(request, prefer, idempotency_key, partial(change, id, patch, note, if_match))
 
 
 async def _saved(
-    request: StrictRequest, prefer: str | None, key: str | None, save: Callable[[Once], Saved]
+    request: StrictRequest, prefer: str | None, key: str | None, save: Callable[[Once], SaveResult]
 ) -> Response:
     """Save a design in a thread that may wait for the pool; return the answer."""
     services, client = services_of(request), await get_client(request)
@@ -204,11 +238,10 @@ async def preview_design(
     prefer: Prefer = None,
 ) -> Response:
     """Preview the effect of a change on outputs and model parameters; nothing is saved."""
-    change = Previewed(id, noted(body)[0], worksheet, units)
+    change = PreviewRequest(id, noted(body)[0], worksheet, units)
     if within is not None:
         return written(await threads.run_within(within, request, previews.at_once, change))
-    answer, job = await threads.run_within(seconds_waited(prefer), request, previews.in_parts, change, client)
-    return accepted(job, answer) if job else written(answer)
+    return await answered(previews, change, request, client, seconds_waited(prefer))
 
 
 @router.post("/{id}/auto-map", response_model=MappedDesign | Proposals, responses=CHANGED)

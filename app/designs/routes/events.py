@@ -10,9 +10,8 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import OneStream, TheDatabase, TheJobs
 from app.api.event_streams import LastEvent, allowed, identity, listening
-from app.designs.news import Standing, can_resume, standing
-from app.designs.routes.answers import Id
-from app.designs.routes.designs import show_design
+from app.designs.repository import Standing, can_resume, standing
+from app.designs.routes.designs import Id, show_design
 from app.http.strict_requests import StrictRoute
 from app.storage.database import Database
 

@@ -23,18 +23,18 @@ from app.api.dependencies import (
 from app.api.file_answers import UNAVAILABLE, UNCHANGED, lost
 from app.api.responses import LATER, accepted, accepted_weights, finished
 from app.designs import stamps, views
-from app.designs.routes.answers import Id, Number, Prefer
+from app.designs.routes.designs import Id, Number, Prefer
 from app.designs.routes.title_blocks import TheTitleBlock, TitleBlock
 from app.http import problems
+from app.http.access import TheClient
 from app.http.attachments import MemoryFile, disposition, http_time, is_at_hand, tag, unchanged
-from app.http.clients import TheClient
 from app.http.query_names import KNOWN_NAMES
 from app.http.strict_requests import StrictRoute
 from app.jobs.service import Jobs
 from app.reports.paper import Press
 from app.schemas.problems import RouteOptions, refusals
 from app.solids.models import File, Models
-from app.solids.repair import Healing
+from app.solids.repair import ArtifactRepair
 from app.solids.routes.models import PATIENCE, send_file
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
@@ -91,7 +91,7 @@ class FileRequest:
     store: Artifacts
     models: Models
     jobs: Jobs
-    healing: Healing
+    healing: ArtifactRepair
     press: Press
     owner: str
     client: str

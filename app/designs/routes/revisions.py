@@ -17,7 +17,7 @@ from app.api.dependencies import (
 )
 from app.designs import repository, views
 from app.designs.bodies import RestoreIn
-from app.designs.routes.answers import CHANGED, Id, IfMatch, Number, Prefer, answer_saved, seconds_waited
+from app.designs.routes.designs import CHANGED, Id, IfMatch, Number, Prefer, answer_saved, seconds_waited
 from app.designs.schemas.designs import Design, Revision, RevisionList
 from app.http.pages import Limit, page
 from app.http.strict_requests import StrictRoute

@@ -12,7 +12,7 @@ from app.api.dependencies import TheCatalogues, TheDatabase
 from app.api.file_answers import UNAVAILABLE, UNCHANGED
 from app.api.responses import LATER
 from app.designs import views
-from app.designs.routes.answers import Id, Number
+from app.designs.routes.designs import Id, Number
 from app.designs.routes.files import ThePlainFileRequest
 from app.designs.schemas import solid_fields as schemas
 from app.designs.solid_fields import SolidField, field_of, fields_of

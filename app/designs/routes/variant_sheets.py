@@ -9,7 +9,7 @@ from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheDesigns, TheJobs, TheOnce, TheThreads
 from app.api.responses import later, patience
-from app.designs.routes.answers import Id, IfMatch, Prefer
+from app.designs.routes.designs import Id, IfMatch, Prefer
 from app.designs.routes.sheet_types import ANSWERS, MEDIA, SheetRoute, sheet_kind
 from app.designs.routes.variants import answer_table
 from app.designs.schemas.variants import VariantsOut

@@ -14,6 +14,7 @@ from pydantic import ConfigDict, Field
 from pydantic.config import JsonDict
 from starlette.concurrency import run_in_threadpool
 
+from app.api.answers import answered
 from app.api.dependencies import (
     ExpensiveSteps,
     TheCatalogues,
@@ -28,23 +29,23 @@ from app.api.dependencies import (
     Units,
 )
 from app.api.file_answers import UNAVAILABLE, lost
-from app.api.responses import LATER, accepted, finished, later, patience, written
+from app.api.responses import LATER, finished, later, patience, written
 from app.catalogue.catalogues import Catalogues
 from app.designs.bodies import Note
 from app.designs.document import Overrides, Word
-from app.designs.routes.answers import Id, IfMatch, Number, Prefer
+from app.designs.routes.designs import Id, IfMatch, Number, Prefer
 from app.designs.routes.files import FILES, IfNoneMatch, TheFileRequest
 from app.designs.routes.sheet_types import ANSWERS, BODIES
 from app.designs.schemas.variants import VariantDetail, VariantsOut
-from app.designs.service import Designs, Saved
+from app.designs.service import Designs, SaveResult
 from app.designs.variants import views
 from app.designs.variants.detail import WantedVariant
 from app.designs.variants.files import STEP, Entry, entries, variant_model
 from app.designs.variants.names import MOST_VARIANTS
 from app.designs.variants.save import replace_variants as replaced
+from app.http.access import TheClient
 from app.http.archives import MEDIA_TYPE, archived, distinct
 from app.http.attachments import is_at_hand, named, unchanged
-from app.http.clients import TheClient
 from app.http.strict_requests import StrictRoute
 from app.jobs.service import Jobs
 from app.presentation.units import System
@@ -148,13 +149,13 @@ async def replace_variants(
     return await answer_table(designs, jobs, saved, prefer)
 
 
-async def answer_table(designs: Designs, jobs: Jobs, saved: Saved, prefer: str | None) -> Response:
+async def answer_table(designs: Designs, jobs: Jobs, saved: SaveResult, prefer: str | None) -> Response:
     """Return the table as it was saved: 200, or 202 while solids are built."""
     is_done = not saved.is_deferred and await finished(jobs, saved.job, prefer)
     return await run_in_threadpool(_table, designs, saved, is_done)
 
 
-def _table(designs: Designs, saved: Saved, is_done: bool) -> Response:
+def _table(designs: Designs, saved: SaveResult, is_done: bool) -> Response:
     with designs.database.read() as session:
         out = views.variants(session, saved.design, saved.revision, designs.catalogues)
     place = (
@@ -178,7 +179,6 @@ async def show_variant(
     id: Id,
     variant: VariantName,
     details: TheVariantDetails,
-    threads: TheThreads,
     client: TheClient,
     request: Request,
     number: Number | None = None,
@@ -188,9 +188,7 @@ async def show_variant(
 ) -> Response:
     """One variant with its outputs, curves included; `base` is the design itself. Nothing is saved."""
     wanted = WantedVariant(id, variant, tuple(dict.fromkeys(output)), number, units)
-    seconds = patience(prefer, details.steps.deadline)
-    answer, job = await threads.run_within(seconds, request, details.answer, wanted, client)
-    return accepted(job) if answer is None else written(answer)
+    return await answered(details, wanted, request, client, patience(prefer, details.steps.deadline))
 
 
 @router.get("/{id}/variants/{variant}/model", **FILES)

@@ -7,7 +7,7 @@ from itertools import chain
 
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
-from app.designs.variants.outcome import Outcome
+from app.designs.results import Outcome
 from app.designs.variants.table import faulty_cells, sound
 from app.designs.variants.together import Available, row_arrays, together
 from templates.core.errors import Fault

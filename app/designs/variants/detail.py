@@ -9,20 +9,23 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from app.calculations import json_values
-from app.calculations.criteria import rendered
+from app.calculations.json_values import rendered
 from app.calculations.schemas.evaluations import Output
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
+from app.designs.errors import DesignError
 from app.designs.graph import raise_if
-from app.designs.questions import Reply
+from app.designs.questions import settled
+from app.designs.results import Outcome
 from app.designs.schemas.variants import VariantDetail
-from app.designs.solid_records import analysed, built
 from app.designs.variants.names import BASE
-from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available, together
+from app.pool.questions import VARIANT, Kind, Reply, json_answer, json_form
 from app.presentation.units import System
+from app.solids.analysis_rows import analysed
+from app.solids.rows import built
 from app.storage.database import Database
 from app.storage.errors import NotFound
 from templates.core.errors import Fault, InvalidInputs, unknown_names
@@ -113,3 +116,13 @@ def _outputs(calculation: Calculation) -> Iterator[tuple[str, Output]]:
         else:
             shown = json_values.outputs(evaluation.outputs)
             yield from ((f"{block.name}.{name}", Output.model_validate(one)) for name, one in shown.items())
+
+
+VARIANT_DETAILS = Kind(
+    VARIANT,
+    json_form(WantedVariant),
+    json_answer(VariantDetail),
+    detailed,
+    failures=(DesignError,),
+    settle=settled,
+)

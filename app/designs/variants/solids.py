@@ -8,15 +8,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from app.designs.calculation_cache import Prepared
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.errors import NotConverged
-from app.designs.model_failures import named
-from app.designs.variants.outcome import Outcome, outcome_of
+from app.designs.results import Outcome
+from app.designs.service import Prepared
+from app.designs.variants.outcome import outcome_of
 from app.jobs.service import JobContext
 from app.plain import JsonObject
-from app.solids.builds import Builds
+from app.solids.builds import Builds, failures_named
 from app.storage.errors import CannotRebuild
 from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
 from cad.errors import AnalysisError, GeometryError
@@ -45,7 +45,7 @@ def plain_problem(error: Exception) -> JsonObject:
 
 
 @dataclass(frozen=True)
-class Settling:
+class VariantSolids:
     """One regeneration of variants.
 
     Attributes
@@ -84,7 +84,7 @@ class Settling:
         """Build the solids whose parameters are known; why those that fail do."""
         for name, shape in shapes.items():
             try:
-                with named(name):
+                with failures_named(name):
                     self._make(shape)
             except FAILURES as error:
                 self._failed[build_key(shape)] = error

@@ -7,8 +7,8 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from app.api.dependencies import TheDatabase
+from app.http.access import needs
 from app.http.pages import Cursor, Limit, page
-from app.http.roles import needs
 from app.http.strict_requests import StrictRoute
 from app.identity import audit_rows, chain
 from app.identity.audit_rows import AuditFilter

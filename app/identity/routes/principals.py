@@ -8,8 +8,8 @@ from typing import Annotated
 from fastapi import APIRouter, Path
 
 from app.api.dependencies import TheIdentity
+from app.http.access import needs
 from app.http.pages import Cursor, Limit, page, page_of
-from app.http.roles import needs
 from app.http.strict_requests import StrictRoute
 from app.identity import views
 from app.identity.principal import acting

@@ -13,7 +13,7 @@ from app.api.file_answers import UNAVAILABLE, UNCHANGED, StoredFile, lost
 from app.api.responses import accepted, finished, later, written
 from app.catalogue.routes.templates import Number
 from app.http import problems
-from app.http.clients import TheClient
+from app.http.access import TheClient
 from app.http.strict_requests import StrictRoute
 from app.presentation.units import System
 from app.schemas.problems import refusals

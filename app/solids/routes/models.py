@@ -16,10 +16,9 @@ from app.api.responses import LATER, accepted, finished, later, written
 from app.catalogue.routes.templates import Number, listed, versions_of
 from app.catalogue.schemas.templates import TemplateList, TemplateVersions
 from app.http import problems
-from app.http.clients import TheClient
+from app.http.access import TheClient, needs
 from app.http.pages import Cursor, Limit
 from app.http.query_names import KNOWN_NAMES
-from app.http.roles import needs
 from app.http.strict_requests import StrictRoute, require_step
 from app.imported_models.views import origin
 from app.schemas.bounds import Bounded

@@ -34,7 +34,7 @@ class JobRow(Base):
     result: Mapped[str | None]  # a link
     created: Mapped[str]
     updated: Mapped[str]
-    client: Mapped[str] = mapped_column(default="")  # whose turn it takes; see `app.http.clients`
+    client: Mapped[str] = mapped_column(default="")  # whose turn it takes; see `app.http.access`
     others: Mapped[list[str]] = mapped_column(JsonText, default=list)  # clients that wait for it as well
     turn: Mapped[int] = mapped_column(BigInteger, default=0)
     operated: Mapped[int] = mapped_column(BigInteger, default=0)  # queued, then ended [s of operation]
@@ -44,6 +44,7 @@ class JobRow(Base):
     owner: Mapped[str | None] = mapped_column(default=None)  # the server process that runs it
     lease_until: Mapped[float | None] = mapped_column(Double, default=None)  # by the database's clock [s]
     cause: Mapped[str | None] = mapped_column(default=None)  # the id of its request, and the trace's context
+    question: Mapped[str | None] = mapped_column(default=None, index=True)  # the key of what it answers
 
 
 class EventRow(Base):
@@ -60,7 +61,7 @@ class EventRow(Base):
 
 
 class CounterRow(Base):
-    """A number that only grows, whatever the wall clock does; see `app.storage.identity`, `ownership`."""
+    """A number that only grows, whatever the wall clock does; see `app.storage.clock`, `ownership`."""
 
     __tablename__ = "counter"
 

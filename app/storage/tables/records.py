@@ -33,7 +33,7 @@ class IdempotencyRow(Base):
 
     key: Mapped[str] = mapped_column(primary_key=True)
     scope: Mapped[str] = mapped_column(primary_key=True)  # method and path
-    client: Mapped[str] = mapped_column(primary_key=True, default="")  # see `app.http.clients`
+    client: Mapped[str] = mapped_column(primary_key=True, default="")  # see `app.http.access`
     fingerprint: Mapped[str]  # SHA-256 of the body
     status: Mapped[int]
     location: Mapped[JsonObject]  # what to render again

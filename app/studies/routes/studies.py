@@ -26,27 +26,27 @@ from app.api.dependencies import (
 )
 from app.api.event_streams import LastEvent, Whole, as_it_stands, listening
 from app.api.responses import written
-from app.designs.routes.answers import CHANGED, IfMatch, Prefer, answer_saved, seconds_waited
+from app.designs.routes.designs import CHANGED, IfMatch, Prefer, answer_saved, seconds_waited
 from app.designs.schemas.designs import Design
+from app.http.access import TheClient
 from app.http.attachments import MemoryFile, disposition
-from app.http.clients import TheClient
 from app.http.pages import Cursor, Limit, page
 from app.http.paths import register_id
 from app.http.strict_requests import PreconditionRequired, StrictRoute
+from app.jobs.events import newest_numbers
 from app.plain import Json
 from app.pool.pool import Calculation, CalculationPool
 from app.presentation.spreadsheets import XLSX
 from app.schemas.problems import Responses, refusals
-from app.storage import event_log
 from app.storage.idempotency import Once
 from app.storage.tables import StudyRow
 from app.studies import exports, repository, views
 from app.studies.bodies import ChooseIn, StudyIn
 from app.studies.plan import Plan, planned
-from app.studies.row_columns import Stored
+from app.studies.row_columns import StoredRows
 from app.studies.schemas import Study, StudyEstimate, StudyList, StudyRows
 from app.studies.service import ENDED, Draft, Studies
-from app.studies.views import Listing, Wanted, Where
+from app.studies.views import RowList, RowQuery, Where
 from templates.core.arrays import Array
 
 register_id("study", ["estimate"])
@@ -288,18 +288,18 @@ def _shown(studies: Studies, id: str) -> Study:
 def _whole(studies: Studies, id: str, topic: str) -> Whole:
     with studies.database.read() as session:
         study = views.study(session, repository.get(session, id))
-        number = event_log.newest(session, [topic]).get(topic, 0)
+        number = newest_numbers(session, [topic]).get(topic, 0)
     return Whole(number, study.state, study, study.state in ENDED)
 
 
 def _listing(
     studies: Studies, id: str, columns: str | None, where: Where | None, sort: str | None
-) -> Listing:
+) -> RowList:
     with studies.database.read() as session:
         row = repository.get(session, id)
-        stored = Stored(studies.store, repository.chunks(session, id))
+        stored = StoredRows(studies.store, repository.chunks(session, id))
     names = tuple(dict.fromkeys(part.strip() for part in (columns or "").split(",") if part.strip()))
-    return Listing(row, stored, Wanted(names, where, sort))
+    return RowList(row, stored, RowQuery(names, where, sort))
 
 
 def _named(id: str, kind: str) -> str:

@@ -11,7 +11,7 @@ from starlette.routing import Match
 from starlette.types import Scope
 
 from app.api.dependencies import TheOnce, TheStudies, services_of
-from app.http.clients import TheClient
+from app.http.access import TheClient
 from app.http.strict_requests import StrictRoute
 from app.presentation.spreadsheets import XLSX
 from app.studies.bodies import study_of

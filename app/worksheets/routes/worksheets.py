@@ -13,10 +13,9 @@ from pydantic.config import JsonDict
 
 from app.api.dependencies import TheOnce, TheThreads, TheWorksheets
 from app.api.responses import written
-from app.http.clients import TheClient
+from app.http.access import TheClient, needs
 from app.http.pages import Cursor, Limit, page
 from app.http.paths import register_id
-from app.http.roles import needs
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
 from app.storage.tables import WorksheetVersionRow

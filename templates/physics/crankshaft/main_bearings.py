@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from templates.core.arrays import Array, Truth
 from templates.core.language.declare import units
+from templates.physics.numerics.crank_grid import CrankGrid
 
 Vectors = NDArray[np.complex128]
 _VANISHES = 1e-12
@@ -47,7 +48,7 @@ def determinate_loads(mains: Array, loads: ShaftLoads) -> Vectors:
 
 def elastic_loads(reactions: Array, loads: ShaftLoads, theta: Array) -> Vectors:
     """Return the same on elastic supports, by the matrix `reactions`, (…, 2 n, 2 L), in axes that turn."""
-    turn = np.exp(1j * theta)
+    turn = np.exp(1j * theta)[..., None, :]
     turned = loads.forces * np.conj(turn)
     pairs = np.stack([turned.real, turned.imag], axis=-2)  # (…, L, 2, K)
     flat = pairs.reshape(*pairs.shape[:-3], -1, pairs.shape[-1])
@@ -69,36 +70,37 @@ def mains_ascend(mains: Array) -> Truth:
     return np.ndim(mains) == 1 and np.size(mains) > 1 and bool(np.all(np.diff(mains) > 1e-6))
 
 
-def _without_rounding(part: Array, vectors: Vectors) -> Array:
-    """A part of vectors over the cycle, with zero where no more than rounding of the largest is left."""
+def _returned(part: Array, vectors: Vectors, grid: CrankGrid) -> Array:
+    """A part of vectors at the returned angles; zero where only rounding of the largest is left."""
     if not np.ndim(vectors):
         return np.asarray(part)
     largest = np.abs(vectors).max(axis=-1, keepdims=True)
-    return np.where(np.abs(part) <= _VANISHES * largest, 0.0, part)
+    shown = grid.returned(part)
+    return np.where(np.abs(shown) <= _VANISHES * largest, 0.0, shown)
 
 
-@units(None, returns="N")
-def along_x(forces: Vectors) -> Array:
-    """Return the part of forces along x [N]."""
-    return _without_rounding(forces.real, forces)
+@units(None, None, returns="N")
+def along_x(forces: Vectors, grid: CrankGrid) -> Array:
+    """Return the part of forces along x [N] at the returned angles."""
+    return _returned(forces.real, forces, grid)
 
 
-@units(None, returns="N")
-def along_y(forces: Vectors) -> Array:
-    """Return the part of forces along y [N]."""
-    return _without_rounding(forces.imag, forces)
+@units(None, None, returns="N")
+def along_y(forces: Vectors, grid: CrankGrid) -> Array:
+    """Return the part of forces along y [N] at the returned angles."""
+    return _returned(forces.imag, forces, grid)
 
 
-@units(None, returns="N*m")
-def moment_about_x(couple: Vectors) -> Array:
-    """Return the moment about x [N m] of forces that give ΣzF: that is −Σz F_y."""
-    return _without_rounding(-couple.imag, couple)
+@units(None, None, returns="N*m")
+def moment_about_x(couple: Vectors, grid: CrankGrid) -> Array:
+    """Return the moment about x [N m] at the returned angles of forces that give ΣzF: that is −Σz F_y."""
+    return _returned(-couple.imag, couple, grid)
 
 
-@units(None, returns="N*m")
-def moment_about_y(couple: Vectors) -> Array:
-    """Return the moment about y [N m] of forces that give ΣzF: that is Σz F_x."""
-    return _without_rounding(couple.real, couple)
+@units(None, None, returns="N*m")
+def moment_about_y(couple: Vectors, grid: CrankGrid) -> Array:
+    """Return the moment about y [N m] at the returned angles of forces that give ΣzF: that is Σz F_x."""
+    return _returned(couple.real, couple, grid)
 
 
 @units(None, returns="N")
@@ -107,14 +109,14 @@ def greatest(forces: Vectors) -> Array:
     return np.asarray(np.abs(forces).max(axis=-1)) if np.ndim(forces) else np.array(np.nan)
 
 
-@units(None, "rad", returns="rad")
-def greatest_at(forces: Vectors, theta: Array) -> Array:
-    """Return the crank angle at which each load is greatest [rad]."""
+@units(None, None, returns="rad")
+def greatest_at(forces: Vectors, grid: CrankGrid) -> Array:
+    """Return the crank angle at which each load is greatest [rad]; of equal ones the first."""
     if not np.ndim(forces):
         return np.array(np.nan)
     size = np.abs(forces)
-    first = np.argmax(size >= size.max(axis=-1, keepdims=True) * (1 - 1e-9), axis=-1)
-    return np.asarray(theta[first])
+    near = size >= size.max(axis=-1, keepdims=True) * (1 - 1e-9)
+    return np.asarray(np.where(near, grid.theta[..., None, :], np.inf).min(axis=-1))
 
 
 @units(None, returns="1")

@@ -90,7 +90,7 @@ def with_play(
     mains: Array, loads: ShaftLoads, shafts: Sequence[Flexibility], supports: Supports, theta: Array
 ) -> Supported:
     """Return the loads of mains with play; each point of the loads has the one shaft, or its own."""
-    turn = np.exp(1j * theta)
+    turn = np.exp(1j * theta)[..., None, :]
     shape = loads.forces.shape[:-2]
     points = loads.forces.reshape(-1, *loads.forces.shape[-2:])
     turned = points * np.conj(turn)

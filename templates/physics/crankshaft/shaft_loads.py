@@ -149,7 +149,9 @@ def on_the_shaft(places: Array, pins: Vectors, webs: Array, spinning: Vectors) -
 
 def spun(unbalance: Vectors, omega: Array, theta: Array) -> Vectors:
     """Return the forces of unbalances [kg m] that turn with the crank [N], (…, L, K)."""
-    return np.asarray((unbalance * np.asarray(omega)[..., None] ** 2)[..., None] * np.exp(1j * theta))
+    return np.asarray(
+        (unbalance * np.asarray(omega)[..., None] ** 2)[..., None] * np.exp(1j * theta[..., None, :])
+    )
 
 
 def sections_of(

@@ -14,7 +14,10 @@ S. S. Rao, Singh: DYREMI, Int. J. of Engineering Education 1993/94.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+from numpy.typing import NDArray
 
 from templates.core.arrays import Array
 from templates.core.language.declare import units
@@ -90,6 +93,38 @@ def wristpin_load_x(
 ) -> Array:
     """Return F_34x = m_4 a + (p − p_c) A [N], rod on piston."""
     return np.asarray(axial_force(m_4, omega, r, A, motion, p, p_c))
+
+
+@dataclass(frozen=True)
+class CrankForces:
+    """Forces of a mechanism at all angles of a motion [N], (…, K): K, that of the wall, the wristpin's."""
+
+    K: Array
+    wall: Array
+    wristpin_x: Array
+    motion: Motion
+    omega: Array
+    r: Array
+
+    def crankpin(self, m_3A: Array) -> NDArray[np.complex128]:
+        """Return the load of the crankpin [N], complex."""
+        x = crankpin_load_x_Rao_Singh_1993(m_3A, self.omega, self.r, self.K, self.motion)
+        return x + 1j * crankpin_load_y_Rao_Singh_1993(m_3A, self.omega, self.r, self.wall, self.motion)
+
+    def main(self, M: Array) -> NDArray[np.complex128]:
+        """Return the load of the main bearings [N], complex."""
+        x = main_load_x_Rao_Singh_1993(M, self.omega, self.r, self.K, self.motion)
+        return x + 1j * main_load_y_Rao_Singh_1993(M, self.omega, self.r, self.wall, self.motion)
+
+    def wristpin(self) -> NDArray[np.complex128]:
+        """Return the load of the wristpin [N], complex."""
+        return np.asarray(self.wristpin_x + 1j * self.wall)
+
+
+@units(None, returns="N")
+def greatest_force(force: NDArray[np.complex128] | Array) -> Array:
+    """Return the greatest size of one force over the cycle [N]."""
+    return np.asarray(np.abs(force).max(axis=-1))[()]
 
 
 @units("kg*m**2", "rad/s", None, returns="N*m")

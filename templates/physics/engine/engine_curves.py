@@ -10,6 +10,7 @@ from templates.core.arrays import Array, Truth
 from templates.core.language.declare import units
 from templates.physics.crankshaft.main_bearings import Vectors
 from templates.physics.engine.offset_crank import RodMotion
+from templates.physics.numerics.crank_grid import CrankGrid
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Rotors:
         """Return their forces [N], (…, L, K)."""
         size = self.unbalance * (np.asarray(omega)[..., None] * self.ratio) ** 2
         ratio = np.asarray(self.ratio + 0 * self.place)[:, None]
-        return np.asarray(size[..., None] * np.exp(1j * ratio * theta))
+        return np.asarray(size[..., None] * np.exp(1j * ratio * theta[..., None, :]))
 
 
 def balancers(unbalance: Array, ratios: Array, phases: Array, places: Array) -> Rotors:
@@ -78,29 +79,42 @@ def piston_shaking(reciprocating: Array, omega: Array, motion: RodMotion, bank: 
     return np.asarray(along * np.exp(1j * bank)[..., None])
 
 
-@units(None, None, None, returns="N*m")
-def roll_moment(wall: Array, gas: Array, motion: RodMotion) -> Array:
+@units(None, None, None, None, returns="N*m")
+def roll_moment(wall: Array, gas: Array, motion: RodMotion, grid: CrankGrid) -> Array:
     """Return moment about the shaft that walls and heads put on the frame [N m]: Σ (x W − e (p − p₀) A)."""
     each = motion.x * wall - motion.crank.e[..., None] * gas
-    return np.asarray(each.sum(axis=-2))
+    return grid.returned(np.asarray(each.sum(axis=-2)))
 
 
-@units(None, None, None, returns="N*m")
-def torque(pins: Vectors, motion: RodMotion, _theta: Array) -> Array:
+def torque(pins: Vectors, motion: RodMotion) -> Array:
     """Return torque of all rods on the crank [N m], from pin forces in the cylinders' own axes, (…, K)."""
     lever = motion.crank.r[..., None]
     return np.asarray((lever * (motion.cos * pins.imag - motion.sin * pins.real)).sum(axis=-2))
 
 
-@units("rad", "N*m", returns="J")
-def running_energy(theta: Array, T: Array) -> Array:
-    """Integral of the torque less its mean from the first angle [J], (…, K), by the trapezoidal rule."""
-    swing = T - T.mean(axis=-1, keepdims=True)
-    step = theta[1] - theta[0]
-    inner = (swing[..., 1:] + swing[..., :-1]) * (step / 2)
-    energy = np.concatenate([np.zeros_like(swing[..., :1]), np.cumsum(inner, axis=-1)], axis=-1)
+def running_energy(T: Array, grid: CrankGrid) -> Array:
+    """Integral of the torque less its mean from the first angle [J], (…, K), at all angles of the grid."""
+    energy = grid.running(T)
     least = 1e-12 * np.abs(energy).max(axis=-1, keepdims=True)
     return np.where(np.abs(energy) <= least, 0.0, energy)
+
+
+@units(None, None, returns="N*m")
+def torque_curve(T: Array, grid: CrankGrid) -> Array:
+    """Return the torque [N m] at the returned angles."""
+    return grid.returned(T)
+
+
+@units(None, None, returns="J")
+def energy_curve(energy: Array, grid: CrankGrid) -> Array:
+    """Return the running energy [J] at the returned angles."""
+    return grid.returned(energy)
+
+
+@units(None, None, returns="Pa")
+def pressure_curves(p: Array, grid: CrankGrid) -> Array:
+    """Return the pressure in each cylinder [Pa] at the returned angles."""
+    return grid.returned(p)
 
 
 @dataclass(frozen=True)
@@ -112,55 +126,57 @@ class Area:
     energy: float
 
 
-def areas_of(theta: Array, T: Array) -> list[Area]:
-    """Return the areas of one torque curve, (K,), linear between its points and periodic; they sum to 0."""
-    swing, step = T - T.mean(), float(theta[1] - theta[0])
-    after = np.roll(swing, -1)
+def areas_of(theta: Array, swing: Array, cycle: float) -> list[Area]:
+    """Return the areas of a periodic curve of mean 0 at ascending angles, (K,); they sum to 0."""
+    width, after = np.diff(theta, append=theta[0] + cycle), np.roll(swing, -1)
     crossing = np.flatnonzero((swing < 0) != (after < 0))
-    if not crossing.size or np.abs(swing).max() <= 1e-12 * np.abs(T).max():
+    if not crossing.size:
         return []
-    share = swing[crossing] / (swing[crossing] - after[crossing])
-    places = theta[crossing] + share * step
-    areas = []
-    for k, (i, s) in enumerate(zip(crossing, share, strict=True)):
-        last = k + 1 == crossing.size
-        j, t = (crossing[0] + T.size, share[0]) if last else (crossing[k + 1], share[k + 1])
-        between = swing[np.arange(i + 1, j + 1) % T.size]
-        ends = between[0] * (1 - s) / 2 + between[-1] * t / 2
-        inner = (between[1:] + between[:-1]).sum() / 2
-        end = places[0] + T.size * step if last else places[k + 1]
-        areas.append(Area(float(places[k]), float(end), float((ends + inner) * step)))
-    return areas
+    before, beyond = swing[crossing], after[crossing]
+    share = before / (before - beyond)
+    places = theta[crossing] + share * width[crossing]
+    parts = (swing + after) / 2 * width
+    sums = np.cumsum(parts) - parts
+    reached = sums[crossing] + before * share * width[crossing] / 2
+    ends = np.append(places[1:], places[0] + cycle)
+    energies = np.append(np.diff(reached), reached[0] + parts.sum() - reached[-1])
+    return [Area(*map(float, one)) for one in zip(places, ends, energies, strict=True)]
 
 
-@units("rad", "N*m", returns="J")
-def area_curve(theta: Array, T: Array) -> Array:
-    """At each crank angle the whole area [J] in which it lies, (…, K); 0 where the torque does not vary."""
-    flat = T.reshape(-1, T.shape[-1])
-    curves = np.zeros_like(flat)
-    span = T.shape[-1] * float(theta[1] - theta[0])
-    for curve, one in zip(curves, flat, strict=True):
-        for area in areas_of(theta, one):
-            place = theta[0] + (theta - theta[0] - (area.begin - theta[0])) % span
-            curve[place - theta[0] < area.end - area.begin] = area.energy
-    return curves.reshape(T.shape)
+def _areas(T: Array, grid: CrankGrid) -> list[list[Area]]:
+    """Return the areas of each torque curve, (…, K), one after the other; none where it does not vary."""
+    swing = grid.swing(T).reshape(-1, T.shape[-1])
+    theta = np.broadcast_to(grid.ascending, T.shape).reshape(swing.shape)
+    varies = np.abs(swing).max(axis=-1) > 1e-12 * np.abs(T).reshape(swing.shape).max(axis=-1)
+    return [
+        areas_of(*one, grid.cycle) if moves else [] for *one, moves in zip(theta, swing, varies, strict=True)
+    ]
 
 
-@units("rad", "N*m", returns="1")
-def areas_in_words(theta: Array, T: Array) -> str | Array:
+@units("rad", None, None, returns="J")
+def area_curve(theta: Array, T: Array, grid: CrankGrid) -> Array:
+    """At each returned angle [rad] the whole area [J] in which it lies, (…, K); 0 without one."""
+    curves = np.zeros((max(1, T.size // T.shape[-1]), theta.size))
+    for curve, areas in zip(curves, _areas(T, grid), strict=True):
+        for area in areas:
+            curve[(theta - area.begin) % grid.cycle < area.end - area.begin] = area.energy
+    return curves.reshape(*T.shape[:-1], theta.size)
+
+
+@units(None, None, returns="1")
+def areas_in_words(T: Array, grid: CrankGrid) -> str | Array:
     """Return every area: `+312.4 J from 12.3 to 104.1 deg; …`."""
-    flat = T.reshape(-1, T.shape[-1])
     words = [
         "; ".join(
             f"{area.energy:+.5g} J from {np.degrees(area.begin):.2f} to {np.degrees(area.end):.2f} deg"
-            for area in areas_of(theta, one)
+            for area in areas
         )
-        for one in flat
+        for areas in _areas(T, grid)
     ]
     return words[0] if T.ndim == 1 else np.array(words, dtype=object).reshape(T.shape[:-1])
 
 
-@units("J", returns="J")
+@units(None, returns="J")
 def swing_of(energy: Array) -> Array:
     """Return the largest less smallest running energy [J]."""
     return np.asarray(np.ptp(energy, axis=-1))[()]

@@ -10,7 +10,7 @@ import numpy as np
 
 from templates.core.arrays import Array, Truth
 from templates.core.language.declare import units
-from templates.physics.engine.engine_layout import Layout
+from templates.physics.engine.engine_layout import TURN, Layout
 from templates.physics.engine.gas_checks import burns_before_exhaust, pressure_rises
 from templates.physics.engine.gas_cycle import AT_DEAD_CENTRES, Charge, Polytropic, Valves, ideal, wrapped
 from templates.physics.engine.gas_pressure import GasCycle, NoGas, Tabulated, one_cycle
@@ -100,11 +100,21 @@ def engine_gas(
     )
 
 
-@units(None, None, None, "rad", returns="Pa")
 def pressures(gas: GasCycle, layout: Layout, motion: RodMotion, theta: Array) -> Array:
-    """Return the pressure in each cylinder [Pa], (…, N, K), at crank angles theta [rad], (K,)."""
-    zero = 2 * np.pi if layout.strokes == 4 else 0.0
-    return gas.pressure(theta - layout.firing[..., None] + zero, motion.crank.travel(motion.alpha))
+    """Return the pressure in each cylinder [Pa], (…, N, K), at crank angles theta [rad], (…, K)."""
+    own = theta[..., None, :] - layout.firing[..., None] + _firing(layout)
+    return gas.pressure(own, motion.crank.travel(motion.alpha))
+
+
+def corners(gas: GasCycle, layout: Layout) -> Array:
+    """Return the crank angles [rad] of the jumps and peaks of the pressure in all cylinders, (…, J)."""
+    angles = gas.corners() - _firing(layout) + layout.firing[..., None]
+    return angles.reshape(*angles.shape[:-2], -1)
+
+
+def _firing(layout: Layout) -> float:
+    """Return the angle of the gas cycle [rad] at which a cylinder fires."""
+    return TURN if layout.strokes == 4 else 0.0
 
 
 @units(None, "1", None, returns="Pa")

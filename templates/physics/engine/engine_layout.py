@@ -61,8 +61,8 @@ class Layout:
         return self.firing.reshape(-1, self.firing.shape[-1])[0]
 
     def alpha(self, theta: Array) -> Array:
-        """Return the crank angle of each cylinder's own mechanism [rad], (…, N, K)."""
-        return theta + (self.pin - self.bank)[..., None]
+        """Return the crank angle of each cylinder's own mechanism [rad], (…, N, K), at (…, K)."""
+        return theta[..., None, :] + (self.pin - self.bank)[..., None]
 
 
 def listed(value: Array) -> bool:

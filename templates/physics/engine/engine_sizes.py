@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 from templates.core.arrays import Array, Truth
 from templates.core.language.declare import units
 from templates.physics.engine.offset_crank import OffsetCrank, RodMasses, radius_of_stroke, rod_masses
+from templates.physics.numerics.crank_grid import angles_in
+
+MOST_VALUES = 6_000_000
 
 
 def each(value: Array) -> Array:
@@ -65,10 +68,10 @@ def is_one_list(values: Array) -> Truth:
     return np.ndim(values) <= 1
 
 
-@units(None, "1", returns="1")
-def is_manageable(points: tuple[int, ...], steps: Array) -> Truth:
-    """True if curves of so many steps for up to 32 cylinders at points of this shape fit into memory."""
-    return bool(np.prod(points, dtype=float) * steps <= 200_000)
+@units(None, None, "1", "rad", returns="1")
+def is_manageable(points: tuple[int, ...], throw: NDArray[np.intp], strokes: Array, step: Array) -> Truth:
+    """True if curves over the internal grid of all cylinders at points of this shape fit into memory."""
+    return bool(np.prod(points, dtype=float) * throw.size * angles_in(strokes, step) <= MOST_VALUES)
 
 
 def or_none(value: Array) -> Array:

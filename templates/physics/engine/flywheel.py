@@ -8,17 +8,29 @@ from templates.core.arrays import Array
 from templates.core.language.declare import units
 from templates.physics.engine.gas_pressure import GasCycle
 from templates.physics.engine.slider_crank import Motion, crank_motion
+from templates.physics.numerics.crank_grid import CrankGrid
 
 
 def cylinder_motion(theta: Array, strokes: Array, count: Array, n: Array) -> Motion:
     """The motion of all cylinders, one after the other as they fire, (…, N K), for each ratio n [1]."""
-    intervals = np.arange(round(float(count))) * (np.pi * strokes / count)
-    return crank_motion((theta - intervals[:, None]).ravel(), n)
+    angles = theta[..., None, :] - firing_angles(strokes, count)[:, None]
+    return crank_motion(angles.reshape(*angles.shape[:-2], -1), n)
+
+
+def firing_angles(strokes: Array, count: Array) -> Array:
+    """Return the crank angle [rad] by which each cylinder follows the first, as they fire, (N,)."""
+    return np.arange(round(float(count))) * (np.pi * strokes / count)
+
+
+def corners(gas: GasCycle, strokes: Array, count: Array) -> Array:
+    """Return the crank angles [rad] of the jumps and peaks of the pressure in all cylinders, (…, J)."""
+    angles = gas.corners()[..., None, :] + firing_angles(strokes, count)[:, None]
+    return np.asarray(angles.reshape(*angles.shape[:-2], -1))
 
 
 def _together(value: Array, theta: Array) -> Array:
     """Return the sum over the cylinders, (…, K)."""
-    return np.asarray(value.reshape(*value.shape[:-1], -1, theta.size).sum(axis=-2))
+    return np.asarray(value.reshape(*value.shape[:-1], -1, theta.shape[-1]).sum(axis=-2))
 
 
 @units("kg", "rad/s", "m", "m**2", "kg*m**2", None, None, "Pa", "rad", returns="N*m")
@@ -39,13 +51,10 @@ def total_torque(
     return np.asarray(sum(np.asarray(size)[..., None] * _together(curve, theta) for size, curve in parts))
 
 
-@units("rad", "N*m", returns="N*m")
-def energy_fluctuation(theta: Array, torque: Array) -> Array:
-    """Return the largest minus smallest running integral of torque less its mean over the cycle [J]."""
-    swing = torque - torque.mean(axis=-1, keepdims=True)
-    step = theta[1] - theta[0]
-    energy = np.cumsum(swing + np.roll(swing, -1, axis=-1), axis=-1) * step / 2
-    return np.asarray(np.ptp(energy, axis=-1))[()]
+@units(None, None, returns="J")
+def energy_fluctuation(torque: Array, grid: CrankGrid) -> Array:
+    """Return the largest minus smallest running integral of torque [N m] less its mean over the grid [J]."""
+    return np.asarray(np.ptp(grid.running(torque), axis=-1))[()]
 
 
 @units("N*m", "1", "rad/s", returns="kg*m**2", latex=r"\frac{{{0}}}{{{1}\,{2}^2}}")

@@ -11,6 +11,7 @@ from templates.core.arrays import Array, Truth
 from templates.core.language.declare import units
 from templates.physics.engine.gas_cycle import Polytropic, wrapped
 from templates.physics.engine.gas_pressure import GasCycle
+from templates.physics.numerics.crank_grid import angles_in
 
 CYCLES = ("none", "otto", "diesel", "four_stroke", "table")
 POLYTROPIC, GIVEN_PEAK = ("otto", "diesel", "four_stroke"), ("otto", "four_stroke")
@@ -87,7 +88,7 @@ def table_closes(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
     return ~repeats | np.isclose(p[..., 0], p[..., -1], rtol=1e-6)
 
 
-@units(None, "1", returns="1")
-def is_manageable(points: tuple[int, ...], steps: Array) -> Truth:
-    """Return whether curves of so many steps at points of this shape fit into memory."""
-    return bool(math.prod(points) * steps <= MOST_VALUES)
+@units(None, "1", "rad", returns="1")
+def is_manageable(points: tuple[int, ...], strokes: Array, step: Array) -> Truth:
+    """Return whether curves over the internal grid of angles at points of this shape fit into memory."""
+    return bool(math.prod(points) * angles_in(strokes, step) <= MOST_VALUES)

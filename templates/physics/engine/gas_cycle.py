@@ -83,6 +83,7 @@ class Polytropic(GasCycle):
 
         volume = 1 / (_column(c.compression_ratio) - 1) + travel
         p_s, p_e, p_3, p_o = (_column(p) for p in (c.suction, c.exhaust, c.combustion, self.p_opened))
+        expanded = np.minimum(_column(self.v_cut) / volume, 1.0)  # 1 at the cut, whatever the rounding
         overlap = _column(self.exchange_ends) - start
         opened = _column(self.exhaust_opens)
         emptying = np.where(self.emptied > opened, self.emptied - opened, 1)
@@ -91,7 +92,7 @@ class Polytropic(GasCycle):
             (self.inlet_closes, p_s),
             (self.firing, p_s * (_column(self.v_closed) / volume) ** _column(c.compression_exponent)),
             (self.cut, p_3),
-            (self.exhaust_opens, p_3 * (_column(self.v_cut) / volume) ** _column(c.expansion_exponent)),
+            (self.exhaust_opens, p_3 * expanded ** _column(c.expansion_exponent)),
             (self.emptied, p_o + (p_e - p_o) * (place + start - opened) / emptying),
         ]
         p = p_e + 0 * volume
@@ -160,6 +161,17 @@ class Polytropic(GasCycle):
             + self._linear_work(self.exhaust_opens, end, self.p_opened, c.exhaust)
             + c.exhaust * (self.way(self.exchange_begins) - self.way(end))
         )
+
+    def corners(self) -> Array:
+        """Return where the events begin that may change the pressure at once, and where combustion ends."""
+        events = (
+            self.exchange_begins,
+            self.exchange_ends,
+            np.asarray(self.firing),
+            self.cut,
+            self.exhaust_opens,
+        )
+        return np.stack(np.broadcast_arrays(*events), axis=-1)
 
     def _linear_work(self, begin: Array, end: Array, p_1: Array, p_2: Array) -> Array:
         """Return the work while the pressure goes linearly in angle from p_1 to p_2; none if at once."""

@@ -15,6 +15,9 @@ from templates.core.arrays import Array
 from templates.core.language.declare import on_paper, units
 from templates.physics.engine.slider_crank import Motion, travel_integral
 
+_FINE = np.pi / 180  # the step of the grid of crank angles
+_STEEP = 0.02  # of the range of pressures, from one point of a table to the next
+
 
 class GasCycle(ABC):
     """The pressure in a cylinder over one cycle."""
@@ -26,6 +29,10 @@ class GasCycle(ABC):
     @abstractmethod
     def mean_effective(self) -> Array:
         """Work of the gas in a cycle over the swept volume [Pa], exact, whatever angles are requested."""
+
+    @abstractmethod
+    def corners(self) -> Array:
+        """Return crank angles [rad], (…, J), where the pressure jumps, bends sharply or is highest."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +48,10 @@ class NoGas(GasCycle):
     def mean_effective(self) -> Array:
         """None."""
         return 0 * self.p_c
+
+    def corners(self) -> Array:
+        """None."""
+        return np.zeros(0)
 
 
 @dataclass(frozen=True)
@@ -69,6 +80,15 @@ class Tabulated(GasCycle):
         slopes = np.diff(self.p, append=self.p[..., :1]) / np.diff(ends)
         return -np.sum(slopes * volumes, axis=-1)
 
+    def corners(self) -> Array:
+        """Return the highest point of each pressure, and both ends of steep steps below 1°."""
+        width = np.diff(self.angle, append=self.angle[0] + self.cycle)
+        rise = np.abs(np.diff(self.p, append=self.p[..., :1])).reshape(-1, self.angle.size)
+        steep = (width < _FINE) & (rise > _STEEP * np.ptp(self.p, axis=-1).reshape(-1, 1)).any(axis=0)
+        chosen = steep | np.roll(steep, 1)
+        chosen[np.argmax(self.p, axis=-1)] = True
+        return self.angle[chosen]
+
 
 @on_paper("read from the gas cycle at each crank angle")
 @units(None, None, returns="Pa")
@@ -83,7 +103,7 @@ def mean_effective(gas: GasCycle) -> Array:
     return np.asarray(gas.mean_effective())[()]
 
 
-@units(None, "Pa", returns="Pa")
+@units(None, None, returns="Pa")
 def peak_pressure(name: str, p: Array) -> Array:
     """Return the largest pressure over the cycle [Pa]; none (NaN) where there is no gas."""
     return np.asarray(np.max(p, axis=-1))[()] if name != "none" else np.full(np.shape(p)[:-1], np.nan)[()]

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from templates.core.arrays import Array, Truth
 from templates.core.language.declare import units
+from templates.physics.numerics.crank_grid import CrankGrid
 
 _ROUNDING = 2e-14
 """Sines and cosines below it are those of dead centres and right angles."""
@@ -188,7 +189,7 @@ def pin_force(
     return (turning * motion.cos - axial) + 1j * (turning * motion.sin - wall)
 
 
-@units("rad/s", None, returns="rad/s")
-def rod_speed(omega: Array, motion: RodMotion) -> Array:
-    """Return the speed at which each rod turns [rad/s], (…, N, K)."""
-    return -np.asarray(omega)[..., None, None] * motion.phi1
+@units("rad/s", None, None, returns="rad/s")
+def rod_speed(omega: Array, motion: RodMotion, grid: CrankGrid) -> Array:
+    """Return the speed at which each rod turns [rad/s] at the returned angles, (…, N, K)."""
+    return -np.asarray(omega)[..., None, None] * grid.returned(motion.phi1)

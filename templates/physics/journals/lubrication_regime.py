@@ -15,6 +15,9 @@ import numpy as np
 from templates.core.arrays import Array
 from templates.core.language.declare import units
 
+BOUNDARY, FREE = 0.5, 0.0001
+"""Share of the load that the contact bears, above which friction is boundary, to which the film is full."""
+
 
 @units("m", "m", "m", returns="1", latex=r"\frac{{{0}}}{{\sqrt{{{1}^2+{2}^2}}}}")
 def film_parameter(h: Array, R_1: Array, R_2: Array) -> Array:
@@ -28,6 +31,18 @@ def lubrication_regime(parameter: Array) -> Any:
     """Return the regime at a film parameter [1]: boundary, mixed or full_film; empty where that is NaN."""
     parameter = np.asarray(parameter)
     words = np.select([parameter < 1, parameter <= 3, parameter > 3], ["boundary", "mixed", "full_film"], "")
+    return words if words.ndim else str(words)
+
+
+@units("1", returns="1")
+def regime_of_contact(share: Array) -> Any:
+    """Return the regime at a share of the load that the contact bears [1]; empty where that is NaN.
+
+    boundary where the contact bears more than the film, full_film up to 0.0001, mixed between. The film
+    parameter says the same only under light load: a film of high pressure bears nearly all at one below 1.
+    """
+    share = np.asarray(share)
+    words = np.select([share > BOUNDARY, share > FREE, share >= 0], ["boundary", "mixed", "full_film"], "")
     return words if words.ndim else str(words)
 
 

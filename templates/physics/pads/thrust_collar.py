@@ -21,11 +21,8 @@ from templates.core.arrays import Array
 from templates.core.language.declare import on_paper
 from templates.physics.numerics.roots import root_between
 from templates.physics.pads.sector_equations import solved_sectors
-from templates.physics.pads.slider_film import finite_pad, shear_of_wedge
+from templates.physics.pads.slider_film import shear_of_wedge
 
-RECTANGLE, SECTOR = "mean_rectangle", "sector"
-LEVELS = (RECTANGLE, SECTOR)
-"""Pads as rectangles of their mean length, or as sectors."""
 FLATTEST, STEEPEST = 1e-6, 99.0
 """Smallest and largest h_i/h_o − 1 that is looked for [-]."""
 HOTTEST = 773.15
@@ -79,13 +76,11 @@ class CollarFilm:
     """Flow out at its sides, likewise."""
 
 
-def collar_film(level: str, a: Array, angle: Array, reach: Array) -> CollarFilm:
-    """Return the film of pads in a row.
+def collar_film(a: Array, angle: Array, reach: Array) -> CollarFilm:
+    """Return the film of sectors.
 
     Parameters
     ----------
-    level
-        One of `LEVELS`.
     a
         (N,) film ratio above 1 [-].
     angle
@@ -93,9 +88,6 @@ def collar_film(level: str, a: Array, angle: Array, reach: Array) -> CollarFilm:
     reach
         (N,) outer over inner radius [-].
     """
-    if level == RECTANGLE:
-        pad = finite_pad(a, 2 * (reach - 1) / ((reach + 1) * angle), *_MESH)
-        return CollarFilm(a, pad.load, pad.friction_moving / (6 * pad.load), pad.inlet_flow, pad.side_flow)
     blocks = [slice(i, i + _BLOCK) for i in range(0, a.size, _BLOCK)]
     numbers = [_extrapolated(a[part], angle[part], reach[part]) for part in blocks]
     load, inlet, side = np.concatenate(numbers).T if numbers else np.empty((3, 0))
@@ -119,10 +111,10 @@ def collar_temperature(collar: Collar, film: CollarFilm) -> Array:
     return collar.T_supply + gain * (kept / (film.inlet - kept) + 0.5)
 
 
-def _excess(level: str, law: Law, logarithm: Array, collar: Collar, oil: tuple[Array, ...]) -> Array:
+def _excess(law: Law, logarithm: Array, collar: Collar, oil: tuple[Array, ...]) -> Array:
     """Logarithm of the oil's viscosity over what the load needs, at a film ratio of 1 + e to `logarithm`."""
     wedge = np.exp(logarithm)
-    film = collar_film(level, 1 + wedge, collar.angle, collar.reach)
+    film = collar_film(1 + wedge, collar.angle, collar.reach)
     T = np.minimum(collar_temperature(collar, film), HOTTEST)
     h_o = collar.taper / wedge
     needed = collar.load * (h_o / collar.radius) ** 2 / (6 * collar.omega * collar.angle * film.load)
@@ -133,13 +125,11 @@ def _excess(level: str, law: Law, logarithm: Array, collar: Collar, oil: tuple[A
 @on_paper(
     "solved numerically by bracketing the film ratio, of pads by finite volumes of the Reynolds equation"
 )
-def working_collar(level: str, collar: Collar, law: Law, *oil: Array) -> CollarFilm:
+def working_collar(collar: Collar, law: Law, *oil: Array) -> CollarFilm:
     """Return the film that bears the load with the viscosity that the oil has at the film's temperature.
 
     Parameters
     ----------
-    level
-        One of `LEVELS`.
     collar
         With arrays that broadcast together.
     law
@@ -156,7 +146,7 @@ def working_collar(level: str, collar: Collar, law: Law, *oil: Array) -> CollarF
 
     def excess(logarithm: Array, *points: Array) -> Array:
         at = Collar(**dict(zip(names, points, strict=False)))
-        return _excess(level, law, logarithm, at, points[len(names) :])
+        return _excess(law, logarithm, at, points[len(names) :])
 
     low, high = (np.full(chosen[0].shape, np.log(limit)) for limit in (FLATTEST, STEEPEST))
     a, numbers = np.full(usable.shape, np.nan), np.full((len(fields(CollarFilm)), *usable.shape), np.nan)
@@ -164,6 +154,6 @@ def working_collar(level: str, collar: Collar, law: Law, *oil: Array) -> CollarF
         root = np.atleast_1d(root_between(excess, low, high, *chosen)) if usable.any() else low
     a[usable] = 1 + np.exp(root)
     borne = np.isfinite(a)
-    film = collar_film(level, a[borne], *(parts[names.index(name)][borne] for name in ("angle", "reach")))
+    film = collar_film(a[borne], *(parts[names.index(name)][borne] for name in ("angle", "reach")))
     numbers[:, borne] = [getattr(film, field.name) for field in fields(CollarFilm)]
     return CollarFilm(*(number[()] for number in numbers))

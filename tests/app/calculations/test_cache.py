@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from app.calculations import json_values
-from app.calculations.cache import Cache
-from app.calculations.sizes import size_of
+from app.calculations.cache import Cache, size_of
 from app.catalogue.discovery import find_templates
 from app.designs.engine import steps as designs
 from app.designs.engine.steps import Memory

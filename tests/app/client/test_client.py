@@ -13,7 +13,7 @@ from serving import free_port, moody, paper
 from app.calculations.bodies import OIL_FILM
 from app.client import AsyncClient, Client, Problem, operations, user_at_host
 from app.client.exchange import read
-from app.http.clients import HEADER, get_client
+from app.http.access import HEADER, get_client
 from app.schemas.answers import Version
 
 

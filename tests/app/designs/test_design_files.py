@@ -8,6 +8,7 @@ from urllib.parse import quote
 import ezdxf
 import httpx
 import pytest
+from bare_shells import BUSH
 from click.testing import CliRunner
 from pypdf import PdfReader
 from serving import API, created, paper, patched, problem, revision
@@ -23,7 +24,7 @@ DESIGNS = f"{API}/designs"
 NAME = "Käfig 'A' 轴承"
 STEM = "Kafig_A_shell_r1"
 WIDE = "Käfig_A_轴承_shell_r1"
-SHELL = {"id": "plain_bearing", "version": 1, "parameters": {"inner_diameter": "31.25 mm"}}
+SHELL = {"id": "plain_bearing", "version": 1, "parameters": {**BUSH, "inner_diameter": "31.25 mm"}}
 WAIT = {"Prefer": "wait=60"}
 
 
@@ -171,7 +172,8 @@ def test_a_later_revision_has_its_own_name(http):
 
 def test_a_file_that_is_not_made_yet_has_no_name(http):
     design = created(
-        http, {"name": "slow", "models": {"shell": {**SHELL, "parameters": {"inner_diameter": "31.5 mm"}}}}
+        http,
+        {"name": "slow", "models": {"shell": {**SHELL, "parameters": {**BUSH, "inner_diameter": "31.5 mm"}}}},
     )
     answer = get(http, design, "models/shell/model.dxf", Prefer="respond-async")
     assert answer.status_code == 202
@@ -244,7 +246,9 @@ def test_a_build_of_an_older_recipe_is_stamped_and_verified(served, http, design
     stored = http.get(
         f"{API}/artifacts/{revision(http, older)['models']['shell']['artifacts']['step']}"
     ).content
-    assembly = stored.replace(b"PRODUCT('shell','shell',''", b"PRODUCT('plain_bearing','plain_bearing',''")
+    assembly = stored.replace(
+        b"PRODUCT('full_back','full_back',''", b"PRODUCT('plain_bearing','plain_bearing',''"
+    )
     key = aged(served, older, "step", assembly)
     step = get(http, older).content
     assert products(step)[0][0] == "older_shell_r1"

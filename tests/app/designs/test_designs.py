@@ -1,6 +1,7 @@
 """The link between calculation and geometry, through REST: what is saved, what is rebuilt, what is kept."""
 
 import pytest
+from bare_shells import BUSH
 from cadquery import importers
 from designing import bore, build_of, created_by, jobs_of, weighed
 from serving import API, created, faults, paper, patched, problem, revision
@@ -13,7 +14,7 @@ def pair(http):
     document = paper(name="pair")
     del document["model"]
     document["models"] = {
-        "shell": {"id": "plain_bearing", "parameters": {"inner_diameter": "= film.bearing_diameter"}},
+        "shell": {"id": "plain_bearing", "parameters": {**BUSH, "inner_diameter": "= film.bearing_diameter"}},
         "ball": {"id": "moody", "parameters": {"size": "= shell.mass * 10 mm/kg + 5 mm"}},
     }
     return created(http, document)

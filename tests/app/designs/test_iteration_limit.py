@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import pytest
 
 from app.designs import regeneration
-from app.designs.calculation_cache import Prepared
 from app.designs.document import Iteration
 from app.designs.errors import NotConverged
 from app.designs.regeneration import Regeneration
+from app.designs.service import Prepared
 from app.reference import Reference
 
 MOST = 50

@@ -13,15 +13,15 @@ from app.designs.document import Document, merge
 from app.designs.graph import MOST_RELATION_TEXT, Catalogues, Graph, build_graph
 from app.designs.routes.files import _accepted
 from app.http import problems
-from app.http.heads import _plain_cookies
+from app.http.limits import _plain_cookies
 from app.http.pages import page_of
-from app.pool.size import points
+from app.pool.cost import points
 from app.presentation import numbers
 from app.presentation.input_text import text_of, value_of
 from app.reports.cells import clean
 from app.reports.routes import REPORTS, _wanted
 from app.solids.routes.models import BuildIn
-from app.web.forms import kept, patch_of
+from app.web.shared.forms import kept, patch_of
 from cad.lists import listed
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import MOST_SUGGESTED, Fault, InvalidInputs, excerpt, unknown_name, unknown_names

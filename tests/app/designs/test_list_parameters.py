@@ -5,9 +5,9 @@ from engines import bearings_of, four_cylinders
 from serving import API, created, faults, patched, problem, revision
 from study_helpers import done, rows
 
-from app.web.gallery import GALLERY
+from app.web.gallery.gallery import GALLERY
 
-SHAFT = f"{API}/models/crankshaft/versions/2"
+SHAFT = f"{API}/models/crankshaft/versions/1"
 PLAIN = {"journal_diameter": "40 mm", "throw": "30 mm", "fillet": "0 mm"}
 WAIT = {"Prefer": "wait=60"}
 
@@ -18,7 +18,7 @@ def engine(**inputs):
 
 def design(relation, **more):
     parameters = {**PLAIN, "pin_angles": relation, **more}
-    model = {"id": "crankshaft", "version": 2, "parameters": parameters}
+    model = {"id": "crankshaft", "version": 1, "parameters": parameters}
     return {"name": "shaft", "steps": {"engine": engine()}, "models": {"shaft": model}}
 
 
@@ -120,15 +120,15 @@ class TestOnItsOwn:
 
     @pytest.mark.slow
     def test_page_shows_lists_and_takes_them_back(self, http):
-        page = http.get("/models/crankshaft/2")
+        page = http.get("/models/crankshaft/1")
         assert page.status_code == 200
         assert "pin angles" in page.text.lower()
-        answer = http.get("/models/crankshaft/2", params={
+        answer = http.get("/models/crankshaft/1", params={
             "journal_diameter": "40 mm", "pin_angles": "[0, 120, 240] deg", "throw": "30 mm",
         })  # fmt: skip
         assert answer.status_code == 200
         assert "[0, 120, 240] deg" in answer.text
-        assert http.get("/models/crankshaft/2", params={"pin_angles": "[0] mm"}).status_code == 422
+        assert http.get("/models/crankshaft/1", params={"pin_angles": "[0] mm"}).status_code == 422
 
 
 def test_variants_may_have_pins_of_their_own(http):
@@ -179,7 +179,7 @@ def test_a_study_builds_shafts_whose_pins_follow_from_its_rows(http):
     saved = created(http, {
         "name": "twin",
         "parameters": {"angle": "180 deg", "stroke": "60 mm"},
-        "models": {"shaft": {"id": "crankshaft", "version": 2, "parameters": parameters}},
+        "models": {"shaft": {"id": "crankshaft", "version": 1, "parameters": parameters}},
     })  # fmt: skip
     table = {"angle": {"value": [90, 180], "unit": "deg"}, "stroke": {"value": [60, 60], "unit": "mm"}}
     study = done(http, saved, method="table", rows=table, outputs=["shaft.mass", "shaft.centre_y"])

@@ -8,16 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from row_designs import BEARING, CATALOGUES, CURVES, net_of, ref
 
-from app.calculations.criteria import rendered
+from app.calculations.json_values import rendered
 from app.designs.document import Document, merge
 from app.designs.engine.calculate import calculate
 from app.designs.engine.steps import memory
 from app.designs.engine.verdicts import judged
-from app.designs.graph import build_graph
-from app.designs.reader import starts
+from app.designs.graph import build_graph, starts
+from app.designs.results import single_outputs
 from app.designs.variants.checks import checked
 from app.designs.variants.names import natural
-from app.designs.variants.outcome import single_outputs
 from app.designs.variants.table import applied, faulty_cells, places
 from app.designs.variants.together import Available, together
 from app.designs.variants.verdict import merged

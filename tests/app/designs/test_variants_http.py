@@ -5,6 +5,7 @@ import re
 import zipfile
 
 import pytest
+from bare_shells import BUSH
 from serving import API, created, faults, moody, paper, patched, problem, revision
 
 from app.storage.tables import BuildRow
@@ -14,7 +15,7 @@ from cad.surfaces import Z
 
 DESIGNS = f"{API}/designs"
 WAIT = {"Prefer": "wait=60"}
-SHELL = {"id": "plain_bearing", "version": 1, "parameters": {"inner_diameter": "= bore"}}
+SHELL = {"id": "plain_bearing", "version": 1, "parameters": {**BUSH, "inner_diameter": "= bore"}}
 BORES = {"main_1": "31 mm", "main_2": "32 mm", "main_10": "33 mm", "big_end": "31 mm"}
 CRITERIA = {"small": {"require": "bore <= 32.5 mm"}}
 

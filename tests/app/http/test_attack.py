@@ -14,7 +14,7 @@ from described import APP, description
 from serving import API
 from sqlalchemy import func, select
 
-from app.http.roles import needs_of, routes_of
+from app.http.access import needs_of, routes_of
 from app.storage.tables import AuditRow
 
 sys.path.append(str(Path(__file__).parents[1] / "worksheet_import"))  # mathcad_files

@@ -54,7 +54,9 @@ def test_revoked_expired_and_disabled_keys_are_answered_alike_at_once(team):
     assert {**first.json(), "request_id": ""} == {**last.json(), "request_id": ""}
 
 
-@pytest.mark.parametrize("path", ["/healthz", "/readyz", "/static/icon.svg", "/problems/not-signed-in"])
+@pytest.mark.parametrize(
+    "path", ["/healthz", "/readyz", "/static/shared/icon.svg", "/problems/not-signed-in"]
+)
 def test_what_is_public_asks_nobody(team, path):
     with team.http() as http:
         assert http.get(path).status_code in (200, 503)  # is it ready?

@@ -7,8 +7,7 @@ import pytest
 from approving import Room, signing
 from serving import API, created, moody, problem
 
-from app.http.access import SIGN_IN
-from app.http.clients import HEADER
+from app.http.access import HEADER, SIGN_IN
 
 ADMIN = "admin"
 

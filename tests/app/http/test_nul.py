@@ -4,7 +4,7 @@ import pytest
 from scaling import assert_linear
 from serving import API, created, faults
 
-from app.http import nul
+from app.http.strict_requests import has_nul
 
 
 @pytest.fixture(scope="module")
@@ -57,8 +57,8 @@ def test_a_backslash_before_the_escape_is_a_text(http):
     ],
 )
 def test_the_character_is_no_other_that_looks_like_it(text, is_there):
-    assert nul.has(text) is is_there
+    assert has_nul(text) is is_there
 
 
 def test_the_search_is_linear():
-    assert_linear(nul.has, lambda length: (b"\\" * length + b"u000") * 2, 2**18)
+    assert_linear(has_nul, lambda length: (b"\\" * length + b"u000") * 2, 2**18)

@@ -30,7 +30,12 @@ def test_slugs_and_titles_are_distinct():
 def test_only_a_fault_of_the_program_is_a_500():
     team = {"files-unreachable", "program-missing"}
     storage = {"storage", "artifact-damaged", "database-damaged", "rebuilding"}
-    assert {kind.slug for kind in KINDS.values() if kind.status >= 500} == {"internal", *storage, *team}
+    assert {kind.slug for kind in KINDS.values() if kind.status >= 500} == {
+        "internal",
+        "stopping",
+        *storage,
+        *team,
+    }
     assert kind_of(RuntimeError()) is INTERNAL
     assert "secret" not in describe(RuntimeError("secret"))["detail"]
     assert describe(StorageError("the disk is full"))["status"] == 503

@@ -12,7 +12,7 @@ from patience import GLANCE
 from serving import API, HANG, PATIENCE, problem, serving
 
 from app.calculations.bodies import OIL_FILM as FILM
-from app.http.heads import LONGEST_HEAD
+from app.http.connections import LONGEST_HEAD
 from app.http.streams import Streams, TooManyStreams
 from app.settings import Settings
 

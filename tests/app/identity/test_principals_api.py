@@ -1,10 +1,11 @@
 """Principals, keys and usage by the interface: administrators for all, everybody for themselves."""
 
 import pytest
+from bare_shells import BUSH
 
 from app.client import Client, Problem
 from app.identity.limits import LimitReached, Limits
-from app.identity.usage import Used, check, note, used
+from app.identity.usage import PrincipalUsage, check, note, used
 
 
 def test_everybody_learns_who_they_are(team):
@@ -85,7 +86,7 @@ def test_jobs_are_counted_and_the_limit_of_the_day_is_kept(team):
         with team.http("author2") as http:
             refused = http.post(
                 "/api/v1/models/plain_bearing/versions/1/build",
-                json={"parameters": {"inner_diameter": "47 mm"}},
+                json={"parameters": {**BUSH, "inner_diameter": "47 mm"}},
             )
         assert refused.status_code == 429, refused.text
         assert 0 < int(refused.headers["retry-after"]) <= 86400
@@ -115,19 +116,19 @@ def test_usage_adds_up(database):
 
     database.write(unit)
     with database.read() as session:
-        assert used(session, "someone") == Used(0, 1, 2.5, 7)
-        assert used(session, "local") == Used(0, 0, 0.0, 0)
+        assert used(session, "someone") == PrincipalUsage(0, 1, 2.5, 7)
+        assert used(session, "local") == PrincipalUsage(0, 0, 0.0, 0)
 
 
 def test_the_limit_of_calculation_ends_at_midnight():
     with pytest.raises(LimitReached, match="11 s of 10 s") as caught:
-        check(Limits(60, 2, 10, 5), Used(0, 0, 11.0, 0), "Ada")
+        check(Limits(60, 2, 10, 5), PrincipalUsage(0, 0, 11.0, 0), "Ada")
     assert int(caught.value.headers["Retry-After"]) > 0
 
 
 def test_storage_does_not_come_back_so_no_time_is_named():
     with pytest.raises(LimitReached, match="2 MiB of 2 MiB of storage, which neither") as caught:
-        check(Limits(60, 2, 10, 5), Used(0, 0, 0, 2**21), "Ada")
+        check(Limits(60, 2, 10, 5), PrincipalUsage(0, 0, 0, 2**21), "Ada")
     assert caught.value.headers == {}
 
 

@@ -9,11 +9,17 @@ from itertools import islice
 import pytest
 from sqlalchemy import delete, func, select
 
-from app.jobs.events import Event, Events
-from app.jobs.subscriptions import _ROOM
-from app.storage import event_log
-from app.storage.event_log import PAGE
-from app.storage.identity import now
+from app.jobs.events import (
+    _ROOM,
+    PAGE,
+    Event,
+    Events,
+    are_events_kept,
+    events_above,
+    newest_numbers,
+    note_event,
+)
+from app.storage.clock import now
 from app.storage.tables import DesignRow, EventRow, JobRow
 
 TOPIC = "design:1"
@@ -85,9 +91,9 @@ class TestRows:
         )
         noted(database, events, "done", topic=own)
         with database.read() as session:
-            assert numbers(event_log.above(session, of_design, 0)) == [1, 2, 3]
-            assert [event.name for event in event_log.above(session, own, 0)] == ["running", "done"]
-            assert event_log.newest(session, [own, of_design, "job:none"]) == {own: 2, of_design: 3}
+            assert numbers(events_above(session, of_design, 0)) == [1, 2, 3]
+            assert [event.name for event in events_above(session, own, 0)] == ["running", "done"]
+            assert newest_numbers(session, [own, of_design, "job:none"]) == {own: 2, of_design: 3}
 
     def test_a_unit_that_is_undone_takes_its_numbers_along(self, database, events):
         def unit(session):
@@ -98,16 +104,16 @@ class TestRows:
             database.write(unit)
         noted(database, events, "revision")
         with database.read() as session:
-            assert numbers(event_log.above(session, TOPIC, 0)) == [1]
+            assert numbers(events_above(session, TOPIC, 0)) == [1]
 
     def test_one_event_by_itself_has_its_number(self, database, events):
         written = [
-            database.write(lambda session: event_log.note(session, TOPIC, "revision", {"revision": 7}))
+            database.write(lambda session: note_event(session, TOPIC, "revision", {"revision": 7}))
             for _ in range(3)
         ]
         assert written == [1, 2, 3]
         with database.read() as session:
-            (last,) = event_log.above(session, TOPIC, 2)
+            (last,) = events_above(session, TOPIC, 2)
         assert last == Event(TOPIC, "revision", {"revision": 7}, 3)
         assert last.message == {"event": "revision", "revision": 7}
 
@@ -120,7 +126,7 @@ class TestRows:
         noted(database, events, *"abc")
         database.write(lambda session: session.execute(delete(EventRow).where(EventRow.number == 1)) and None)
         with database.read() as session:
-            kept = [event_log.can_resume(session, TOPIC, number, 3) for number in range(5)]
+            kept = [are_events_kept(session, TOPIC, number, 3) for number in range(5)]
         assert kept == [False, True, True, True, False]
 
 
@@ -171,7 +177,7 @@ class TestListening:
         quiet = Events(database)  # its notes reach nobody
         noted(database, quiet, *(["a"] * 60))
         with database.read() as session:
-            rows = event_log.above(session, TOPIC, 0)
+            rows = events_above(session, TOPIC, 0)
         shuffled = random.Random(1).sample(rows[:-1], 40) + rows[:7] + rows[-1:]
 
         async def scene():
@@ -289,6 +295,6 @@ class TestResuming:
         assert "".join(event.name for event in asyncio.run(scene())) == "abcdefg"
 
     def test_looking_without_listeners_reads_nothing(self, events, monkeypatch):
-        monkeypatch.setattr(event_log, "newest", lambda *given: pytest.fail("it read"))
+        monkeypatch.setattr("app.jobs.events.newest_numbers", lambda *given: pytest.fail("it read"))
         events.look()
         events.look(islice([TOPIC], 1))

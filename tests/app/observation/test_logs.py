@@ -9,12 +9,13 @@ import time
 
 import httpx
 import pytest
+from bare_shells import BUSH
 from click.testing import CliRunner
 from prometheus_client.parser import text_string_to_metric_families
 from serving import API, PATIENCE, ServerProcess, created, moody, until
 
 from app.cli.main import main
-from app.http.request_log import Observed
+from app.http.request_log import RequestLog
 from app.observation import logs, metrics
 from app.observation.metrics import REGISTRY
 
@@ -48,7 +49,7 @@ def logged(tmp_path_factory):
                 ),
                 "model": http.post(
                     f"{API}/models/plain_bearing/versions/1/build",
-                    json={"parameters": {"inner_diameter": "50 mm"}},
+                    json={"parameters": {**BUSH, "inner_diameter": "50 mm"}},
                     headers={"Prefer": "wait=60", "Cookie": "crankwright_session=hunter2hunter2hunter2"},
                 ),
                 "page": http.get("/", headers={"Accept": "text/html"}),
@@ -220,7 +221,7 @@ def test_who_left_is_counted_apart(caplog):
     scope = {"type": "http", "method": "POST", "path": "/left", "headers": [], "client": ("127.0.0.1", 1)}
     before = REGISTRY.get_sample_value("crankwright_requests_total", LEFT) or 0
     with caplog.at_level("INFO", "app.http.request_log"):
-        asyncio.run(Observed(app)(scope, receive, send))
+        asyncio.run(RequestLog(app)(scope, receive, send))
     assert sent[0]["status"] == 409
     assert caplog.records[-1].status == 499
     assert REGISTRY.get_sample_value("crankwright_requests_total", LEFT) == before + 1

@@ -4,6 +4,7 @@ import io
 
 import ezdxf
 import pytest
+from bare_shells import BUSH
 from serving import API, created, problem
 
 from app.reports import paper
@@ -11,7 +12,7 @@ from app.reports.paper import Press
 
 DESIGNS = f"{API}/designs"
 
-SHELL = {"id": "plain_bearing", "version": 1, "parameters": {"inner_diameter": "33.25 mm"}}
+SHELL = {"id": "plain_bearing", "version": 1, "parameters": {**BUSH, "inner_diameter": "33.25 mm"}}
 TYPED = {
     "drawing_number": "4711-08",
     "drawing_title": "Half <shell> & 'co'",

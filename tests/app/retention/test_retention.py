@@ -7,17 +7,17 @@ from serving import API, created, moody, revision, settled
 from sqlalchemy import delete, func, select, update
 
 from app.designs import repository as designs
-from app.designs.repository import Written
+from app.designs.repository import StoredRevision
 from app.designs.results import ModelState
 from app.jobs import repository as jobs
+from app.jobs.events import events_above, note_event
 from app.jobs.turns import UNFINISHED
 from app.retention import rows, service
 from app.retention.files import Sweep
 from app.retention.service import Retention
 from app.settings import Settings
 from app.solids import rows as build_rows
-from app.solids.ages import FRESH, is_fresh, renew
-from app.storage import event_log
+from app.solids.rows import FRESH, is_fresh, renew
 from app.storage.artifacts import ArtifactStore
 from app.storage.clock import DAY
 from app.storage.idempotency import Once
@@ -77,7 +77,7 @@ def build(database, key, bytes_, store):
 def use(database, key):
     """A design that uses a build."""
     model = ModelState("model", "moody", 1, {}, {}, (), key)
-    written = Written({"name": "design"}, None, [model], "current", None)
+    written = StoredRevision({"name": "design"}, None, [model], "current", None)
     database.write(lambda session: designs.create(session, "design", written))
 
 
@@ -118,11 +118,11 @@ class TestRows:
         put(database, "queued")
         for days in (0, 1, 2.5, 3):
             set_present(database, days)
-            database.write(lambda session: event_log.note(session, topic_of(session), "running", {}))
+            database.write(lambda session: note_event(session, topic_of(session), "running", {}))
         set_present(database, 4)
         assert retention.run()["events"] == 2
         with database.read() as session:
-            assert [event.number for event in event_log.above(session, topic_of(session), 0)] == [3, 4]
+            assert [event.number for event in events_above(session, topic_of(session), 0)] == [3, 4]
 
     def test_many_are_deleted_by_small_units(self, database, retention, monkeypatch):
         monkeypatch.setattr(service, "SOME_ROWS", 10)

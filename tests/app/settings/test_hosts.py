@@ -9,11 +9,11 @@ from fastapi import FastAPI, Request
 from pydantic import ValidationError
 
 from app.http import guard, problems
-from app.http.clients import COOKIE, HEADER, TheClient
+from app.http.access import COOKIE, HEADER, TheClient
 from app.main import create_app
 from app.settings import Settings
 from app.settings.hosts import Authority, Hosts, is_loopback, parse
-from app.web.session import keep_session
+from app.web.shared.session import keep_session
 
 
 def send(app, method="GET", path="/healthz", base="http://localhost", **more):

@@ -7,7 +7,7 @@ from app.solids.analysis_process import bore_of
 from cad.analysis.kinds import KINDS, mode_names
 from cad.errors import AnalysisError
 from cad.models.bearing_housing_v1 import BearingHousing
-from cad.models.plain_bearing_v2 import PlainBearing
+from cad.models.plain_bearing_v1 import PlainBearing
 
 HOUSING = f"{API}/models/bearing_housing/versions/1"
 

@@ -1,5 +1,6 @@
 """Files of several builds are one job; what fails for one is reported once the others are there."""
 
+from bare_shells import BUSH
 from patience import until
 from serving import API
 
@@ -9,7 +10,7 @@ PLACE = f"{API}/models/plain_bearing/versions/1/build"
 
 
 def built(http, size):
-    body = {"parameters": {"inner_diameter": size, "width": "11 mm"}, "artifacts": ["step"]}
+    body = {"parameters": {**BUSH, "inner_diameter": size, "width": "11 mm"}, "artifacts": ["step"]}
     answer = http.post(PLACE, json=body, headers={"Prefer": "wait=60"})
     assert answer.status_code == 200, answer.text
     return answer.json()["build"]

@@ -62,7 +62,7 @@ LIFE = {
 
 @pytest.fixture(scope="module")
 def design(http, served):
-    shaft = {"id": "crankshaft", "version": 2, "parameters": SIZES, "analyses": ASKED}
+    shaft = {"id": "crankshaft", "version": 1, "parameters": SIZES, "analyses": ASKED}
     alone = revision(http, created(http, {"name": "alone", "models": {"shaft": shaft}}))
     build = alone["models"]["shaft"]["build"]
     for kind, values in STUBS.items():

@@ -6,9 +6,9 @@ import threading
 import pytest
 from sqlalchemy import event, select
 
+from app.storage.clock import now
 from app.storage.database import after_commit
 from app.storage.errors import CommitFailed
-from app.storage.identity import now
 from app.storage.tables import DesignRow
 
 

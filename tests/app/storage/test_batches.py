@@ -7,6 +7,7 @@ import threading
 
 import pytest
 import victims
+from bare_shells import BUSH
 from patience import patient
 
 from app.pool.sources import source_of
@@ -105,7 +106,7 @@ def test_inline_runs_a_batch_where_it_is_asked_for():
 
 def test_solids_built_in_one_process_have_the_bytes_of_solids_built_apart():
     ring, ball = models().get("plain_bearing", 1), models().get("ball_bearing", 1)
-    shapes = [ring.from_quantities({"inner_diameter": f"{d} mm", "width": "18 mm"}) for d in (40, 45, 50)]
+    shapes = [ring.from_quantities({**BUSH, "inner_diameter": f"{d} mm"}) for d in (40, 45, 50)]
     shapes.insert(1, ball.from_quantities({"inner_diameter": "30 mm"}))
     worker = LocalProcesses()
     batch = worker.batch()

@@ -38,7 +38,7 @@ def wall(monkeypatch):
 
     def off(by):
         moved = SimpleNamespace(now=lambda zone: datetime.now(UTC) + by)
-        monkeypatch.setattr("app.storage.identity.datetime", moved)
+        monkeypatch.setattr("app.storage.clock.datetime", moved)
         monkeypatch.setattr("time.time", lambda: (datetime.now(UTC) + by).timestamp())
 
     return off

@@ -16,9 +16,9 @@ from sqlalchemy.exc import IntegrityError, OperationalError
 from unsynced import DURABLE
 
 from app.storage import engines
+from app.storage.clock import new_id, now
 from app.storage.database import Database
 from app.storage.errors import CommitFailed, DatabaseClosed
-from app.storage.identity import new_id, now
 from app.storage.tables import DesignRow, RevisionRow
 
 
@@ -228,7 +228,7 @@ def test_identities_grow_whatever_the_clock_says(database, monkeypatch):
 WRITE_FOR_EVER = """
 import sys, threading
 from app.storage.database import Database
-from app.storage.identity import now
+from app.storage.clock import now
 from app.storage.tables import DesignRow
 database = Database(sys.argv[1])
 def loop(thread):

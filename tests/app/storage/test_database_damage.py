@@ -12,9 +12,9 @@ from sqlalchemy import select, update
 from app.cli.main import main
 from app.maintenance.check import check
 from app.maintenance.errors import CannotRun
+from app.storage.clock import now
 from app.storage.database import Database
 from app.storage.errors import CommitFailed, DatabaseDamaged
-from app.storage.identity import now
 from app.storage.integrity import faults, marker_of, refuse_damage
 from app.storage.tables import BuildRow, DesignRow
 

@@ -5,9 +5,9 @@ from components import ON_POSTGRESQL
 from sqlalchemy import bindparam, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
-from app.storage.identity import now
-from app.storage.statements import DRIVER, Statement
+from app.storage.clock import now
 from app.storage.tables import Base, DesignRow, RevisionRow
+from app.storage.units import DRIVER, Statement
 
 DESIGNS, REVISIONS = Base.metadata.tables["design"], Base.metadata.tables["revision"]
 NEW = Statement(insert(DESIGNS), "id", "name", "created", "head")

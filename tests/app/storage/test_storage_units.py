@@ -7,7 +7,7 @@ from datetime import UTC, datetime, timedelta
 import pytest
 from sqlalchemy.exc import DBAPIError, OperationalError
 
-from app.storage import errors, identity
+from app.storage import clock, errors
 from app.storage.database import Database
 from app.storage.integrity import is_damage
 from app.storage.migrations import migrate
@@ -31,7 +31,7 @@ def counters(database):
 def test_an_identity_raises_its_own_counter_by_one(database):
     database.write(lambda session: session.add_all([CounterRow(name=n, value=7) for n in ("a", "zebra")]))
     before = counters(database)
-    ids = [database.write(identity.new_id) for _ in range(3)]
+    ids = [database.write(clock.new_id) for _ in range(3)]
     assert ids == sorted(set(ids))
     assert all(len(id) == 24 and int(id, 16) >= 0 for id in ids)
     assert [int(id[:14], 16) for id in ids] == [before["identity"] + n for n in (1, 2, 3)]
@@ -43,7 +43,7 @@ def test_an_identity_raises_its_own_counter_by_one(database):
 def test_a_moment_is_a_text_of_constant_length_whose_order_is_that_of_time():
     begin = datetime(2026, 1, 1, tzinfo=UTC)
     moments = [begin + timedelta(microseconds=n) for n in (0, 1, 999_999, 1_000_000, 86_400_000_000)]
-    texts = [identity.as_text(moment) for moment in moments]
+    texts = [clock.as_text(moment) for moment in moments]
     assert texts[0] == "2026-01-01T00:00:00.000000Z"
     assert texts == sorted(texts)
     assert {len(text) for text in texts} == {27}

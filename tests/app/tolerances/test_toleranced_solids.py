@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from bare_shells import BUSH
 from serving import API, created, patched, revision
 
 SHELL = f"{API}/models/plain_bearing/versions/1"
@@ -34,7 +35,7 @@ def fitted(**parameters):
             "shell": {
                 "id": "plain_bearing",
                 "version": 1,
-                "parameters": {"inner_diameter": "= bore", "width": "= width", **parameters},
+                "parameters": {**BUSH, "inner_diameter": "= bore", "width": "= width", **parameters},
             }
         },
     }
@@ -90,10 +91,10 @@ def test_a_number_that_is_none_is_no_statement(http, step, number):
 
 
 def test_a_model_of_its_own_takes_a_tolerance_and_shows_it(http):
-    body = {"parameters": {"inner_diameter": "48 mm H7"}, "artifacts": ["step"]}
+    body = {"parameters": {**BUSH, "inner_diameter": "48 mm H7"}, "artifacts": ["step"]}
     build = http.post(f"{SHELL}/build", json=body, headers=WAIT).json()
     plain = http.post(
-        f"{SHELL}/build", json={**body, "parameters": {"inner_diameter": "48 mm"}}, headers=WAIT
+        f"{SHELL}/build", json={**body, "parameters": {**BUSH, "inner_diameter": "48 mm"}}, headers=WAIT
     ).json()
     bore = {"value": 48.0, "unit": "mm", "upper": 0.025, "lower": 0.0, "zone": "H7"}
     assert build["parameters"]["inner_diameter"] == bore
@@ -135,9 +136,9 @@ def test_another_tolerance_is_another_revision_with_another_file(http):
 
 def test_a_dimension_that_the_solid_lacks_is_refused_by_name(http):
     body = {
-        "parameters": {"inner_diameter": "48 mm", "oil_hole_diameter": "0 +0.1/0 mm"},
+        "parameters": {**BUSH, "inner_diameter": "48 mm", "oil_hole_diameter": "0 +0.1/0 mm"},
         "artifacts": ["step"],
     }
     answer = http.post(f"{SHELL}/build", json=body, headers=WAIT)
     assert answer.status_code == 422, answer.text
-    assert "no face of shell shows its 0 mm" in answer.text
+    assert "no face of full_back shows its 0 mm" in answer.text

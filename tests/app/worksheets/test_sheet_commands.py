@@ -3,6 +3,7 @@
 import asyncio
 import inspect
 
+import bare_shells
 import pytest
 from click.testing import CliRunner
 from serving import API, created
@@ -158,7 +159,12 @@ def test_the_story_from_the_text_to_the_solid(client, http):
     sheet = client.test_worksheet(client.create_worksheet(id, BUSH, author="A. Weber"))
     sheet = client.release_worksheet(client.review_worksheet(sheet, "B. Klein"))
     inputs = {"radial_load": "20 kN", "bearing_diameter": "= size"}
-    shell = {"inner_diameter": "= duty.finished_bore", "wall": "3 mm", "width": "= duty.bearing_width"}
+    shell = {
+        **bare_shells.BUSH,
+        "inner_diameter": "= duty.finished_bore",
+        "wall": "3 mm",
+        "width": "= duty.bearing_width",
+    }
     design = created(
         http,
         {

@@ -17,7 +17,7 @@ from cad.analysis.throw_matrix import ThrowMatrix, relative_motion
 from cad.cranks.chain_throw import has_throws, shaft_of_throws, throws_apart
 from cad.cranks.whole import WholeShaft
 from cad.models.crank_throw_v1 import CrankThrow
-from cad.models.crankshaft_v2 import Crankshaft
+from cad.models.crankshaft_v1 import Crankshaft
 from cad.regenerate import ignore
 from cad.shaft import PlacedThrow
 

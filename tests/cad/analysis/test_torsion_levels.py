@@ -33,11 +33,20 @@ def test_property_the_stated_error_bounds_the_true_one_on_ten_throws() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("ends", [("front", 20, 20), ("front", 1, 1), ("rear", 20, 20)])
-def test_property_it_does_so_where_an_end_is_slender(ends: tuple[str, float, float]) -> None:
+@pytest.mark.parametrize(
+    "end",
+    [
+        {"nose_diameter": 0.020, "nose_length": 0.020},
+        {"nose_diameter": 0.001, "nose_length": 0.001},
+        {"flange_diameter": 0.020, "flange_thickness": 0.020},
+    ],
+    ids=["nose of 20 mm", "nose of 1 mm", "flange of 20 mm"],
+)
+def test_property_it_does_so_where_an_end_is_slender(end: dict[str, float]) -> None:
     """Nearly all of the compliance is then in that end, far smaller than the throw."""
-    end, diameter, length = ends
-    parameters = {**THROW, f"{end}_diameter": diameter / 1e3, f"{end}_length": length / 1e3}
+    plain = {"nose_diameter": 0.8, "nose_length": 0.8, "flange_diameter": 0.9, "flange_thickness": 0.8}
+    ends = {name: share * THROW["journal_diameter"] for name, share in plain.items()}
+    parameters = {**THROW, "pin_angles": [0.0], **ends, **end}
     step, shaft = regenerate("crankshaft", 1, parameters).step, Crankshaft.from_si(parameters).shaft()
     assert shaft is not None
     true = truth(step, shaft, ["stiffness"])["stiffness"]

@@ -160,7 +160,7 @@ class TestFrame:
         template = evaluate(Engine, raw).template
         walls = 1j * template.wall * np.exp(1j * bank)
         heads = template.gas_forces * np.exp(1j * bank)
-        total = -mains.sum(axis=0) + (walls + heads).sum(axis=0)
+        total = -mains.sum(axis=0) + template.grid.returned((walls + heads).sum(axis=0))
         assert total == pytest.approx(F, abs=1e-10 * np.abs(mains).max())
 
     @every_engine
@@ -168,7 +168,8 @@ class TestFrame:
         """Moment of walls and heads = −(T + dL/dt), L of rods and pistons about the shaft."""
         out = values({**raw, "crank_angle_step": "1 deg"}, ["torque", "roll_moment"])
         template = evaluate(Engine, {**raw, "crank_angle_step": "1 deg"}).template
-        motion, crank = template.motion, template.crank
+        crank = template.crank
+        motion = crank.at(template.layout.alpha(template.theta))
         omega = 4500 * np.pi / 30
         mass, share = 0.6, 42 / 145
         pin, pin1 = (
@@ -212,15 +213,16 @@ class TestEnergy:
         areas = [float(one.split()[0]) for one in out["energy_areas"].split("; ")]
         assert len(areas) % 2 == 0
         assert abs(sum(areas)) < 1e-4 * np.abs(areas).max() * len(areas)  # five digits of words
-        below = out["torque"] < out["torque"].mean()
-        assert np.all((out["energy_area"] < 0) == below)
+        from_mean = out["torque"] - values(raw, ["mean_torque"])["mean_torque"]
+        clear = np.abs(from_mean) > 1e-3 * np.abs(from_mean).max()
+        assert np.all((out["energy_area"] < 0)[clear] == (from_mean < 0)[clear])
         swing = np.ptp(np.concatenate([[0], np.cumsum(areas)]))
         assert out["energy_fluctuation"] <= swing * (1 + 1e-4)
-        assert out["energy_fluctuation"] == pytest.approx(swing, rel=0.05)
+        assert out["energy_fluctuation"] == pytest.approx(swing, rel=2e-3)
 
     def test_analytic_areas_of_a_sine(self):
         theta = np.radians(np.arange(0, 720, 0.5))
-        areas = areas_of(theta, 70 + 30 * np.sin(theta - 0.3))
+        areas = areas_of(theta, 30 * np.sin(theta - 0.3), 4 * np.pi)
         assert [area.energy for area in areas] == pytest.approx([60, -60, 60, -60], rel=1e-4)
         assert areas[0].begin == pytest.approx(0.3, abs=1e-6)
         assert sum(area.energy for area in areas) == pytest.approx(0, abs=1e-9)
@@ -234,7 +236,8 @@ class TestMains:
         for stiffness in ("1e9 kN/mm", "300 kN/mm", "1e-6 kN/mm"):
             out = values({**raw, "support_stiffness": stiffness})
             template = evaluate(Engine, raw).template
-            pins, webs = template.pins, template.loads.forces[template.places.size :]
+            forces = template.grid.returned(template.loads.forces)
+            pins, webs = template.grid.returned(template.pins), forces[template.places.size :]
             size = np.abs(pins).sum(axis=0) + np.abs(webs).sum(axis=0)
             mains = np.array(raw["main_positions"]["value"]) * 1e-3
             places, web_places = template.places, template.web_places

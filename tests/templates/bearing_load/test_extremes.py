@@ -68,7 +68,7 @@ class TestSingleExtremes:
         spin = [built.outputs["rod_angular_velocity"].value for built in (forward, back)]
         assert np.array_equal(spin[0], -spin[1])
         assert back.outputs["mean_power"].value == -forward.outputs["mean_power"].value
-        assert [w.code for w in back.warnings] == ["reversed_cycle"]
+        assert [w.code for w in back.warnings] == ["coarse_curves", "reversed_cycle"]
 
     def test_analytic_loads_pass_through_zero(self):
         raw = {**BearingLoad.example, "crank_angle_step": "1 deg"}

@@ -16,6 +16,12 @@ def refused(cls, **changes):
     return caught.value.faults
 
 
+def refused_shell(**given):
+    with pytest.raises(InvalidInputs) as caught:
+        SHELL.from_quantities({"inner_diameter": "48 mm", **given})
+    return caught.value.faults
+
+
 @pytest.mark.parametrize("fillet", ["0.1 um", "1 nm", "0.05 mm"])
 def test_a_fillet_too_small_to_draw_is_one_fault_at_the_fillet(fillet):
     (fault,) = refused(THROW, fillet=fillet)
@@ -47,9 +53,9 @@ def test_two_causes_are_two_faults():
 
 
 def test_an_input_that_was_given_comes_before_one_that_follows_from_others():
-    (fault,) = refused(SHELL, oil_groove_depth="10 mm", wall="2.4 mm")
+    (fault,) = refused_shell(oil_groove_depth="10 mm", wall="2.4 mm")
     assert (fault.name, fault.also) == ("oil_groove_depth", ("wall",))
-    (fault,) = refused(SHELL, oil_groove_width="0.1 um")
+    (fault,) = refused_shell(oil_groove_width="0.1 um")
     assert fault.name == "oil_groove_width"
 
 

@@ -267,7 +267,7 @@ def test_a_judgement_is_plain_data():
     """It crosses to the process that answers, and becomes JSON."""
     import pickle
 
-    from app.calculations.criteria import rendered
+    from app.calculations.json_values import rendered
 
     result = evaluate(Beam, {"force": {"value": [1, 30], "unit": "kN"}})
     copies = pickle.loads(pickle.dumps(result.criteria))

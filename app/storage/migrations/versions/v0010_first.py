@@ -115,7 +115,7 @@ def create_solids() -> None:
     )
     op.create_index("ix_analysis_build_key", "analysis", ["build_key"])
     op.create_table(
-        "brought_model",
+        "imported_model",
         sa.Column("id", sa.Text(), nullable=False),
         sa.Column("number", sa.Integer(), nullable=False),
         sa.Column("program", sa.Text(), nullable=False),
@@ -125,7 +125,7 @@ def create_solids() -> None:
         sa.Column("author", sa.Text()),
         sa.Column("author_principal", sa.Text()),
         sa.Column("created", sa.Text(), nullable=False),
-        sa.PrimaryKeyConstraint("id", "number", name="pk_brought_model"),
+        sa.PrimaryKeyConstraint("id", "number", name="pk_imported_model"),
     )
 
 
@@ -156,6 +156,7 @@ def create_jobs() -> None:
         sa.Column("owner", sa.Text()),
         sa.Column("lease_until", sa.Double()),
         sa.Column("cause", sa.Text()),
+        sa.Column("question", sa.Text()),
         sa.ForeignKeyConstraint(
             ["design_id", "revision"],
             ["revision.design_id", "revision.number"],
@@ -167,6 +168,7 @@ def create_jobs() -> None:
     op.create_index("ix_job_design_id_revision", "job", ["design_id", "revision"])
     op.create_index("ix_job_operated", "job", ["operated"])
     op.create_index("ix_job_owner", "job", ["owner"])
+    op.create_index("ix_job_question", "job", ["question"])
     op.create_index("ix_job_state_turn_id", "job", ["state", "turn", "id"])
     op.create_table(
         "idempotency",

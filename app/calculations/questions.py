@@ -1,0 +1,94 @@
+"""Questions about templates: to evaluate one, to solve it, and to write its formulas out.
+
+They are answered by calculation processes, which read the body of the request and write the answer.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import replace
+
+from app.calculations.errors import InvalidBody, NoArray, TooManyValues
+from app.calculations.operations import LARGE, Question, answered, check, checked
+from app.catalogue.catalogues import Catalogues
+from app.plain import JsonObject
+from app.pool.errors import StepDeferred, TooManyCalculations
+from app.pool.questions import CALCULATION, Form, Kind, Reply
+from app.pool.sources import source_of
+from app.pool.steps import Caller, in_the_pool, present_caller
+from app.storage.database import Database
+from app.workers.pieces import Pieces
+from templates.core.catalogue.digests import digest
+from templates.core.language.template import Template
+
+CHECKED_WITHIN = 2.0
+"""How long a client that does not wait is kept for the check of a large body by a process [s]."""
+
+
+def calculated(question: Question, database: Database, catalogues: Catalogues) -> Reply[Question, Pieces]:
+    """Return the answer of a calculation process, unless its caller does not wait so long.
+
+    Who does not want to wait at all learns nevertheless what is wrong with the question.
+
+    Raises
+    ------
+    UnknownTemplate, InvalidBody, InvalidInputs, NoArray, TooManyValues
+        If something is wrong with it.
+    TooManyCalculations
+        Too many are waiting.
+    """
+    cls = catalogues.to_try(question.template, question.version)
+    caller = present_caller()
+    if caller is not None and time.monotonic() >= caller.until:
+        _check(cls, question, caller)
+        return Reply(None, question)
+    try:
+        return Reply(in_the_pool(CALCULATION, answered, source_of(cls), question))
+    except StepDeferred:
+        return Reply(None, question)
+
+
+def _check(cls: type[Template], question: Question, caller: Caller) -> None:
+    """Refuse what is wrong with a question, as far as shows without calculating.
+
+    A large body is read in a calculation process. If none is free in time, the job itself will say what is
+    wrong.
+    """
+    if len(question.body) <= LARGE:
+        check(cls, question)
+        return
+    begun = caller.steps.begun()
+    checking = replace(caller, begun=begun, until=time.monotonic() + CHECKED_WITHIN)
+    with suppress(StepDeferred, TooManyCalculations):
+        try:
+            checking.calculated(CALCULATION, checked, source_of(cls), question)
+        finally:
+            begun.close()
+
+
+def _settled(
+    question: Question, database: Database, catalogues: Catalogues
+) -> tuple[Question, Iterable[str]]:
+    """Return the question, and the digest of the template as it is now."""
+    return question, (digest(catalogues.to_try(question.template, question.version)),)
+
+
+def _written(question: Question) -> tuple[JsonObject, Pieces]:
+    fields = {name: part for name, part in vars(question).items() if name != "body"}
+    return fields, question.body
+
+
+def _read(fields: JsonObject, body: Pieces) -> Question:
+    return Question(**fields, body=body)
+
+
+EVALUATION = Kind(
+    CALCULATION,
+    Form(_written, _read),
+    lambda kept: kept,
+    calculated,
+    failures=(TooManyValues, InvalidBody, NoArray),
+    settle=_settled,
+)

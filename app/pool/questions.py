@@ -1,0 +1,324 @@
+"""A question is answered at once if that is cheap, else by a job.
+
+`Questions` does this for evaluations, solutions and worksheets of templates, and for previews, decisions,
+solutions, analyses of tolerances, single variants and the impact of versions. What was begun for a client who
+waits no longer goes on: the job takes it over and keeps the answer as an artifact, and the client comes back
+for it. A job is known by the key of its question, so an equal question finds its job, or the answer itself.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Generic, TypeVar
+
+from pydantic import TypeAdapter
+from pydantic_core import from_json, to_json
+from sqlalchemy.orm import Session
+
+import templates
+from app.catalogue.catalogues import Catalogues
+from app.jobs import repository
+from app.jobs.schemas import State
+from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.plain import JsonObject
+from app.pool.steps import Steps, begun_steps, calling
+from app.schemas.answers import Answer
+from app.storage.artifacts import Artifacts
+from app.storage.database import Database
+from app.storage.errors import ArtifactDamaged, ArtifactMissing, CannotRebuild, NotFound
+from app.storage.tables import canonical_json
+from app.workers.errors import DeadlineExceeded, MemoryExceeded
+from app.workers.pieces import Pieces
+from templates.core.errors import TemplateError
+
+CALCULATION, PREVIEW, DECISION = "calculation", "preview", "decision"
+TOLERANCE, SOLUTION, IMPACT, VARIANT = "tolerance", "solution", "impact", "variant"
+ANSWERS = (CALCULATION, PREVIEW, DECISION, TOLERANCE, SOLUTION, IMPACT, VARIANT)
+"""Kinds of jobs whose result is an answer: what a request asked for, and nobody waited for."""
+AGAIN = "again"  # in a payload: the job whose lost answer is calculated again
+FAILURES = (TemplateError, NotFound, CannotRebuild, DeadlineExceeded, MemoryExceeded)
+"""What a question of any kind, or the loss of it, brings about."""
+
+Q = TypeVar("Q")
+A = TypeVar("A", bound=Answer | Pieces)
+M = TypeVar("M", bound=Answer)
+
+
+@dataclass(frozen=True)
+class Reply(Generic[Q, A]):
+    """An answer as far as it goes, and the question that a job has to answer; None if the answer is whole."""
+
+    answer: A | None
+    rest: Q | None = None
+
+
+@dataclass(frozen=True)
+class Form(Generic[Q]):
+    """How questions of a kind are kept: fields in the row of the job, and a body in the store."""
+
+    write: Callable[[Q], tuple[JsonObject, Pieces]]
+    read: Callable[[JsonObject, Pieces], Q]
+
+
+def json_form(asked: type[Q]) -> Form[Q]:
+    """Return the form of questions that are dataclasses of what JSON holds: all is in the body."""
+    adapter: TypeAdapter[Q] = TypeAdapter(asked)
+
+    def read(fields: JsonObject, body: Pieces) -> Q:
+        return adapter.validate_python(from_json(body.joined()))
+
+    return Form(lambda question: ({}, Pieces.of(to_json(question))), read)
+
+
+def json_answer(model: type[M]) -> Callable[[Pieces], M]:
+    """Return what reads a kept answer that is a model."""
+    return lambda kept: model.model_validate_json(kept.joined())
+
+
+@dataclass(frozen=True)
+class Kind(Generic[Q, A]):
+    """A kind of questions.
+
+    Parameters
+    ----------
+    name
+        Of its jobs.
+    form
+        In which its questions are kept.
+    read
+        Reads a kept answer.
+    calculate
+        Answers a question for the caller of the present context, as far as that caller waits.
+    failures
+        What a question brings about, besides `FAILURES`.
+    settle
+        Returns a question with the revision that is the newest now, and all else that the answer follows
+        from. None for a kind whose answer follows from what may change at any time: an equal question then
+        finds only a job that has not begun.
+    check
+        Of a kind that always takes long: raises what refuses a question, as far as shows without calculating.
+    has_parts
+        Whether there is a part of the answer while its job goes on.
+    """
+
+    name: str
+    form: Form[Q]
+    read: Callable[[Pieces], A]
+    calculate: Callable[[Q, Database, Catalogues], Reply[Q, A]]
+    failures: tuple[type[Exception], ...] = ()
+    settle: Callable[[Q, Database, Catalogues], tuple[Q, Iterable[str]]] | None = None
+    check: Callable[[Q, Database, Catalogues], None] | None = None
+    has_parts: bool = False
+
+    @property
+    def all_failures(self) -> tuple[type[Exception], ...]:
+        """Return what a question of this kind brings about."""
+        return (*FAILURES, *self.failures)
+
+    @property
+    def joined(self) -> frozenset[State]:
+        """Return the states of the jobs that an equal question finds."""
+        return frozenset({"queued", "running", "done"} if self.settle else {"queued"})
+
+
+class Questions(Generic[Q, A]):
+    """Answers questions of one kind, makes jobs where that takes long, and is the handler of such jobs."""
+
+    def __init__(
+        self,
+        kind: Kind[Q, A],
+        database: Database,
+        catalogues: Catalogues,
+        store: Artifacts,
+        jobs: Jobs,
+        steps: Steps,
+    ) -> None:
+        self.kind = kind
+        self.database, self.catalogues, self.store = database, catalogues, store
+        self.jobs, self.steps = jobs, steps
+
+    def answer(self, question: Q, client: str) -> tuple[A | None, str | None]:
+        """Return the answer as far as its caller waits for it, and the job that completes it, if any.
+
+        Raises
+        ------
+        InvalidInputs, NotFound
+            With everything that is wrong with the question or the design, as far as it is known.
+        QueueFull, TooManyCalculations
+            Too many jobs, or calculations, are waiting.
+        """
+        asked, key = self._settled(question)
+        if key and (earlier := self._earlier(key)):
+            if not earlier.finished:
+                return None, self._queued(asked, key, client)
+            with suppress(ArtifactMissing, ArtifactDamaged):
+                return self.kind.read(stored_answer(self.store, earlier)), None
+        if self.kind.check is not None:
+            self.kind.check(asked, self.database, self.catalogues)
+            return None, self._queued(asked, key, client)
+        reply = self._reply(asked)
+        return reply.answer, None if reply.rest is None else self._queued(reply.rest, key, client)
+
+    def in_parts(self, question: Q, client: str) -> tuple[A, str | None]:
+        """As `answer`, of a kind whose answer has parts: it is never empty.
+
+        Raises
+        ------
+        InvalidInputs, NotFound, QueueFull, TooManyCalculations
+            As `answer`.
+        """
+        answer, job = self.answer(question, client)
+        return self.at_once(question) if answer is None else answer, job
+
+    def at_once(self, question: Q) -> A:
+        """Return the answer as far as it is known while its caller waits; no job is made for the rest."""
+        answer = self._reply(question).answer
+        assert answer is not None, "a job waits for the whole answer, and a page asks for what has parts"
+        return answer
+
+    def _reply(self, question: Q) -> Reply[Q, A]:
+        return self.kind.calculate(question, self.database, self.catalogues)
+
+    def _settled(self, question: Q) -> tuple[Q, str]:
+        """Return a question with its revision, and its key; empty for a kind that does not settle."""
+        if self.kind.settle is None:
+            return question, ""
+        asked, grounds = self.kind.settle(question, self.database, self.catalogues)
+        return asked, self._key(asked, grounds)
+
+    def _key(self, question: Q, grounds: Iterable[str] = ()) -> str:
+        """Return the hash of all that the answer to a question follows from."""
+        fields, body = self.kind.form.write(question)
+        about = [self.kind.name, canonical_json(fields), *program(), *grounds]
+        digest = hashlib.sha256("\0".join(about).encode())
+        for part in body:
+            digest.update(part)
+        return digest.hexdigest()
+
+    def _earlier(self, key: str) -> Job | None:
+        """Return the newest job of an equal question."""
+        with self.database.read() as session:
+            return repository.asked(session, key, self.kind.joined)
+
+    def _queued(self, question: Q, key: str, client: str) -> str:
+        """Return the job of an equal question, or a new one, which takes over what was begun."""
+        fields, body = self.kind.form.write(question)
+        key = key or self._key(question)
+        payload = {**fields, "body": self.store.put(*body)}
+        begun = begun_steps()
+
+        def unit_of_work(session: Session) -> str:
+            id, is_new = self.jobs.ask(session, self.kind.name, payload, key, self.kind.joined, client)
+            if begun is not None and is_new:
+                begun.leave_to(id)
+            return id
+
+        job = self.database.write(unit_of_work)
+        self.jobs.wake()
+        return job
+
+    def __call__(self, job: Job, context: JobContext) -> Completion:
+        """Calculate the whole answer, and keep it.
+
+        Raises
+        ------
+        JobFailed
+            With the problem, for anything that the question itself brings about.
+        """
+        try:
+            question = question_of(self.kind.form, job, self.store)
+            with calling(self.steps, job, context, f"job:{job.id}", "jobs"):
+                answer = self.at_once(question)
+        except self.kind.all_failures as error:
+            raise JobFailed(error) from error
+        lost = job.payload.get(AGAIN)  # the job whose answer this is
+        place = place_of_answer(lost or job.id, self.store.put(*as_kept(answer)))
+
+        def unit_of_work(session: Session) -> str:
+            if lost:
+                repository.set_result(session, lost, place)
+            return place
+
+        return unit_of_work
+
+    def request_again(self, job: Job, client: str) -> str:
+        """Return the job that calculates the lost answer of another one, of any kind, again.
+
+        Raises
+        ------
+        CannotRebuild
+            The request that the job was made of is lost as well.
+        QueueFull
+            Too many jobs are waiting.
+        """
+        if not self.store.exists(job.payload["body"]):
+            raise _lost(job)
+        payload = {**job.payload, AGAIN: job.id}
+        again = self.database.write(lambda session: self.jobs.request(session, job.kind, payload, client))
+        self.jobs.wake()
+        return again
+
+    def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
+        """End what was left to a job that was cancelled before it began."""
+        self.steps.drop(job.id)
+
+
+def question_of(form: Form[Q], job: Job, store: Artifacts) -> Q:
+    """Return the question that the row of a job names.
+
+    Raises
+    ------
+    CannotRebuild
+        If its body is lost.
+    """
+    fields = {name: part for name, part in job.payload.items() if name not in ("body", AGAIN)}
+    try:
+        return form.read(fields, Pieces.of(store.read(job.payload["body"])))
+    except (ArtifactMissing, ArtifactDamaged) as error:
+        raise _lost(job) from error
+
+
+def _lost(job: Job) -> CannotRebuild:
+    detail = f"the request of job {job.id} was lost. Send it again, or restore a backup"
+    return CannotRebuild("answer_lost", detail)
+
+
+def as_kept(answer: Answer | Pieces) -> Pieces:
+    """Return an answer as JSON, without the fields that it leaves out; what is written already, as it is."""
+    if isinstance(answer, Pieces):
+        return answer
+    return Pieces.of(answer.model_dump_json(by_alias=True, exclude_unset=True).encode())
+
+
+def stored_answer(store: Artifacts, job: Job) -> Pieces:
+    """Return the answer that a job has left in the store; raises ArtifactMissing, ArtifactDamaged."""
+    assert job.result is not None
+    return Pieces.of(store.read(job.result.rpartition("sha256=")[2]))
+
+
+def place_of_answer(job: str, sha: str) -> str:
+    """Return the address at which the answer of a job is read."""
+    return f"/api/v1/evaluations/{job}?sha256={sha}"
+
+
+@lru_cache(1)
+def program() -> tuple[str, ...]:
+    """Return the program's version, and the ages and sizes of the files by which it calculates."""
+    root = Path(templates.__file__).parents[1]
+    files = sorted(
+        path
+        for package in ("templates", "cad", "app/calculations", "app/designs", "app/tolerances")
+        for path in (root / package).rglob("*")
+        if path.suffix in (".py", ".json", ".npz", ".csv")
+    )
+    digest = hashlib.sha256()
+    for path in files:
+        about = path.stat()
+        digest.update(f"{path.relative_to(root)} {about.st_size} {about.st_mtime_ns}\n".encode())
+    return version("crankwright"), digest.hexdigest()

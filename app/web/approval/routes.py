@@ -1,0 +1,100 @@
+"""Actions of the forms of approval and comments, on the pages of designs and revisions."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable
+from typing import NamedTuple
+
+from fastapi import APIRouter, Depends, Request, Response
+
+from app.approvals.schemas import ApprovalIn, CommentIn
+from app.web.design.page import design_page
+from app.web.revision.page import revision_page
+from app.web.shared.forms import fields, forms_only
+from app.web.shared.paths import Id, Number
+from app.web.shared.responses import go
+from app.web.shared.services import PageServices, Refused, ThePageServices
+
+router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
+
+SHOWN = (403, 404, 409, 412, 422)
+"""Refusals that the page itself says."""
+
+
+class Place(NamedTuple):
+    """The page from which a form was sent."""
+
+    id: str
+    number: int
+    is_design: bool
+
+    @property
+    def path(self) -> str:
+        """Return its address."""
+        return f"/designs/{self.id}" if self.is_design else f"/designs/{self.id}/revisions/{self.number}"
+
+
+@router.post("/designs/{id}/revisions/{number}/approvals")
+async def sign(id: Id, number: Number, request: Request, services: ThePageServices) -> Response:
+    """Take a step of the approval."""
+    typed = await fields(request)
+    said = {"step": typed.get("step", "")}
+    if typed.get("reason", "").strip():
+        said["reason"] = typed["reason"]
+    seen = f'"{typed.get("seen", "")}"'
+
+    async def signed() -> None:
+        body = services.read(ApprovalIn, said)
+        await services.run(services.approving.sign, id, number, body, seen, services.once)
+
+    return await _sent(request, services, _place(id, number, typed), signed(), "Not signed", "approval")
+
+
+@router.post("/designs/{id}/revisions/{number}/comments")
+async def comment(id: Id, number: Number, request: Request, services: ThePageServices) -> Response:
+    """Write a comment."""
+    typed = await fields(request)
+    body = {"text": typed.get("text", "").replace("\r\n", "\n"), "subject": typed.get("subject", "").strip()}
+    said = {name: text for name, text in body.items() if text}
+
+    async def commented() -> None:
+        await services.run(services.comments.add, id, number, services.read(CommentIn, said), services.once)
+
+    return await _sent(request, services, _place(id, number, typed), commented(), "Not commented", "comments")
+
+
+@router.post("/designs/{id}/revisions/{number}/comments/{comment}/resolve")
+async def resolve(
+    id: Id, number: Number, comment: Id, request: Request, services: ThePageServices
+) -> Response:
+    """Say that a comment is dealt with."""
+    place = _place(id, number, await fields(request))
+    resolved = services.run(services.comments.resolve, id, number, comment)
+    return await _sent(request, services, place, resolved, "Not resolved", "comments")
+
+
+def _place(id: str, number: int, typed: dict[str, str]) -> Place:
+    return Place(id, number, is_design=typed.get("page") == "design")
+
+
+async def _sent(
+    request: Request,
+    services: PageServices,
+    place: Place,
+    action: Awaitable[object],
+    failure: str,
+    part: str,
+) -> Response:
+    """Carry out what a form says; then show a part of its page, which says why if it was refused."""
+    try:
+        await action
+    except Refused as refused:
+        if refused.status not in SHOWN:
+            raise
+        notice = f"{failure}: {refused.problem.detail}"
+        if place.is_design:
+            return await design_page(request, services, place.id, notice=notice, status=refused.status)
+        return await revision_page(
+            request, services, place.id, place.number, None, notice=notice, status=refused.status
+        )
+    return go(f"{place.path}#{part}")

@@ -1,0 +1,1 @@
+"""The page of a design at its newest revision, with the forms that change it."""

@@ -1,0 +1,272 @@
+"""Actions of forms about designs: each calls a service, then shows the page with the result.
+
+Without a script in the browser these are all actions there are; with one, `design/design.js` saves by itself.
+`app.http.guard` refuses a form of another site: a browser would send it without asking anyone.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from fastapi import APIRouter, Depends, Request, Response
+from pydantic import JsonValue
+
+from app.designs.bodies import DesignIn
+from app.designs.labels import LabelsIn
+from app.designs.routes.designs import document_of
+from app.designs.schemas.designs import Design
+from app.presentation.input_text import value_of
+from app.reference import Reference
+from app.web.design.declarations import change_of
+from app.web.design.page import design_page
+from app.web.gallery.gallery import GALLERY
+from app.web.new_step.page import NewStep, address, beside, new_step, step_page, versioned
+from app.web.shared.blocks import Refusal
+from app.web.shared.forms import Patch, fields, forms_only, inner, kept, patch_of
+from app.web.shared.paths import Id, Number
+from app.web.shared.responses import go
+from app.web.shared.services import PageServices, Refused, ThePageServices
+
+STALE = 412
+ILL_NAMED = 422
+NOTHING: Mapping[str, str] = {}
+
+
+router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
+
+
+@router.post("/designs")
+async def create(request: Request, services: ThePageServices) -> Response:
+    """A design from the gallery, or one with a template and a model of one's choice.
+
+    A template's inputs are asked for first: its example is never saved as if it were typed.
+    """
+    typed = await fields(request)
+    example = GALLERY.get(typed.get("example", ""))
+    if example:
+        return await _created(services, example.document)
+    document: dict[str, JsonValue] = {
+        "name": typed.get("design_name", typed.get("name", "")).strip() or "new design"
+    }
+    if typed.get("model"):
+        id, version = versioned(typed["model"])
+        document["model"] = {"id": id, "version": version}
+    if not typed.get("template"):
+        return await _created(services, document)
+    return await _with_step(request, services, typed, document)
+
+
+async def _with_step(
+    request: Request, services: PageServices, typed: Mapping[str, str], document: dict[str, JsonValue]
+) -> Response:
+    """Return a design with one step; its form, where that is not filled in, or refused."""
+    if "design_name" not in typed:  # the form of the home page: its name is that of the design
+        await new_step(services, typed)  # a template that does not exist is refused here
+        return go(address("/designs/new", {**typed, "design_name": str(document["name"]), "name": ""}))
+    step = await new_step(services, typed)
+    try:
+        return await _created(services, {**document, "steps": {step.name: step.plain()}})
+    except Refused as refused:
+        return _step_again(request, step, "/designs", beside(typed), refused)
+
+
+def _step_again(
+    request: Request, step: NewStep, action: str, hidden: Mapping[str, str], refused: Refused
+) -> Response:
+    """Return the form of a step that was refused."""
+    if refused.status != ILL_NAMED:
+        raise refused
+    notice = None if refused.faults else f"Nothing was saved: {refused.problem.detail}"
+    return step_page(request, step, action, hidden, Refusal(step.typed, refused.faults), notice)
+
+
+async def _created(services: PageServices, document: Mapping[str, JsonValue]) -> Response:
+    raw, note = document_of(services.read(DesignIn, document))
+    saved = await services.save(services.designs.create, raw, note, services.once)
+    return go(f"/designs/{saved.design}")
+
+
+@router.post("/designs/{id}")
+async def save(id: Id, request: Request, services: ThePageServices) -> Response:
+    """A new revision; where it is refused, the form again with what was typed and what is wrong."""
+    typed = await fields(request)
+    design = await services.run(services.designs.show, id)
+    based = typed.get("revision", "")
+    patch = patch_of(design, typed)
+    try:
+        if based != str(design.revision):
+            raise Refused.because(STALE, f"revision {design.revision} was saved since")
+        await services.change(id, based, patch, typed.get("note", ""))
+    except Refused as refused:
+        return await _again(request, services, id, typed, refused)
+    return go(f"/designs/{id}")
+
+
+@router.post("/designs/{id}/blocks")
+async def add(id: Id, request: Request, services: ThePageServices) -> Response:
+    """A parameter, a template, a model, an analysis or an iteration more, changed, or one less.
+
+    The inputs of a template are asked for first.
+    """
+    typed = await fields(request)
+    if typed.get("add") == "template":
+        return await _add_step(id, request, services, typed)
+    design = await services.run(services.designs.show, id)
+    declared = change_of(design, typed)
+    patch = _block(typed)
+    try:
+        if declared is None:
+            _refuse_taken(design, patch)
+        await services.change(id, typed.get("revision", ""), patch if declared is None else declared)
+    except Refused as refused:
+        return await _again(request, services, id, {}, refused, part=typed)
+    return go(f"/designs/{id}")
+
+
+async def _add_step(id: str, request: Request, services: PageServices, typed: Mapping[str, str]) -> Response:
+    """Add a step; show its form where that is not filled in, or was refused."""
+    step, design = await new_step(services, typed), await services.run(services.designs.show, id)
+    patch: Patch = {"steps": {step.name: step.plain()}}
+    try:
+        _refuse_taken(design, patch)
+    except Refused as refused:
+        return await _again(request, services, id, {}, refused)
+    if not step.is_filled:
+        return go(address(f"/designs/{id}/steps/new", typed))
+    try:
+        await services.change(id, typed.get("revision", ""), patch)
+    except Refused as refused:
+        hidden = {**beside(typed), "add": "template", "revision": typed.get("revision", "")}
+        return _step_again(request, step, f"/designs/{id}/blocks", hidden, refused)
+    return go(f"/designs/{id}")
+
+
+@router.post("/designs/{id}/auto-map")
+async def auto_map(id: Id, request: Request, services: ThePageServices) -> Response:
+    """Save those proposals that the user chose."""
+    typed = await fields(request)
+    proposed = await services.calculate(None, services.designs.proposals, id)
+    chosen = [item for item in proposed if typed.get(f"map.{item.target}")]
+    patch: Patch = {"models": {}}
+    for item in chosen:
+        target = Reference.parse(item.target)
+        within = inner(inner(patch["models"], target.block), "parameters")
+        within[target.member] = item.relation
+    if chosen:
+        await services.change(id, typed.get("revision", ""), patch, "mapped as proposed")
+    return go(f"/designs/{id}")
+
+
+@router.post("/designs/{id}/copy")
+async def copy(id: Id, services: ThePageServices) -> Response:
+    """A copy, shown at once."""
+    saved = await services.save(services.designs.copy, id, None, services.once)
+    return go(f"/designs/{saved.design}")
+
+
+@router.post("/designs/{id}/delete")
+async def delete(id: Id, services: ThePageServices) -> Response:
+    """Take a design from the lists."""
+    await services.run(services.designs.delete, id)
+    return go("/#designs")
+
+
+@router.post("/designs/{id}/revisions/{number}/restore")
+async def restore(id: Id, number: Number, services: ThePageServices) -> Response:
+    """A new revision equal to an old one."""
+    await services.save(services.designs.restore, id, number, None, None, services.once)
+    return go(f"/designs/{id}")
+
+
+@router.post("/designs/{id}/jobs/{job}/cancel")
+async def cancel(id: Id, job: Id, services: ThePageServices) -> Response:
+    """Stop the regeneration; a job that has ended meanwhile is left as it is."""
+    await services.cancel(job)
+    return go(f"/designs/{id}")
+
+
+async def _again(
+    request: Request,
+    services: PageServices,
+    id: str,
+    typed: Mapping[str, str],
+    refused: Refused,
+    part: Mapping[str, str] = NOTHING,
+) -> Response:
+    """Return the page with a form that was refused; of a stale one, only what its user changed is kept."""
+    if refused.status not in (STALE, ILL_NAMED):
+        raise refused
+    notice = (
+        f"Somebody else saved this design meanwhile: {refused.problem.detail}. Your changes are kept in "
+        "the fields below; look at them once more, then save."
+        if refused.status == STALE
+        else None
+    )
+    if not notice and not refused.faults:
+        notice = f"Nothing was saved: {refused.problem.detail}"
+    refusal = Refusal(kept(typed), refused.faults, part)
+    return await design_page(request, services, id, refusal=refusal, notice=notice, status=refused.status)
+
+
+def _refuse_taken(design: Design, patch: Patch) -> None:
+    """Let nobody add what would take the place of a parameter, a step or a model.
+
+    Raises
+    ------
+    Refused
+        If a name that the patch adds is in use.
+    """
+    for added in patch.values():
+        for name, value in added.items():
+            if value is not None and name in {*design.parameters, *design.steps, *design.models}:
+                raise Refused.because(ILL_NAMED, f"{name} is in use: choose another name")
+
+
+def _block(typed: Mapping[str, str]) -> Patch:
+    """Return the merge patch that adds or removes what a form names."""
+    name = typed.get("name", "").strip()
+    match typed.get("add", ""):
+        case "parameter":
+            return {"parameters": {name: value_of(typed.get("value", ""))}}
+        case "model":
+            id, version = versioned(typed.get("model", ""))
+            return {"models": {name or id: {"id": id, "version": version}}}
+    group, _, removed = typed.get("remove", "").partition(".")
+    return {group: {removed: None}}
+
+
+_LIST = re.compile(r"/(designs(\?[!-~]*)?)?")
+"""An address of a list of designs on this service."""
+
+
+@router.post("/designs/{id}/rename")
+async def rename(id: Id, request: Request, services: ThePageServices) -> Response:
+    """Another name; the results stay."""
+    typed = await fields(request)
+    await services.change(id, typed.get("revision", ""), {"name": typed.get("name", "").strip()})
+    return _back(typed)
+
+
+@router.post("/designs/{id}/labels")
+async def label(id: Id, request: Request, services: ThePageServices) -> Response:
+    """Tags more or less, into the archive or out of it."""
+    typed = await fields(request)
+    await _label(services, id, typed)
+    return _back(typed)
+
+
+async def _label(services: PageServices, id: str, typed: dict[str, str]) -> None:
+    change: dict[str, JsonValue] = {}
+    for field in ("add_tags", "remove_tags"):
+        if tags := [tag.strip() for tag in typed.get(field, "").split(",") if tag.strip()]:
+            change[field] = [*tags]
+    if "archived" in typed:
+        change["archived"] = typed["archived"] == "true"
+    await services.run(services.labelling.label, id, services.read(LabelsIn, change))
+
+
+def _back(typed: dict[str, str]) -> Response:
+    """Redirect to the list from which a form was sent."""
+    back = typed.get("back", "/")
+    return go(back if _LIST.fullmatch(back) else "/")

@@ -1,0 +1,263 @@
+// The design page while it is used: previews, the draft, saving, progress. Every action is a call of the API.
+import { Refused, call, units } from "../shared/api.js";
+import { calculated } from "../shared/calculation.js";
+import { startDownloads } from "../shared/downloads.js";
+import { startCompletion } from "../shared/completion.js";
+import { Draft } from "../shared/draft.js";
+import { startDrives } from "./drives.js";
+import { isolated } from "../shared/isolated.js";
+import { startLater } from "../shared/later.js";
+import { startLists } from "../lists/lists.js";
+import { live } from "../shared/live.js";
+import { Names } from "./names.js";
+import { showParameters, showValues } from "./parameters.js";
+import { startPicker } from "./picker.js";
+import { drawPictures } from "../plots/pictures.js";
+import { follow } from "../shared/progress.js";
+import { OUTDATED, markOutdated, markWaiting, showFaults, showResults, showWarnings } from "../shared/results.js";
+import { startSolids } from "../solid/solids.js";
+import { startDecide } from "./decide.js";
+import { startTolerances } from "../tolerances/tolerances.js";
+import { nameOf, patchOf } from "../shared/typed.js";
+import { goTo, showKeys, showVerdict, startVerdict } from "../verdict/verdict.js";
+
+startDownloads();
+startLists();
+
+const form = document.getElementById("sheet");
+const { design: id, revision } = form.dataset;
+const api = `/api/v1/designs/${id}`;
+const namesHere = document.querySelector("[data-names]").value; // a long design has them fetched
+const names = new Names(JSON.parse(namesHere || "[]"));
+const watches = []; // of fields: each takes those that come later
+const draft = new Draft(form, JSON.parse(form.querySelector("[name=was]").value));
+const models = new Set([...document.querySelectorAll("[data-model]")].map((part) => part.dataset.model));
+const state = form.querySelector("[data-state]");
+const trouble = form.querySelector("[data-trouble]");
+const MOST_LINKS = 5; // to fields that are wrong
+const CONFLICT = 409; // the calculation was cancelled
+const patch = () => patchOf(draft.changed(), models);
+const progress = document.querySelector("[data-progress]");
+const designState = document.querySelector("[data-design-state]").dataset.designState;
+const isJudged = document.querySelector("[data-verdict]").dataset.verdict === "judged"; // the revision has a verdict
+const ofVariants = document.querySelector("[data-governing-variant]"); // as saved
+let steps = {}, conflicted = false, isFollowing = false; // the bar shows the job of a revision
+
+const preview = live(
+  (signal) => previewed(signal, isFollowing),
+  ({ payload }) => {
+    clear();
+    show(payload);
+    state.textContent = [draft.keep() && "previewed, not saved", waiting(payload)].filter(Boolean).join("; ");
+  },
+  refusePreview,
+);
+
+// What takes long is shown once its job has ended, the rest at once; or only what is known soon.
+async function previewed(signal, isQuick) {
+  const path = `${api}/preview?worksheet=true&units=${units()}${isQuick ? "&within=1" : ""}`;
+  const answer = await call("POST", path, patch(), { signal, headers: { Prefer: "wait=1" } });
+  if (answer.status !== 202) return answer;
+  clear();
+  show(answer.payload);
+  state.textContent = draft.keep() ? "not saved" : "";
+  return calculated(answer.location, signal);
+}
+
+// A step that is not calculated yet; as long as nothing is changed, the results shown are those of the revision.
+const isWaiting = (answer) => answer.state === "pending" && (designState !== "current" || draft.isChanged());
+
+function waiting({ steps }) {
+  const names = Object.keys(steps).filter((step) => isWaiting(steps[step]));
+  return names.length > 0 && `${names.join(", ")} not calculated yet`;
+}
+
+function show(payload) {
+  steps = payload.steps;
+  names.update(payload);
+  ofVariants?.classList.toggle("outdated", draft.isChanged());
+  if (isJudged || draft.isChanged()) showVerdict(payload);
+  for (const [step, answer] of Object.entries(steps)) {
+    markWaiting(step, isWaiting(answer));
+    if (answer.state === "pending") continue;
+    showResults(step, answer);
+    showKeys(step, answer);
+    showValues(form, step, answer);
+    drawPictures(document, step, answer);
+  }
+  showValues(form, "", { inputs: payload.parameters });
+  showWarnings("", payload.warnings.filter(isOfNoStep));
+  showParameters(payload.model_parameters);
+}
+
+// Of the design's own parameters and of its models; those of a step stand in the step.
+const isOfNoStep = ({ name }) => !Object.hasOwn(steps, name.split(".")[0]);
+
+function clear() {
+  progress.hidden = !isFollowing;
+  showFaults(form, new Map());
+  markOutdated(false);
+  trouble.hidden = !conflicted;
+}
+
+function refusePreview(error) {
+  progress.hidden = !isFollowing;
+  refuse(error);
+  markOutdated(true);
+  state.append(state.textContent ? "; " : "", OUTDATED);
+}
+
+function refuse(error) {
+  state.textContent = "";
+  if (!(error instanceof Refused)) return tell(`The service does not answer: ${error.message}`);
+  const loose = showFaults(form, error.faults);
+  if (error.status !== CONFLICT) state.replaceChildren("not accepted: see the message beside ", ...linksToFaults());
+  if (loose.size || !error.faults.size) tell([...loose.values()].join("; ") || error.message);
+}
+
+// Links to the fields that are wrong; where the fault is of no field, words that fit.
+function linksToFaults() {
+  const links = [...form.querySelectorAll('[aria-invalid="true"]')].slice(0, MOST_LINKS).flatMap((field, place) => {
+    const link = Object.assign(document.createElement("a"), { href: `#${field.id}`, textContent: nameOf(field.name).replaceAll("_", " ") });
+    link.addEventListener("click", (event) => {
+      event.preventDefault();
+      goTo(field);
+    });
+    return place ? [", ", link] : [link];
+  });
+  return links.length ? links : ["the field"];
+}
+
+function tell(words) {
+  trouble.replaceChildren(isolated(words));
+  trouble.hidden = false;
+}
+
+function showDraft() {
+  const names = Object.keys(draft.changed());
+  const notice = form.querySelector("[data-draft]");
+  notice.hidden = !draft.keep();
+  notice.querySelector("[data-draft-text]").textContent = names.map((name) => nameOf(name).replaceAll("_", " ")).join(", ");
+}
+
+form.addEventListener("input", (event) => {
+  if (event.target.name === "note") return;
+  showDraft();
+  preview.ask();
+});
+
+// Enter in a field calculates, as on a worksheet; Ctrl+S or Ctrl+Enter saves.
+document.addEventListener("keydown", (event) => {
+  const saves = (event.ctrlKey || event.metaKey) && ["s", "Enter"].includes(event.key);
+  const isField = event.target.form === form && event.target.matches("input, select");
+  if (!saves && !(event.key === "Enter" && isField && event.target.name !== "note")) return;
+  event.preventDefault();
+  if (saves) form.requestSubmit();
+  else preview.ask();
+});
+
+form.querySelector("[data-discard]").addEventListener("click", () => {
+  draft.forget();
+  location.reload();
+});
+
+form.addEventListener("submit", async (event) => {
+  event.preventDefault();
+  const changed = patch();
+  const typed = form.querySelector("[name=note]").value.trim(), isSame = Object.keys(changed).length === 0;
+  if (isSame && isJudged) return (state.textContent = "nothing has changed");
+  const note = typed || (isSame ? "criteria judged" : "");
+  const headers = { "If-Match": `"${revision}"`, Prefer: "wait=1", "Idempotency-Key": onlyOnce() };
+  preview.cancel(); // else it would keep as a draft what is saved by then
+  state.textContent = "saving …";
+  try {
+    const { status, location: job } = await call("PATCH", api, { ...changed, ...(note && { note }) }, { headers });
+    draft.forget();
+    if (status === 202) await regenerated(job);
+    location.reload();
+  } catch (error) {
+    if (error.status === 412) conflict();
+    else refuseToSave(error);
+  }
+});
+
+function regenerated(job) {
+  isFollowing = true;
+  return follow(job);
+}
+
+function refuseToSave(error) {
+  if (error.faults?.size) refusePreview(error);
+  else refuse(error);
+  const wrong = form.querySelector('[aria-invalid="true"]');
+  wrong?.focus();
+  wrong?.scrollIntoView({ block: "center" });
+}
+
+// A key that makes a repeated request harmless; crypto.randomUUID is there on encrypted pages only.
+const onlyOnce = () => [...crypto.getRandomValues(new Uint32Array(4))].map((part) => part.toString(16)).join("-");
+
+// Somebody else saved: the draft is kept, and put onto the newest revision when the page is loaded again.
+function conflict() {
+  conflicted = true;
+  draft.keep();
+  state.textContent = "not saved";
+  tell("Somebody else saved this design meanwhile. Your changes are kept. ");
+  const again = Object.assign(document.createElement("button"), { type: "button", textContent: "Show the newest, with my changes" });
+  again.addEventListener("click", () => location.reload());
+  trouble.append(again);
+}
+
+// A step that has come into the page: its fields as typed, its results as they are by now.
+function adopt(fold) {
+  const step = fold.dataset.fold, answer = steps[step];
+  startLists(fold);
+  for (const watch of watches) watch(fold.querySelectorAll("input, select"));
+  draft.fill();
+  if (draft.isChanged()) showDraft();
+  if (!answer || answer.state === "pending") return;
+  showResults(step, answer);
+  showValues(form, step, answer);
+  drawPictures(fold, step, answer);
+}
+
+async function fetchNames() {
+  try {
+    names.fill((await call("GET", `${api}/network`)).payload.names);
+  } catch (error) {
+    tell(`Names for relations are missing: ${error.message}`);
+  }
+}
+
+async function start() {
+  startVerdict(form);
+  startDecide(api, patch);
+  startTolerances(api, patch);
+  startLater(form, adopt);
+  if (!namesHere) await fetchNames();
+  watches.push(startPicker(form, names), startCompletion(form, names));
+  startDrives();
+  const from = draft.restore();
+  if (from !== null) showDraft();
+  if (from !== null && from !== revision) tell(`Revision ${revision} was saved since you typed these changes; look at them once more.`);
+  const running = progress.dataset.job;
+  if (running) regenerated(`/api/v1/jobs/${running}`).then(() => location.reload());
+  const first = showFirst(from);
+  startSolids(() => first.then(() => steps));
+  if (form.querySelector("[data-elements]")) import("../elements/elements.js").then(({ startElements }) => startElements());
+}
+
+// Preview the page as it is opened, its draft restored.
+async function showFirst(from) {
+  try {
+    const isPainted = designState === "current" && document.querySelector("[data-painted]"); // with results of a step
+    const { payload } = await previewed(undefined, isFollowing || (from === null && !isPainted));
+    clear();
+    show(payload);
+    state.textContent = [state.textContent, waiting(payload)].filter(Boolean).join("; ");
+  } catch (error) {
+    refusePreview(error);
+  }
+}
+
+start();

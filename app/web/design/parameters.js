@@ -1,0 +1,53 @@
+// Values beside the fields: what a relation comes to, and model parameters old → new with their status.
+import { isolated } from "../shared/isolated.js";
+import { quantityText, unit } from "../shared/numbers.js";
+
+const TO_DO = "set it, or map it to an output"; // as app/web/shared/parts.html says it
+
+export function showValues(form, block, { inputs }) {
+  for (const [tail, quantity] of Object.entries(inputs ?? {})) {
+    const place = form.querySelector(`[data-value="${block}.${tail}"]`);
+    const field = form.querySelector(`[name="${block}.${tail}"]`);
+    if (!place || !field) continue;
+    const isRelation = field.value.trim().startsWith("=");
+    if (isRelation) place.textContent = `= ${quantityText(quantity)}`;
+    else if (field.value.trim()) place.textContent = "";
+  }
+}
+
+export function showParameters(parameters) {
+  for (const [name, { old, new: now, status, detail }] of Object.entries(parameters)) {
+    const line = document.querySelector(`[data-parameter="${name}"]`);
+    if (!line) continue;
+    const differs = status === "ok" && old;
+    if (differs || status !== "unchanged") {
+      line.classList.toggle("changed-value", Boolean(differs));
+      line.querySelector(".comes-to").replaceChildren(...shown(differs ? old : null, now), ...tag(status, detail));
+    } else if (line.dataset.previewed) {
+      line.classList.remove("changed-value");
+      line.querySelector(".comes-to").replaceChildren(...shown(null, now));
+    }
+    line.dataset.previewed = "true";
+  }
+}
+
+function shown(old, now) {
+  if (!now) return [];
+  const parts = [span("new", quantityText({ value: now.value })), " ", span("unit", unit(now.unit))];
+  return old ? [span("old", `${quantityText({ value: old.value })} → `), ...parts] : parts;
+}
+
+function tag(status, detail) {
+  if (status === "ok" || status === "unchanged") return [];
+  const node = span(`tag status ${status === "missing" || status === "unit_mismatch" ? "failed" : "pending"}`, status.replaceAll("_", " "));
+  const words = status === "missing" ? TO_DO : detail;
+  return words ? [" ", node, " ", explained(words)] : [" ", node];
+}
+
+function explained(words) {
+  const node = span("field-error", "");
+  node.append(isolated(words));
+  return node;
+}
+
+const span = (className, textContent) => Object.assign(document.createElement("span"), { className, textContent });

@@ -1,0 +1,119 @@
+"""The steps of a design on its page; steps that are rendered already are reused.
+
+A step takes a page some milliseconds, and a design may have sixty. After a change most are as they were.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from hashlib import sha256
+from types import MappingProxyType
+
+from cachetools import LRUCache
+from fastapi import Request
+from markupsafe import Markup
+
+from app.designs.schemas.designs import Design
+from app.presentation.criteria import Line
+from app.web.shared.blocks import Refusal, StepBlock
+from app.web.shared.responses import jinja
+from app.web.variants.table import VariantsTable
+from app.web.verdict.banner import Banner, opened
+
+KEPT = 16 * 2**20  # characters of sections
+_kept: LRUCache[bytes, Markup] = LRUCache(KEPT, getsizeof=len)
+"""Sections by all that they show. Pages are written in the event loop alone, so nothing locks."""
+
+MOST_IN_FULL = 12
+"""Steps of a design whose page has the inputs and results of each; of a longer one, those of a few."""
+
+
+def asked_step(request: Request, steps: Collection[str]) -> str | None:
+    """Return the step that the address names, if the design has it."""
+    name = request.query_params.get("step", "")
+    return name if name in steps else None
+
+
+def steps_in_full(request: Request, steps: Collection[str], refusal: Refusal, verdict: Banner) -> set[str]:
+    """Return the steps that a long design's page has in full: the one asked for, those of a refused form."""
+    first = asked_step(request, steps) or opened(list(steps), verdict)
+    typed = {name.partition("@" if "@" in name else ".")[0] for name in (*refusal.typed, *refusal.faults)}
+    return {name for name in steps if name == first or name in typed}
+
+
+def sections(
+    steps: Sequence[StepBlock],
+    verdict: Banner,
+    opened: str | None,
+    *,
+    in_full: Collection[str] | None = None,
+    folded: Mapping[str, Markup] = MappingProxyType({}),
+) -> Iterator[Markup]:
+    """Yield the section of every step.
+
+    That of `opened` is unfolded. With `in_full` all others are `folded`.
+    """
+    worst = verdict.worst_by_step()
+    for step in steps:
+        if in_full is not None and step.name not in in_full:
+            yield folded[step.name]
+        else:
+            is_open = step.name == opened or step.has_faults
+            yield _section(step, worst.get(step.name), is_open, len(steps) == 1 and in_full is None)
+
+
+def fold_lines(steps: Sequence[StepBlock], verdict: Banner, base: str) -> dict[str, Markup]:
+    """Return the fold line of every step, with the address of the rest below that of the design, `base`."""
+    worst = verdict.worst_by_step()
+    return {step.name: _fold_line(step, worst.get(step.name), base) for step in steps}
+
+
+def banner_of(verdict: Banner, design: str) -> Markup:
+    """Return the verdict on top of the page of a design: a long one has hundreds of criteria."""
+    return _macro("verdict/verdict.html", "banner", verdict, design)
+
+
+def variants_start(design: Design, variants: VariantsTable) -> Markup:
+    """Return the table in which the first variants of a design are typed: it has a column for each input."""
+    return _macro("variants/variants.html", "start", design, variants)
+
+
+def _fold_line(step: StepBlock, worst: Line | None, base: str) -> Markup:
+    template, outputs = step.template, step.result.outputs
+    keys = [outputs[name].model_dump_json() for name in step.keys]
+    shown = (base, step.name, template.id, template.version, template.digest, step.keys, keys, worst)
+    return _written("fold_line", shown, step, worst, base)
+
+
+def _section(step: StepBlock, worst: Line | None, is_open: bool, is_only: bool) -> Markup:
+    shown = _shown(step, worst, is_open, is_only)
+    return _written("section", shown, step, worst, is_open, is_only)
+
+
+def _written(macro: str, shown: object, *arguments: object) -> Markup:
+    """Return the output of a macro of steps, kept by its name and all that it shows."""
+    key = sha256(repr((macro, shown)).encode("utf-8", "surrogatepass")).digest()
+    html = _kept.get(key)
+    if html is None:
+        html = _macro("design/step.html", macro, *arguments)
+        if len(html) <= KEPT:
+            _kept[key] = html
+    return html
+
+
+def _macro(page: str, name: str, *arguments: object) -> Markup:
+    return Markup(getattr(jinja.get_template(page).module, name)(*arguments))
+
+
+def _shown(step: StepBlock, worst: Line | None, is_open: bool, is_only: bool) -> tuple[object, ...]:
+    """Return all that a section shows; the code of the template stands for what it declares."""
+    template = step.template
+    return (
+        step.name,
+        (template.id, template.version, template.digest, template.withdrawn),
+        step.result.model_dump_json(),
+        step.outputs,
+        step.pictures,
+        (step.fields, step.options, step.limits, step.keys),
+        (worst, is_open, is_only),
+    )

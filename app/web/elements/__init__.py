@@ -1,0 +1,1 @@
+"""Finite-element analyses as several pages show them."""

@@ -1,0 +1,1 @@
+"""The page that explains where a parameter or a verdict comes from."""

@@ -1,0 +1,37 @@
+"""The route of the page of an explanation."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Request, Response
+
+from app.presentation.criteria import line
+from app.web.explanation.sensitivities import sensitivity_lines
+from app.web.shared.paths import Id
+from app.web.shared.responses import show, units_of
+from app.web.shared.services import ThePageServices
+
+router = APIRouter(include_in_schema=False)
+
+
+@router.get("/designs/{id}/explain/{name}")
+async def explanation(
+    id: Id, name: Annotated[str, Path(max_length=140)], request: Request, services: ThePageServices
+) -> Response:
+    """Show where a model parameter, or the verdict of a criterion, comes from."""
+    design, chain = await asyncio.gather(
+        services.run(services.designs.show, id),
+        services.calculate(None, services.designs.explanation, id, name, units_of(request)),
+    )
+    judged = line(chain.criterion) if chain.criterion else None
+    slopes = sensitivity_lines(chain.sensitivities or [])
+    return show(
+        request,
+        "explanation/explanation.html",
+        design=design,
+        chain=chain,
+        judged=judged,
+        sensitivities=slopes,
+    )

@@ -1,0 +1,1 @@
+"""The designs that the first page offers as a start."""

@@ -1,0 +1,221 @@
+"""Designs to start from: an in-line four and a V8, from the bore of their cylinders to verdicts.
+
+Loads, a film in each bearing, shells, crankshaft, finite elements of its throws, torsion of the train, life
+of the shaft's fillets.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pydantic import JsonValue
+
+from app.web.gallery import train as gallery_train
+from app.web.gallery.train import THROWS, Train
+
+FOUR: dict[str, JsonValue] = {
+    "speed": "4500 rpm",
+    "strokes": 4,
+    "crank_angle_step": "5 deg",
+    "firing_order": [1, 3, 4, 2],
+    "cylinder_positions": {"value": [47, 141, 235, 329], "unit": "mm"},
+    "stroke": "86 mm",
+    "rod_length": "145 mm",
+    "bore": "= bore",
+    "rod_mass": "0.6 kg",
+    "rod_centre": "42 mm",
+    "rod_inertia": "2200 kg*mm**2",
+    "piston_mass": "0.48 kg",
+    "gas_cycle": "four_stroke",
+    "suction_pressure": "0.9 bar",
+    "exhaust_pressure": "1.1 bar",
+    "compression_ratio": 10,
+    "compression_exponent": 1.32,
+    "expansion_exponent": 1.28,
+    "combustion_pressure": "60 bar",
+    "cutoff": 1.15,
+    "inlet_closes": "222 deg",
+    "exhaust_opens": "492 deg",
+    "crankcase_pressure": "1 bar",
+    "main_positions": {"value": [0, 94, 188, 282, 376], "unit": "mm"},
+    "web_positions": {"value": [22, 72, 116, 166, 210, 260, 304, 354], "unit": "mm"},
+    "web_unbalance": "12 kg*mm",
+    "counterweights": "16 kg*mm",
+    "support_stiffness": "500 kN/mm",
+    "journal_diameter": "55 mm",
+    "crankpin_diameter": "48 mm",
+    "crankpin_length": "32 mm",
+    "web_thickness": "18 mm",
+    "web_width": "80 mm",
+}
+V_EIGHT: dict[str, JsonValue] = {
+    **FOUR,
+    "firing_order": [1, 8, 4, 3, 6, 5, 7, 2],
+    "bank_angles": {"value": [45, -45] * 4, "unit": "deg"},
+    "throws": [1, 1, 2, 2, 3, 3, 4, 4],
+    "cylinder_positions": {"value": [46, 68, 160, 182, 274, 296, 388, 410], "unit": "mm"},
+    "main_positions": {"value": [0, 114, 228, 342, 456], "unit": "mm"},
+    "web_positions": {"value": [24, 90, 138, 204, 252, 318, 366, 432], "unit": "mm"},
+    "crankpin_length": "46 mm",
+    "web_thickness": "20 mm",
+    "web_width": "84 mm",
+}
+_CRANKSHAFT: dict[str, JsonValue] = {
+    "journal_diameter": "= engine.journal_diameter",
+    "journal_length": "= engine.main_positions[2] - engine.main_positions[1] - engine.crankpin_length"
+    " - 2 * engine.web_thickness",
+    "pin_diameter": "= engine.crankpin_diameter",
+    "pin_length": "= engine.crankpin_length",
+    "web_thickness": "= engine.web_thickness",
+    "web_width": "= engine.web_width",
+    "throw": "= engine.stroke / 2",
+    "fillet": "3.5 mm",  # 2.5 mm takes twice as many elements
+    "oil_drilling_diameter": "5 mm",
+    "flange_diameter": "90 mm",
+    "bolt_hole_diameter": "10 mm",
+}
+_OUTPUTS: list[JsonValue] = [
+    "layout", "crankpin_angles", "mean_torque", "crankpin_load_max", "main_load_max", "elastic_main_load_max",
+    "elastic_difference", "governing_elastic_main",
+]  # fmt: skip
+
+
+def _bearings(mains: int, cylinders: int) -> dict[str, JsonValue]:
+    """Return a variant for every main and every big end.
+
+    The groove lies in the shell of a main's block, and in that of a big end's cap.
+    """
+    big_ends: dict[str, JsonValue] = {
+        f"big_end_{n}": {
+            "bearing": f"{n}",
+            "film.load_x": "= engine.crankpin_load_x[bearing]",
+            "film.load_y": "= engine.crankpin_load_y[bearing]",
+            "film.sleeve_speed": "= engine.rod_angular_velocity[bearing]",
+            "film.bearing_diameter": "= engine.crankpin_diameter + film.diametral_clearance",
+            "film.groove_start": "90 deg",
+        }
+        for n in range(1, cylinders + 1)
+    }
+    return {**{f"main_{n}": {"bearing": f"{n}"} for n in range(1, mains + 1)}, **big_ends}
+
+
+def _places(between: str, cylinders: Sequence[float], webs: float) -> dict[str, JsonValue]:
+    """Return positions of cylinders, mains and webs: a wider bore makes the engine longer.
+
+    A throw is as long as a bore and what is `between` two bores. Cylinders stand `cylinders` [mm] off the
+    middle of their throw, webs `webs` [mm] before and behind it.
+    """
+    middle = [f"= {2 * k + 1} * pitch / 2" for k in range(THROWS)]
+    return {
+        "pitch": f"= bore + {between}",
+        "cylinder_positions": [f"{at} + {off:g} mm" for at in middle for off in cylinders],
+        "main_positions": [f"= {k} * pitch" for k in range(THROWS + 1)],
+        "web_positions": [f"{at} + {off:g} mm" for at in middle for off in (-webs, webs)],
+    }
+
+
+def _document(
+    name: str,
+    places: dict[str, JsonValue],
+    engine: dict[str, JsonValue],
+    shaft: dict[str, JsonValue],
+    bearings: dict[str, JsonValue],
+    train: Train,
+) -> dict[str, JsonValue]:
+    """Return a design: the engine, a film in one bearing with its shell, the crankshaft, torsion, life.
+
+    A variant for each bearing.
+    """
+    placed = {name: value for name, value in places.items() if name != "pitch"}
+    return {
+        "name": name,
+        "parameters": {
+            "bore": "86 mm",
+            "pin_diameter": "48 mm",
+            "pitch": places["pitch"],
+            "bearing": "3",
+            **gallery_train.parameters(train),
+        },
+        "steps": {
+            "engine": {
+                "template": "engine",
+                "version": 1,
+                "inputs": {**engine, **placed, "crankpin_diameter": "= pin_diameter"},
+                "outputs": _OUTPUTS,
+                "limits": {"permissible_main_load": "60 kN", "permissible_crankpin_load": "60 kN"},
+            },
+            "film": {
+                "template": "oil_film_cycle",
+                "version": 1,
+                "level": "supplied",
+                "inputs": {
+                    "crank_angle": "= engine.crank_angle",
+                    "load_x": "= engine.elastic_main_load_x[bearing]",
+                    "load_y": "= engine.elastic_main_load_y[bearing]",
+                    "load_sense": "sleeve_on_journal",
+                    "speed": "= engine.speed",
+                    "bearing_diameter": "= engine.journal_diameter + film.diametral_clearance",
+                    "bearing_width": "20 mm",
+                    "diametral_clearance": "0.055 mm",
+                    "dynamic_viscosity": "10 mPa*s",
+                    "permissible_film": "1 um",
+                    "groove_width": "3 mm",
+                    "groove_start": "-90 deg",
+                    "groove_extent": "180 deg",
+                    "supply_pressure": "4 bar",
+                },
+            },
+            **gallery_train.steps(train),
+        },
+        "models": {
+            "shell": {
+                "id": "plain_bearing",
+                "version": 1,
+                "parameters": {
+                    "inner_diameter": "= film.bearing_diameter",
+                    "width": "= film.bearing_width",
+                },
+            },
+            "crankshaft": {
+                "id": "crankshaft",
+                "version": 1,
+                "parameters": {**_CRANKSHAFT, **shaft},
+                "analyses": gallery_train.analyses(),
+            },
+        },
+        "variants": bearings,
+    }
+
+
+FOUR_CYLINDERS = _document(
+    "four-cylinder engine",
+    _places("8 mm", [0], 25),
+    FOUR,
+    {
+        "pin_angles": "= engine.crankpin_angles",
+        "counterweight_radius": {"value": [72, 0, 0, 72, 72, 0, 0, 72], "unit": "mm"},
+    },
+    _bearings(5, 4),
+    Train(
+        bank="0 deg",
+        per_throw=1,
+        ring="0.02 kg*m**2",
+        flywheel="0.14 kg*m**2",
+    ),
+)
+V8 = _document(
+    "cross-plane V8",
+    _places("28 mm", [-11, 11], 33),
+    V_EIGHT,
+    {
+        "pin_angles": [f"= engine.crankpin_angles[{n}]" for n in (1, 3, 5, 7)],
+        "counterweight_radius": {"value": [76, 60, 60, 76, 76, 60, 60, 76], "unit": "mm"},
+    },
+    _bearings(5, 8),
+    Train(
+        bank="engine.bank_angles[1]",
+        per_throw=2,
+        ring="0.03 kg*m**2",
+        flywheel="0.18 kg*m**2",
+    ),
+)

@@ -1,0 +1,55 @@
+"""The route of the first page."""
+
+from __future__ import annotations
+
+import asyncio
+
+from fastapi import APIRouter, Request, Response
+
+from app.catalogue.routes.faults import list_catalogue_faults
+from app.catalogue.routes.templates import list_templates
+from app.designs.routes.designs import (
+    list_designs,
+    show_measurements,
+)
+from app.designs.routes.labels import list_tags
+from app.solids.routes.models import list_models
+from app.web.gallery.gallery import offered
+from app.web.shared.responses import show
+from app.web.shared.services import PageServices, ThePageServices
+
+router = APIRouter(include_in_schema=False)
+ON_HOME = 4  # designs, with pictures: the first page is light
+TAGS_ON_HOME = 30
+
+
+@router.get("/")
+async def home(request: Request, services: ThePageServices) -> Response:
+    """Show designs, templates, models, and where to start."""
+    designs, tags, templates, models, faulty = await asyncio.gather(
+        services.run(list_designs, services.database, limit=ON_HOME),
+        services.run(list_tags, services.database),
+        services.run(list_templates, services.catalogues, limit=500),
+        services.run(list_models, services.catalogues, limit=500),
+        services.run(list_catalogue_faults, services.catalogues, limit=500),
+    )
+    latest = [item for item in templates.items if item.latest]
+    return show(
+        request,
+        "home/home.html",
+        designs=designs,
+        tags=tags.items[:TAGS_ON_HOME],
+        back="/",
+        pictures=dict(await asyncio.gather(*(_picture(services, item.id) for item in designs.items))),
+        templates=templates.items,
+        latest=latest,
+        models=[item for item in models.items if item.latest],
+        gallery=offered(templates.items, models.items),
+        faulty=faulty.items,
+    )
+
+
+async def _picture(services: PageServices, id: str) -> tuple[str, str | None]:
+    """Return a design's id, and the picture of the first of its parts, if it has one by now."""
+    parts = await services.run(show_measurements, id, services.database)
+    return id, next((f"/api/v1/designs/{id}/models/{name}/model.png" for name in parts), None)

@@ -1,0 +1,1 @@
+"""The page of the designs that a changed file affects."""

@@ -1,0 +1,1 @@
+"""Controls for lists and tables in forms."""

@@ -1,0 +1,240 @@
+"""Map columns of a pasted table to fields: matched by name, shifted by an angle, one cycle each.
+
+`/tables`: the dialog of a page sends what was pasted and shows the result; nothing is stored.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from math import isfinite
+
+from fastapi import APIRouter
+from starlette.concurrency import run_in_threadpool
+
+from app.calculations.tables import TableColumn, read_table
+from app.http.access import needs
+from app.http.strict_requests import StrictRoute
+from app.reference import Reference
+from app.schemas.tables import ChosenColumn, PastedTable, ReadColumn, ReadTable, TableField
+from templates.core.errors import FaultyText, InvalidInputs, excerpt
+from templates.core.language.meaning import api_name
+from templates.core.units.quantity import read
+from templates.core.units.units import compatible, require_same_kind, unit
+
+router = APIRouter(include_in_schema=False, route_class=StrictRoute)
+
+SHOWN = 5  # rows
+CYCLES = (360.0, 720.0)  # deg
+SAME_ANGLE, SAME_VALUE = 1e-6, 0.01
+"""Largest error of the last angle against a whole cycle [deg], of the last value against the first [-]."""
+DIGITS = 12  # of a shifted angle: 0.1 + 0.2 is 0.3
+
+
+def paste(pasted: PastedTable) -> ReadTable:
+    """Read a table into the fields of a form; without chosen columns they are proposed by their names.
+
+    Raises
+    ------
+    InvalidInputs
+        If the text is not a table.
+    """
+    columns = read_table(pasted.text)
+    chosen = _chosen(columns, pasted)
+    shown = [
+        ReadColumn(name=c.name, unit=o.unit, field=o.field) for c, o in zip(columns, chosen, strict=True)
+    ]
+    typed = [replace(c, unit=o.unit.strip()) for c, o in zip(columns, chosen, strict=True)]
+    faults = [*_faults(typed, chosen, pasted.fields)]
+    notes: list[str] = []
+    if not faults:
+        try:
+            typed, notes = _adjusted(typed, chosen, pasted)
+        except FaultyText as error:
+            faults.append(str(error))
+    return ReadTable(
+        columns=shown,
+        first=[list(row) for row in zip(*(c.values[:SHOWN] for c in typed), strict=True)],
+        rows=len(typed[0].values),
+        notes=notes,
+        faults=faults,
+        texts={} if faults else {o.field: text_of(c) for c, o in zip(typed, chosen, strict=True) if o.field},
+    )
+
+
+def text_of(column: TableColumn) -> str:
+    """Return a column as it stands in a field: `[0, 15, 30] deg`."""
+    numbers = json.dumps([int(v) if v.is_integer() and abs(v) < 1e15 else v for v in column.values])
+    return numbers if column.unit == "1" else f"{numbers} {column.unit}"
+
+
+def _chosen(columns: Sequence[TableColumn], pasted: PastedTable) -> list[ChosenColumn]:
+    """Return the user's choice of columns.
+
+    Without one, or with that of another table, the proposal by names.
+    """
+    if pasted.columns is not None and len(pasted.columns) == len(columns):
+        return pasted.columns
+    fields = _proposed(columns, pasted.fields)
+    pure = {field.name for field in pasted.fields if field.unit == "1"}
+    return [
+        ChosenColumn(field=field, unit=column.unit or ("1" if field in pure else ""))
+        for column, field in zip(columns, fields, strict=True)
+    ]
+
+
+def _proposed(columns: Sequence[TableColumn], fields: Sequence[TableField]) -> list[str]:
+    """Return a field for each column, the best match first, none twice; empty where no name fits."""
+    scores = [
+        (_likeness(column, field), -place, field.name)
+        for place, column in enumerate(columns)
+        for field in fields
+    ]
+    taken: dict[int, str] = {}
+    for score, place, name in sorted(scores, reverse=True):
+        if score > 0 and -place not in taken and name not in taken.values():
+            taken[-place] = name
+    return [taken.get(place, "") for place in range(len(columns))]
+
+
+def _likeness(column: TableColumn, field: TableField) -> float:
+    """Return a likeness from 0, nothing in common or another kind of quantity, to 1, the same name."""
+    if column.unit and not compatible(unit(column.unit), unit(field.unit)):
+        return 0.0
+    own, name = _words(column.name), Reference.parse(field.name).own_name
+    if api_name(column.name) == name or _plain(column.name) == _plain(re.sub(r"\\[a-z]+", "", field.symbol)):
+        return 1.0
+    others = _words(name) | _words(field.words)
+    return len(own & others) / len(own | others) if own else 0.0
+
+
+def _words(text: str) -> set[str]:
+    return set(api_name(text.rpartition(".")[2]).split("_")) - {""}
+
+
+def _plain(text: str) -> str:
+    """Return letters and figures alone: `F_{x}` and `Fx` are the same.
+
+    A text without any is like no other.
+    """
+    return re.sub(r"[^a-z0-9]", "", text.lower()) or text
+
+
+def _faults(
+    columns: Sequence[TableColumn], chosen: Sequence[ChosenColumn], fields: Sequence[TableField]
+) -> Iterator[str]:
+    """Yield the faults of the choice: a unit that does not fit, a field that takes two columns."""
+    by_name = {field.name: field for field in fields}
+    taken = [choice.field for choice in chosen if choice.field]
+    if not taken:
+        yield "choose a field for at least one column"
+    for name in sorted({name for name in taken if taken.count(name) > 1}):
+        yield f"two columns go to {_said(name)}; choose one of them"
+    for column, choice in zip(columns, chosen, strict=True):
+        if choice.field and choice.field not in by_name:
+            yield f"column {column.name}: this form has no field {_said(choice.field)}"
+        elif choice.field:
+            yield from _unit_fault(column, by_name[choice.field])
+
+
+def _unit_fault(column: TableColumn, field: TableField) -> Iterator[str]:
+    if not column.unit:
+        yield f"column {column.name} has no unit; give one, such as {field.unit}"
+        return
+    try:
+        require_same_kind(column.unit, field.unit)
+    except FaultyText as error:
+        yield f"column {column.name}: {error}"
+
+
+def _said(name: str) -> str:
+    return excerpt(Reference.parse(name).own_name.replace("_", " "))
+
+
+def _adjusted(
+    columns: list[TableColumn], chosen: Sequence[ChosenColumn], pasted: PastedTable
+) -> tuple[list[TableColumn], list[str]]:
+    """Return the columns with the offset added to the angles, without a last point equal to the first."""
+    fields: Mapping[str, TableField] = {field.name: field for field in pasted.fields}
+    taken = [c for o, c in zip(chosen, columns, strict=True) if o.field]
+    place = next((n for n, o in enumerate(chosen) if o.field and _is_angle(fields[o.field])), None)
+    if place is None:
+        if pasted.offset.strip():
+            raise FaultyText(
+                "no_angle", "there is no column of crank angles to which the offset can be added"
+            )
+        return columns, []
+    note, is_repeated = _cycle(columns[place], taken)
+    if is_repeated:
+        columns = [replace(c, values=c.values[:-1]) for c in columns]
+    columns[place] = _shifted(columns[place], pasted.offset.strip())
+    return columns, note
+
+
+def _is_angle(field: TableField) -> bool:
+    """Return whether a field is an angle, such as that of the crank."""
+    return unit(field.unit).base == unit("deg").base and "angle" in _words(field.name)
+
+
+def _cycle(axis: TableColumn, taken: Sequence[TableColumn]) -> tuple[list[str], bool]:
+    """Return a remark on the last point, and whether it is the first one again."""
+    degrees = unit(axis.unit).factor / unit("deg").factor
+    span = abs(axis.values[-1] - axis.values[0]) * degrees
+    cycle = next((c for c in CYCLES if abs(span - c) <= SAME_ANGLE), None)
+    if cycle is None or len(axis.values) < 3:
+        return [], False
+    apart = [c.name for c in taken if c is not axis and _jump(c.values) > SAME_VALUE]
+    ends = f"The first and the last point lie {cycle:g}° apart"
+    if apart:
+        return [f"{ends}, but differ in {', '.join(apart)}; both were kept."], False
+    return [f"{ends}, one full cycle: the last point repeats the first and was left out."], True
+
+
+def _jump(values: Sequence[float]) -> float:
+    """Return the difference of the last value from the first, over the largest."""
+    largest = max(map(abs, values))
+    return abs(values[-1] - values[0]) / largest if largest else 0.0
+
+
+def _shifted(axis: TableColumn, offset: str) -> TableColumn:
+    """Return the angles with an offset such as `10 deg` added.
+
+    Raises
+    ------
+    FaultyText
+        If it is not an angle with its unit.
+    """
+    if not offset:
+        return axis
+    try:
+        added = float(read(offset, axis.unit).si) / unit(axis.unit).factor
+    except FaultyText as error:
+        raise FaultyText(error.code, f"angle offset: {error}") from None
+    values = tuple(float(f"{value + added:.{DIGITS}g}") for value in axis.values)
+    if not all(map(isfinite, values)):
+        raise FaultyText("not_finite", "angle offset: the angles become too large")
+    return replace(axis, values=values)
+
+
+def refused(error: InvalidInputs) -> ReadTable:
+    """Return the faults of a text that is not a table, as a page shows them."""
+    faults = [f"{fault.name}: {fault.detail}" for fault in error.faults]
+    return ReadTable(columns=[], first=[], rows=0, faults=faults)
+
+
+@router.post("/tables", dependencies=[needs("viewer")])
+async def read_pasted_table(pasted: PastedTable) -> ReadTable:
+    """The columns of a pasted table, and the texts of the fields that take them.
+
+    A text that is not a table is not an error: the page shows what is wrong with it while it is typed.
+    """
+    return await run_in_threadpool(_read, pasted)
+
+
+def _read(pasted: PastedTable) -> ReadTable:
+    try:
+        return paste(pasted)
+    except InvalidInputs as error:
+        return refused(error)

@@ -1,0 +1,146 @@
+// The dialog that takes a pasted table or a CSV file: the service reads it, the user chooses what goes where.
+import { call } from "../shared/api.js";
+import { isolated } from "../shared/isolated.js";
+import { asDialog, fill } from "./dialogs.js";
+import { live } from "../shared/live.js";
+
+const LARGEST = 2_000_000; // of a file [bytes]; the service takes a million characters
+
+export function startPasting(dialog) {
+  const find = asDialog(dialog);
+  const text = find("[data-paste-text]"), offset = find("[data-paste-offset]"), apply = find("[data-paste-apply]");
+  let lists = [], answer = null, chosen = null, signature = "";
+
+  const reading = live(
+    (signal) => call("POST", "/tables", asked(), { signal }),
+    ({ payload }) => show(payload),
+    (error) => refuse([...(error.faults?.values() ?? [])].join("; ") || error.message),
+  );
+
+  function asked() {
+    const fields = lists.map(({ name, words, unit, symbol }) => ({ name, words, unit, symbol }));
+    return { text: text.value, fields, columns: chosen, offset: offset.value };
+  }
+
+  function ask() {
+    apply.disabled = true;
+    find("[data-paste-state]").textContent = "";
+    if (text.value.trim()) reading.ask();
+    else show({ columns: [], first: [], rows: 0, notes: [], faults: [] });
+  }
+
+  function show(payload) {
+    answer = payload;
+    tell(payload.faults ?? []);
+    const preview = find("[data-paste-preview]"), isSame = signature === JSON.stringify(payload.columns.map(({ name }) => name));
+    preview.hidden = !payload.columns.length;
+    if (!isSame || !chosen) preview.replaceChildren(table(payload));
+    else preview.querySelector("tbody").replaceWith(body(payload));
+    signature = JSON.stringify(payload.columns.map(({ name }) => name));
+    apply.disabled = !Object.keys(payload.texts ?? {}).length;
+    apply.textContent = apply.disabled ? "Take over" : `Take over ${payload.rows} rows`;
+    find("[data-paste-state]").textContent = (payload.notes ?? []).join(" ");
+  }
+
+  function table({ columns, first, rows }) {
+    const all = document.createElement("table"), head = document.createElement("thead");
+    all.createCaption().textContent = "Columns, and the first rows";
+    head.append(
+      line("th", columns.map(({ name }) => name)),
+      line("td", columns.map(({ name, unit }) => named("input", { value: unit, placeholder: "unit", autocomplete: "off" }, `Unit of ${name}`))),
+      line("td", columns.map(({ name, field }) => goesTo(name, field))),
+    );
+    all.append(head, body({ first, rows }));
+    return all;
+  }
+
+  function body({ first, rows }) {
+    const part = document.createElement("tbody");
+    part.append(...first.map((row) => line("td", row.map(String))));
+    if (rows > first.length) part.append(line("td", [`… ${rows} rows in all`]));
+    return part;
+  }
+
+  function goesTo(name, field) {
+    const select = named("select", {}, `Field for ${name}`);
+    select.append(new Option("not taken", ""), ...lists.map((list) => new Option(list.words, list.name, false, list.name === field)));
+    return select;
+  }
+
+  function tell(faults) {
+    const notice = find("[data-paste-faults]"), items = document.createElement("ul");
+    items.append(...faults.map((fault) => {
+      const item = document.createElement("li");
+      item.append(isolated(fault));
+      return item;
+    }));
+    notice.replaceChildren(items);
+    notice.hidden = !faults.length;
+  }
+
+  function refuse(words) {
+    apply.disabled = true;
+    find("[data-paste-preview]").hidden = true;
+    tell([words]);
+  }
+
+  text.addEventListener("input", () => {
+    chosen = null;
+    ask();
+  });
+  offset.addEventListener("input", ask);
+  find("[data-paste-preview]").addEventListener("input", () => {
+    const [units, fields] = ["thead input", "thead select"].map((which) => [...dialog.querySelectorAll(which)]);
+    chosen = fields.map((field, place) => ({ field: field.value, unit: units[place].value.trim() }));
+    ask();
+  });
+  find("[data-paste-file]").addEventListener("change", async ({ target }) => {
+    const [file] = target.files;
+    if (!file) return;
+    if (file.size > LARGEST) return refuse(`${file.name} has ${Math.round(file.size / 1e6)} MB; a table has at most one million characters`);
+    text.value = decoded(await file.arrayBuffer());
+    chosen = null;
+    ask();
+  });
+  apply.addEventListener("click", () => {
+    dialog.close();
+    for (const { name, field } of lists) if (Object.hasOwn(answer.texts, name)) fill(field, answer.texts[name]);
+    lists.find(({ name }) => Object.hasOwn(answer.texts, name)).field.focus();
+  });
+
+  return (list, all) => {
+    lists = [list, ...all.filter((other) => other !== list)];
+    text.value = offset.value = find("[data-paste-file]").value = "";
+    chosen = null;
+    ask();
+    dialog.showModal();
+    text.focus();
+  };
+}
+
+function line(kind, cells) {
+  const row = document.createElement("tr");
+  for (const cell of cells) {
+    const field = Object.assign(document.createElement(kind), kind === "th" ? { scope: "col" } : {});
+    field.append(cell);
+    row.append(field);
+  }
+  return row;
+}
+
+function named(kind, properties, label) {
+  const control = Object.assign(document.createElement(kind), properties);
+  control.setAttribute("aria-label", label);
+  return control;
+}
+
+// The text of a file: UTF-8, UTF-16 as some spreadsheets write it, or the Western letters of Windows.
+function decoded(bytes) {
+  const [first, second] = new Uint8Array(bytes);
+  if (first === 0xff && second === 0xfe) return new TextDecoder("utf-16le").decode(bytes);
+  try {
+    return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
+  } catch {
+    return new TextDecoder("windows-1252").decode(bytes);
+  }
+}

@@ -1,0 +1,1 @@
+"""Plots and pictures of results as several pages show them."""

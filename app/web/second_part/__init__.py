@@ -1,0 +1,1 @@
+"""The page that adds a second part to an imported one."""

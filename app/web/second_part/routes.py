@@ -1,0 +1,155 @@
+"""The page that puts a bought part beside a model of a design: it writes the manifest of the assembly.
+
+The assembly is imported as every imported model is; then the design takes it in place of the model.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import re
+from collections.abc import Mapping
+
+from fastapi import APIRouter, Depends, Request, Response
+from pydantic import JsonValue, TypeAdapter
+
+from app.catalogue.schemas.templates import TemplateSummary
+from app.designs.schemas.designs import Design, DesignModel
+from app.solids.routes.models import list_models, show_model
+from app.web.model_import.routes import MISSED, begun_import
+from app.web.shared.design_answers import job_of
+from app.web.shared.forms import fields, forms_only
+from app.web.shared.paths import Id
+from app.web.shared.responses import go, show
+from app.web.shared.services import PageServices, Refused, ThePageServices
+
+PATIENCE = 15.0
+"""Time that the page waits for the import, which draws nothing [s]."""
+GLANCE = 0.1  # [s]
+PLACES = ("x", "y", "z", "turn_x", "turn_y", "turn_z")
+FIELDS = ("component", "source", "design", "part", "datum", *PLACES, "may_overlap", "id")
+_FIXED = "Fixed part "  # the title of an imported STEP file begins so
+_VERSION = re.compile(r"/api/v1/models/([a-z0-9_]+)/versions/([0-9]+)")
+_MANIFEST = TypeAdapter(dict[str, JsonValue])
+_STALE = 412
+
+router = APIRouter(include_in_schema=False)
+forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
+
+
+@router.get("/designs/{id}/models/{name}/beside")
+async def beside_form(request: Request, services: ThePageServices, id: Id, name: Id) -> Response:
+    """Show the form: which part, and where it stands."""
+    design = await services.run(services.designs.show, id)
+    return await _form(request, services, design, name, {})
+
+
+@forms.post("/designs/{id}/models/{name}/beside")
+async def put_beside(request: Request, services: ThePageServices, id: Id, name: Id) -> Response:
+    """Make the assembly and let the design take it; where that is refused, the form again with the reason."""
+    typed = {key: text.strip() for key, text in (await fields(request)).items() if key in FIELDS}
+    design = await services.run(services.designs.show, id)
+    try:
+        version = await _imported(services, typed, await _manifest(services, _model(design, name), typed))
+        note = f"{typed.get('component', '')[:40]} beside {name}"
+        await services.change(id, str(design.revision), {"models": {name: version}}, note)
+    except Refused as refused:
+        if refused.status not in (*MISSED, _STALE):
+            raise
+        said = "; ".join(refused.faults.values()) or refused.problem.detail
+        return await _form(request, services, design, name, typed, said, refused.status)
+    return go(f"/designs/{id}")
+
+
+def _model(design: Design, name: str) -> DesignModel:
+    if name not in design.models:
+        raise Refused.because(404, f"this design has no model {name!r}")
+    return design.models[name]
+
+
+async def _manifest(
+    services: PageServices, model: DesignModel, typed: Mapping[str, str]
+) -> dict[str, JsonValue]:
+    """Return the manifest of the model's assembly with the part that was typed.
+
+    A new one if it is no assembly.
+    """
+    described = await services.run(
+        show_model, model.id, model.version, services.catalogues, services.database
+    )
+    if described.origin is not None and described.origin.program == "assembly":
+        manifest = _MANIFEST.validate_json(await services.run(services.store.read, described.origin.sha256))
+    else:
+        base: JsonValue = {"model": model.id, "version": model.version}
+        manifest = {"program": "assembly", "title": f"Assembly {typed.get('id', '')}", "base": base}
+    there = manifest.get("components", [])
+    return {**manifest, "components": [*(there if isinstance(there, list) else []), _component(typed)]}
+
+
+def _component(typed: Mapping[str, str]) -> dict[str, JsonValue]:
+    """Return the entry of a part, as far as anything was typed."""
+    entry: dict[str, JsonValue] = {"name": typed.get("component", "")}
+    if model := typed.get("source", ""):
+        id, _, version = model.partition(":")
+        entry |= {"model": id, "version": int(version) if version.isdecimal() and len(version) < 7 else 0}
+    entry |= {key: typed[key] for key in ("design", "part", "datum", *PLACES) if typed.get(key)}
+    if names := typed.get("may_overlap", "").replace(",", " ").split():
+        entry["may_overlap"] = list[JsonValue](names)
+    return entry
+
+
+async def _imported(
+    services: PageServices, typed: Mapping[str, str], manifest: Mapping[str, JsonValue]
+) -> dict[str, JsonValue]:
+    """Return the version of the model that a manifest becomes, as a design names it.
+
+    Raises
+    ------
+    Refused
+        With the reason, if it is not taken, or not in time.
+    """
+    id = typed.get("id", "")
+    content = json.dumps(manifest, ensure_ascii=False, indent=1).encode()
+    job = await begun_import(services, content, id, f"{id[:64] or 'assembly'}.json")
+    for _ in range(round(PATIENCE / GLANCE)):
+        work = await job_of(services, job)
+        if work.problem is not None:
+            raise Refused(work.problem)
+        if work.state == "done" and (version := _VERSION.fullmatch(work.result or "")):
+            return {"id": version[1], "version": int(version[2])}
+        await asyncio.sleep(GLANCE)
+    raise Refused.because(503, "the server is busy: the assembly has not been created; send the form again")
+
+
+async def _form(
+    request: Request,
+    services: PageServices,
+    design: Design,
+    name: str,
+    typed: Mapping[str, str],
+    notice: str = "",
+    status: int = 200,
+) -> Response:
+    model = _model(design, name)
+    described = await services.run(
+        show_model, model.id, model.version, services.catalogues, services.database
+    )
+    is_assembly = described.origin is not None and described.origin.program == "assembly"
+    usual = {"datum": "origin", "id": model.id if is_assembly else f"{model.id[:50]}_with_parts"}
+    return show(
+        request,
+        "second_part/second_part.html",
+        status,
+        design=design,
+        model_name=name,
+        model=described,
+        typed={**dict.fromkeys(FIELDS, ""), **usual, **typed},
+        notice=notice,
+        bought=await _bought(services),
+    )
+
+
+async def _bought(services: PageServices) -> list[TemplateSummary]:
+    """Return the imported STEP files, the newest of each."""
+    items = (await services.run(list_models, services.catalogues, limit=500)).items
+    return [item for item in items if item.latest and item.title.startswith(_FIXED)]

@@ -1,0 +1,152 @@
+"""Fields of a form and the JSON of the interface: typed text becomes a value, a value becomes text.
+
+A control is called `.scale` for a design's own parameter, `film.radial_load` for an input of a step or a
+parameter of a model, `film@level` for an option of a step, `film@limits.permissible_film` for a limit: no two
+are called alike, and none like a field of the form itself (`note`) or a property of HTML's forms (`length`).
+
+`shared/typed.js` does the same in the browser; `tests/app/web` compares the two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Set
+from math import isfinite
+from typing import Protocol
+from urllib.parse import parse_qsl
+
+from fastapi import Request
+from pydantic import JsonValue, TypeAdapter
+
+from app.designs.schemas.designs import Design
+from app.http.access import FORM_TOKEN
+from app.http.limits import BodyTooLarge
+from app.http.strict_requests import FORM_TYPES, NotForm, check_type
+from app.presentation.input_text import text_of, value_of
+from app.web.shared.session import check_form_token
+
+OPTIONS = ("level", "tolerance")  # of a step, beside its inputs
+LIMITS = "limits."  # of its criteria: how the rest of their controls' names begins
+MOST_FIELDS = 20_000
+
+Patch = dict[str, dict[str, JsonValue]]
+"""A merge patch of a design: of its parameters, steps and models, by name."""
+_WAS = TypeAdapter(dict[str, JsonValue])
+
+
+class Names(Protocol):
+    """The names in a design."""
+
+    @property
+    def parameters(self) -> Collection[str]:
+        """Return names of the design's own parameters."""
+
+    @property
+    def steps(self) -> Collection[str]:
+        """Return names of its steps."""
+
+    @property
+    def models(self) -> Collection[str]:
+        """Return names of its models."""
+
+
+async def fields(request: Request) -> dict[str, str]:
+    """Return the fields of a form that was sent.
+
+    Raises
+    ------
+    BodyTooLarge
+        If there are more than any of our forms has.
+    """
+    body = (await request.body()).decode(errors="replace")
+    try:
+        return dict(parse_qsl(body, keep_blank_values=True, max_num_fields=MOST_FIELDS))
+    except ValueError:
+        raise BodyTooLarge(f"a form has at most {MOST_FIELDS} fields") from None
+
+
+async def forms_only(request: Request) -> None:
+    """Let bodies through only if they are forms, in a session those of its own pages."""
+    check_type(request, FORM_TYPES, NotForm)
+    if request.scope.get(FORM_TOKEN):
+        check_form_token(request, await fields(request))
+
+
+def patch_of(design: Names, typed: Mapping[str, str]) -> Patch:
+    """Return the merge patch with what a form's user changed."""
+    patch: Patch = {}
+    blocks = {*design.steps, *design.models}
+    for name, text in kept(typed).items():
+        if _is_field(design, blocks, name):
+            _put(patch, design, name, value_of(text))
+    return patch
+
+
+def kept(typed: Mapping[str, str]) -> dict[str, str]:
+    """Return the fields that differ from the form's first state, which its hidden field `was` holds."""
+    try:
+        old = _WAS.validate_json(typed.get("was", "{}"))
+    except ValueError:
+        old = {}
+    return {name: text for name, text in typed.items() if text.strip() != str(old.get(name, "")).strip()}
+
+
+def _is_field(design: Names, blocks: Set[str], name: str) -> bool:
+    block, kind, tail = _parts(name)
+    if kind == "@":
+        return block in design.steps and (tail in OPTIONS or tail.startswith(LIMITS))
+    return tail in design.parameters if not block else bool(tail) and block in blocks
+
+
+def _parts(name: str) -> tuple[str, str, str]:
+    """Block, `.` or `@`, and the rest of a control's name."""
+    return name.partition("@" if "@" in name else ".")
+
+
+def texts(design: Design) -> dict[str, str]:
+    """Return the texts of a design, field by field.
+
+    `.scale`, `film.radial_load`, `film@level`, `model.width`.
+    """
+    blocks = {name: step.inputs for name, step in design.steps.items()}
+    blocks |= {name: model.parameters for name, model in design.models.items()}
+    fields = {f".{name}": text_of(value) for name, value in design.parameters.items()}
+    for block, values in blocks.items():
+        fields |= {f"{block}.{name}": text_of(value) for name, value in values.items()}
+    for name, step in design.steps.items():
+        fields |= {f"{name}@{LIMITS}{tail}": text_of(value) for tail, value in step.limits.items()}
+        fields |= {f"{name}@level": text_of(step.level), f"{name}@tolerance": text_of(step.tolerance)}
+    return fields
+
+
+def _put(patch: Patch, design: Names, name: str, value: JsonValue) -> None:
+    """Put one value in its place, or remove it if it was emptied."""
+    block, kind, tail = _parts(name)
+    new = None if value == "" else value
+    if kind == "@" and tail.startswith(LIMITS):
+        inner(inner(patch.setdefault("steps", {}), block), "limits")[tail.removeprefix(LIMITS)] = new
+    elif kind == "@":
+        inner(patch.setdefault("steps", {}), block)[tail] = option_of(tail, new)
+    elif not block:
+        patch.setdefault("parameters", {})[tail] = new
+    elif block in design.models:
+        inner(inner(patch.setdefault("models", {}), block), "parameters")[tail] = new
+    else:
+        inner(inner(patch.setdefault("steps", {}), block), "inputs")[tail] = new
+
+
+def inner(outer: dict[str, JsonValue], name: str) -> dict[str, JsonValue]:
+    """Return the object of a name; an empty one where there is none yet."""
+    inner = outer.setdefault(name, {})
+    assert isinstance(inner, dict)
+    return inner
+
+
+def option_of(name: str, value: JsonValue) -> JsonValue:
+    """A tolerance is a number; the interface says what is wrong with one that is none."""
+    if name != "tolerance" or not isinstance(value, str):
+        return value
+    try:
+        number = float(value)
+    except ValueError:
+        return value
+    return number if isfinite(number) else value

@@ -1,0 +1,106 @@
+"""Fields for library values: limits of criteria, typed or from a row, and rows that fill an input."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from pydantic import JsonValue
+
+from app.catalogue.routes.library import list_library_tables, show_library_table
+from app.catalogue.schemas.declarations import DeclaredValue, properties
+from app.catalogue.schemas.library import LibraryRow, LibraryTable
+from app.catalogue.schemas.templates import Template
+from app.presentation.input_text import text_of, value_of
+from app.reference import Reference
+from app.schemas.values import Given
+from app.web.shared.forms import LIMITS
+from app.web.shared.services import PageServices
+from app.web.shared.sheet import Field
+
+
+def limits_of(filled: Mapping[str, str]) -> dict[str, JsonValue]:
+    """Return the limits among the fields of a template's form that hold a text."""
+    return {name.removeprefix(LIMITS): value_of(text) for name, text in filled.items() if is_limit(name)}
+
+
+def is_limit(control: str) -> bool:
+    """Return whether a control of a template's form is that of a limit."""
+    return control.startswith(LIMITS)
+
+
+async def library(services: PageServices) -> list[LibraryTable]:
+    """Return every table of the library."""
+    listed = await services.run(list_library_tables)
+    return [await services.run(show_library_table, table.id) for table in listed.items]
+
+
+def limit_fields(
+    template: Template,
+    block: str,
+    given: Mapping[str, Given],
+    typed: Mapping[str, str],
+    faults: Mapping[str, str],
+    tables: Sequence[LibraryTable],
+) -> list[Field]:
+    """Return a choice for each table that gives limits of this template, then a field for each limit.
+
+    `block` is the name of the step; empty on the page of the template, which calculates without one.
+    """
+    limits = properties(template.given_limits)
+    fields = []
+    for tail, declared in limits.items():
+        control = f"{block}@{LIMITS}{tail}" if block else f"{LIMITS}{tail}"
+        name = control.replace("@", ".")
+        text = typed.get(control, text_of(given.get(tail)))
+        empty = _field(name, control, declared)
+        rows = {row.id: row.words for row in _rows(declared.library, limits, tables)}
+        fields.append(replace(empty, text=text, error=faults.get(name), options=tuple(rows), labels=rows))
+    return fields
+
+
+def _field(name: str, control: str, declared: DeclaredValue) -> Field:
+    """Return an empty field; its hint says what holds while it stays empty."""
+    default = declared.default_formula or "not given"
+    return Field(
+        name=name,
+        control=control,
+        words=declared.title,
+        text="",
+        error=None,
+        unit=declared.unit,
+        hint="by the row above" if declared.filled_by else default,
+        needed=False,
+    )
+
+
+def _rows(
+    id: str | None, limits: Mapping[str, DeclaredValue], tables: Sequence[LibraryTable]
+) -> Iterator[LibraryRow]:
+    """Yield the rows of a table that have a value for a limit which is taken from it."""
+    taken = {name for name, limit in limits.items() if id and limit.filled_by == id}
+    rows = (row for table in tables if table.id == id for row in table.rows)
+    yield from (row for row in rows if not taken.isdisjoint(row.values))
+
+
+def with_rows(fields: Sequence[Field], tables: Sequence[LibraryTable]) -> list[Field]:
+    """Return the fields of inputs, with the rows of the library that may fill them as suggestions."""
+    filling = [dict(_filling(_tail(one.name), tables)) for one in fields]
+    return [
+        replace(one, suggestions=rows) if rows else one for one, rows in zip(fields, filling, strict=True)
+    ]
+
+
+def _tail(name: str) -> str:
+    """Return the name of an input without that of its step."""
+    return Reference.parse(name).own_name
+
+
+def _filling(name: str, tables: Sequence[LibraryTable]) -> Iterator[tuple[str, str]]:
+    for table in tables:
+        columns = [column.name for column in table.columns if name in column.fills]
+        for row in table.rows:
+            for column in columns:
+                if column in row.values:
+                    cited = row.values[column]
+                    yield f"{cited.value:g} {cited.unit}", row.words

@@ -1,0 +1,66 @@
+"""The fields and files of a form that was sent as `multipart/form-data` (RFC 7578): how a browser uploads.
+
+Our forms send one file each, so that the whole body, which the service bounds, is split at once.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from fastapi import Request
+
+from app.http.access import FORM_TOKEN
+from app.http.strict_requests import FORM_TYPES, NotForm, check_type
+from app.web.shared.forms import fields
+from app.web.shared.session import FIELD, check_form_token
+
+MEDIA_TYPE = "multipart/form-data"
+MOST_PARTS = 50
+_BOUNDARY = re.compile(r'boundary=(?:"([^"\r\n]{1,70})"|([^\s";,]{1,70}))')
+_NAME = re.compile(rb'[;\s]name="([^"\r\n]{0,200})"')
+_FILE = re.compile(rb'[;\s]filename="([^"\r\n]{0,500})"')
+
+
+@dataclass(frozen=True)
+class Part:
+    """A field of a form, or a file with its name."""
+
+    content: bytes
+    file: str | None = None
+
+    @property
+    def text(self) -> str:
+        """Return the content of a field."""
+        return self.content.decode(errors="replace")
+
+
+async def forms_with_files(request: Request) -> None:
+    """Let bodies through only if they are forms, with files or not; in a session those of its own pages."""
+    check_type(request, FORM_TYPES | {MEDIA_TYPE}, NotForm)
+    if request.scope.get(FORM_TOKEN):
+        parts = await parts_of(request)
+        texts = {FIELD: parts[FIELD].text} if FIELD in parts else await fields(request)
+        check_form_token(request, texts)
+
+
+async def parts_of(request: Request) -> dict[str, Part]:
+    """Return the parts of a form that was sent with a file; of one without files none."""
+    return read_parts(await request.body(), request.headers.get("content-type", ""))
+
+
+def read_parts(body: bytes, content_type: str) -> dict[str, Part]:
+    """Return the parts of a form by name; linear in the length of the body. What is not part is left out."""
+    boundary = _BOUNDARY.search(content_type)
+    if boundary is None:
+        return {}
+    mark = b"\r\n--" + (boundary[1] or boundary[2]).encode("latin-1", "replace")
+    parts: dict[str, Part] = {}
+    for piece in (b"\r\n" + body).split(mark, MOST_PARTS)[1:]:
+        if piece.startswith(b"--"):
+            break
+        head, blank, content = piece.partition(b"\r\n\r\n")
+        if blank and (name := _NAME.search(head)):
+            file = _FILE.search(head)
+            parts[name[1].decode(errors="replace")] = Part(content, file and file[1].decode(errors="replace"))
+    return parts

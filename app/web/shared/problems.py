@@ -1,0 +1,81 @@
+"""Errors as pages: for a browser that asks for a page; the interface keeps its problems."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from typing import cast
+from urllib.parse import urlencode
+
+from fastapi import FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from starlette.datastructures import URL
+from starlette.exceptions import HTTPException
+
+from app.identity.errors import NotSignedIn, RoleNeeded
+from app.schemas.problems import MEDIA_TYPE, Problem
+from app.web.shared.responses import go, show
+from app.web.shared.services import Refused
+
+BASE = "/api/v1"
+"""Where the paths of the interface begin."""
+_LONGEST = 2000  # characters of an address
+Handler = Callable[[Request, Exception], Awaitable[Response]]
+
+
+def install(app: FastAPI) -> None:
+    """Answer what goes wrong under a page with a page; call it after `problems.install`."""
+    app.add_exception_handler(Refused, _refused)
+    for cls in (HTTPException, RequestValidationError, RoleNeeded, NotSignedIn, Exception):
+        app.add_exception_handler(cls, _page_or(cast(Handler, app.exception_handlers[cls])))
+
+
+def _page_or(others: Handler) -> Handler:
+    """Return a handler that answers browsers with a page, and leaves the rest to another."""
+
+    async def handle(request: Request, error: Exception) -> Response:
+        if not _is_page(request):
+            return await others(request, error)
+        if isinstance(error, HTTPException):
+            return _page(request, error.status_code, error.detail)
+        if isinstance(error, RoleNeeded):
+            return _page(request, 403, str(error), "Your roles do not allow this")
+        if isinstance(error, NotSignedIn):
+            return go(f"/sign-in?{urlencode({'back': _place(request)})}")
+        if isinstance(error, RequestValidationError):
+            return _page(request, 404, "there is no such page")
+        problem = Problem.model_validate_json(bytes((await others(request, error)).body))
+        return _page(request, problem.status, problem.detail, problem.title)
+
+    return handle
+
+
+def _is_page(request: Request) -> bool:
+    return not request.url.path.startswith(BASE) and "text/html" in request.headers.get("accept", "")
+
+
+def _place(request: Request) -> str:
+    """Return the page to continue with after signing in.
+
+    The one requested, or the one whose form was sent.
+    """
+    place = request.url
+    if request.method not in ("GET", "HEAD"):
+        place = URL(request.headers.get("referer", "/")[:_LONGEST])
+    return f"{place.path}?{place.query}" if place.query else place.path
+
+
+async def _refused(request: Request, error: Exception) -> Response:
+    """Return the page of what a service refused."""
+    assert isinstance(error, Refused)
+    if not _is_page(request):
+        return JSONResponse(
+            error.problem.model_dump(mode="json", exclude_unset=True), error.status, media_type=MEDIA_TYPE
+        )
+    return _page(request, error.status, error.problem.detail, error.problem.title)
+
+
+def _page(request: Request, status: int, detail: str, title: str | None = None) -> Response:
+    titles = {404: "There is no such page", 403: "Not allowed", 405: "Not allowed here"}
+    shown = title or titles.get(status, "Something went wrong")
+    return show(request, "shared/problem.html", status, title=shown, detail=detail, code=status)

@@ -1,0 +1,242 @@
+"""The services for the one who sent the request of a page.
+
+A page is a route like those of the interface: the same gate lets the same roles in, the same services decide
+and act for the same principal, and their models are what the interface answers. An error is the problem that
+the interface would answer, `Refused`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Awaitable, Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from http import HTTPStatus
+from typing import Annotated, ParamSpec, TypeVar
+
+from fastapi import Depends, Request
+from pydantic import JsonValue, TypeAdapter, ValidationError
+from starlette.concurrency import run_in_threadpool
+
+from app.api.dependencies import expensive_steps, services_of
+from app.api.services import Services
+from app.calculations.errors import InvalidBody
+from app.designs.routes.designs import noted
+from app.designs.service import SaveResult
+from app.http.access import TheClient
+from app.http.problem_kinds import TABLE
+from app.http.problems import refusal
+from app.http.strict_requests import refuse_nul_in
+from app.schemas.problems import Problem
+from app.storage.idempotency import Once
+
+Kind = TypeVar("Kind")
+Result = TypeVar("Result")
+Arguments = ParamSpec("Arguments")
+
+MOMENT = 1.0
+"""Time for which a form waits for the job of a change [s]."""
+_NUMBER = re.compile(r"[0-9]{1,6}")
+
+ERRORS = tuple(TABLE)
+"""The errors that are problems."""
+
+
+def with_related(detail: str, also: list[str]) -> str:
+    """Return a fault's sentence and the other inputs that it concerns; `shared/api.js` writes the same."""
+    return f"{detail}. See also {', '.join(also)}" if also else detail
+
+
+class Refused(Exception):
+    """A service refused; `problem` is what the interface answers then."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.status, self.problem = problem.status, problem
+        super().__init__(f"{problem.status} {problem.detail}")
+
+    @classmethod
+    def by(cls, error: Exception) -> Refused:
+        """Return the refusal that an error of a service is."""
+        return cls(Problem.model_validate_json(bytes(refusal(error).body)))
+
+    @classmethod
+    def because(cls, status: int, detail: str) -> Refused:
+        """Return a refusal of the pages themselves."""
+        title = HTTPStatus(status).phrase.capitalize()
+        return cls(Problem(type="about:blank", title=title, status=status, detail=detail))
+
+    @property
+    def faults(self) -> dict[str, str]:
+        """Return the faults by the name of the input, with the other inputs that they concern."""
+        return {fault.name: with_related(fault.detail, fault.also) for fault in self.problem.errors}
+
+
+def tag_of(revision: str) -> str:
+    """Return the ETag of a revision as a form names it; of what is not a number, one that matches nothing."""
+    return f'"{revision if _NUMBER.fullmatch(revision) else 0}"'
+
+
+@contextmanager
+def refusals() -> Iterator[None]:
+    """Turn errors of services into refusals.
+
+    Raises
+    ------
+    Refused
+        For each error that the interface answers with a problem.
+    """
+    try:
+        yield
+    except ERRORS as error:
+        raise Refused.by(error) from error
+
+
+@dataclass(frozen=True)
+class PageServices(Services):
+    """The services for one request of a page, and the client who sent it."""
+
+    request: Request
+    client: str
+
+    @property
+    def once(self) -> Once:
+        """Return a change by a form, which names no key: every form is a new one."""
+        return Once(None, "", "", self.client)
+
+    async def run(
+        self,
+        function: Callable[Arguments, Result],
+        *arguments: Arguments.args,
+        **options: Arguments.kwargs,
+    ) -> Result:
+        """Return the result of a function, which runs in a thread.
+
+        Raises
+        ------
+        Refused
+            If it refuses.
+        """
+        with refusals():
+            return await run_in_threadpool(function, *arguments, **options)
+
+    async def ask(self, answer: Awaitable[Result]) -> Result:
+        """Return what a service answers that runs in the event loop.
+
+        Raises
+        ------
+        Refused
+            If it refuses.
+        """
+        with refusals():
+            return await answer
+
+    async def save(
+        self,
+        change: Callable[Arguments, SaveResult],
+        *arguments: Arguments.args,
+        **options: Arguments.kwargs,
+    ) -> SaveResult:
+        """Return what a change has saved; its job is waited for a moment: the page shows how it goes on.
+
+        Raises
+        ------
+        Refused
+            If nothing was saved.
+        """
+        saved = await self.calculate(MOMENT, change, *arguments, **options)
+        if saved.job and not saved.is_deferred:
+            await self.jobs.wait(saved.job, MOMENT)
+        return saved
+
+    async def change(
+        self, id: str, revision: str, patch: Mapping[str, JsonValue], note: str = ""
+    ) -> SaveResult:
+        """Save a merge patch of a design as read at a revision, which is a text as a form names it.
+
+        Raises
+        ------
+        Refused
+            If nothing was saved.
+        """
+        with refusals():
+            refuse_nul_in({**patch, "note": note})
+            change, noted_as = noted({**patch, **({"note": note} if note.strip() else {})})
+        return await self.save(self.designs.change, id, change, noted_as, tag_of(revision), self.once)
+
+    async def cancel(self, job: str) -> None:
+        """Cancel a job; one that has ended meanwhile is left as it is.
+
+        Raises
+        ------
+        Refused
+            If there is no such job, or it is another's.
+        """
+        try:
+            await self.run(self.jobs.cancel, job, self.client)
+        except Refused as refused:
+            if refused.status != HTTPStatus.CONFLICT:
+                raise
+
+    async def find(
+        self,
+        function: Callable[Arguments, Result],
+        *arguments: Arguments.args,
+        **options: Arguments.kwargs,
+    ) -> Result | None:
+        """Return the result of a function, or None where there is nothing."""
+        try:
+            return await self.run(function, *arguments, **options)
+        except Refused as refused:
+            if refused.status != HTTPStatus.NOT_FOUND:
+                raise
+            return None
+
+    async def calculate(
+        self,
+        seconds: float | None,
+        function: Callable[Arguments, Result],
+        *arguments: Arguments.args,
+        **options: Arguments.kwargs,
+    ) -> Result:
+        """Return the result of a function that evaluates steps; those not ended in time [s] are deferred.
+
+        Without a time none is deferred.
+
+        Raises
+        ------
+        Refused
+            If it refuses.
+        """
+        await expensive_steps(self.request, self.client)
+        with refusals():
+            if seconds is None:
+                return await self.threads.run_for(self.request, function, *arguments, **options)
+            return await self.threads.run_within(seconds, self.request, function, *arguments, **options)
+
+    def read(self, kind: type[Kind], body: object) -> Kind:
+        """Return what a form says as the model of a body, read as strictly as that of a client.
+
+        Raises
+        ------
+        Refused
+            With everything that is wrong.
+        """
+        with refusals():
+            refuse_nul_in(body)
+            try:
+                return TypeAdapter(kind).validate_python(body)
+            except ValidationError as error:
+                raise InvalidBody.of(error) from None
+
+
+async def get_services(request: Request, client: TheClient) -> PageServices:
+    """Return the services for this request.
+
+    Files of a team's catalogue are read first if they have changed.
+    """
+    services = services_of(request)
+    await services.catalogues.refresh()
+    return PageServices(**vars(services), request=request, client=client)
+
+
+ThePageServices = Annotated[PageServices, Depends(get_services)]

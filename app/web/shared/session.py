@@ -1,0 +1,73 @@
+"""Cookies of a browser: one that identifies its requests, and one for a session after sign-in.
+
+The first says not whose the requests are. With the second, every form carries a token of the session, beside
+the rule of the gate that forms come from the service's own pages.
+"""
+
+from __future__ import annotations
+
+import hmac
+import re
+import secrets
+
+from fastapi import Request, Response
+
+from app.http.access import COOKIE, FORM_TOKEN, PRINCIPAL, SIGN_IN, is_session
+from app.http.guard import CrossSite
+from app.identity.principal import ANONYMOUS
+
+BYTES = 16  # 128 random bits
+FIELD = "form_token"
+_FORM = re.compile(r'<form\b[^>]*\bmethod="post"[^>]*>')
+
+
+def keep_session(request: Request, response: Response) -> None:
+    """Give a browser a session, unless it has one; the service keeps nothing of it."""
+    if is_session(request.cookies.get(COOKIE, "")):
+        return
+    response.set_cookie(
+        COOKIE,
+        secrets.token_urlsafe(BYTES),
+        path="/",
+        secure=request.url.scheme == "https",
+        httponly=True,
+        samesite="strict",
+    )
+
+
+def who_signed_in(request: Request) -> str:
+    """Return the name of whoever has signed in or sent a key; empty if nobody has."""
+    who = request.scope.get(PRINCIPAL, ANONYMOUS)
+    return "" if who is ANONYMOUS else str(who.name)
+
+
+def with_form_token(html: str, request: Request) -> str:
+    """Return a page whose forms carry the token of the session, if there is one."""
+    token = request.scope.get(FORM_TOKEN)
+    return _FORM.sub(rf'\g<0><input type="hidden" name="{FIELD}" value="{token}">', html) if token else html
+
+
+def check_form_token(request: Request, typed: dict[str, str]) -> None:
+    """Compare the token of a form with that of the session, if the request belongs to one.
+
+    Raises
+    ------
+    CrossSite
+        If it is another, or missing.
+    """
+    token = request.scope.get(FORM_TOKEN)
+    if token and not hmac.compare_digest(typed.get(FIELD, "").encode(), token.encode()):
+        raise CrossSite("the form is not of this session: open its page again, and send it from there")
+
+
+def keep_signed_in(request: Request, response: Response, token: str, hours: float) -> None:
+    """Give a browser the cookie of a session in which somebody has signed in, for so long [h]."""
+    response.set_cookie(
+        SIGN_IN,
+        token,
+        path="/",
+        max_age=int(hours * 3600),
+        secure=request.url.scheme == "https",
+        httponly=True,
+        samesite="strict",
+    )

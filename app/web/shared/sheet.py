@@ -1,0 +1,160 @@
+"""Fields of a form for inputs and parameters: words, what was typed, its value, what is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from app.catalogue.schemas.declarations import DeclaredValue, properties, required
+from app.catalogue.schemas.templates import Schema, Template
+from app.presentation import numbers
+from app.presentation.input_text import text_of
+from app.schemas.values import Given
+from app.web.shared.forms import OPTIONS
+from templates.core.units.relation import is_relation
+
+
+@dataclass(frozen=True)
+class Field:
+    """One input of a form; errors of the interface carry its `name`, the form that of its `control`."""
+
+    name: str
+    control: str
+    words: str
+    text: str
+    error: str | None
+    symbol: str | None = None
+    unit: str | None = None
+    hint: str = ""
+    options: tuple[str, ...] = ()
+    value: object = None  # what a relation comes to, or a default, as a quantity; None where the text says it
+    needed: bool = True
+    is_list: bool = False  # several values, to be edited item by item or pasted
+    own: bool = False  # a design's own parameter: its name is all its words
+    labels: Mapping[str, str] = field(default_factory=dict)  # words of the options
+    suggestions: Mapping[str, str] = field(default_factory=dict)  # texts to take, and what each stands for
+
+    @property
+    def id(self) -> str:
+        """Return the control's name as an id of HTML, unlike those of the page's parts.
+
+        `-length`, `film-length`.
+        """
+        bare = not {".", "@"} & set(self.control)
+        return "-" * bare + self.control.replace(".", "-")
+
+    @property
+    def main(self) -> bool:
+        """Return whether it is shown at once: it is needed, or was set, or is wrong."""
+        return self.needed or bool(self.text) or self.error is not None
+
+
+def of_block(
+    schema: Schema,
+    block: str,
+    cells: Mapping[str, Given],
+    values: Mapping[str, object],
+    typed: Mapping[str, str],
+    faults: Mapping[str, str],
+) -> list[Field]:
+    """Return the fields of a step's inputs, or a model's parameters, in the order they are declared.
+
+    `values` are the quantities used; `typed` what a form that was refused holds instead of the cells.
+    """
+    needed = required(schema)
+    fields = []
+    for tail, declared in properties(schema).items():
+        name = f"{block}.{tail}" if block else tail
+        text = typed.get(name, text_of(cells.get(tail)))
+        shown = None if text and not is_relation(text) else values.get(tail)
+        fields.append(_field(name, declared, text, shown, faults.get(name), tail in needed))
+    return fields
+
+
+def of_parameters(
+    cells: Mapping[str, Given],
+    values: Mapping[str, object],
+    typed: Mapping[str, str],
+    faults: Mapping[str, str],
+) -> list[Field]:
+    """Return the fields of a design's own parameters."""
+    return [
+        Field(
+            name=name,
+            control=f".{name}",
+            words=name,
+            text=typed.get(f".{name}", text_of(cell)),
+            error=faults.get(name),
+            value=values.get(name) if is_relation(cell) else None,
+            own=True,
+        )
+        for name, cell in cells.items()
+    ]
+
+
+def of_options(
+    template: Template,
+    block: str,
+    chosen: Mapping[str, Given],
+    typed: Mapping[str, str],
+    faults: Mapping[str, str],
+) -> list[Field]:
+    """Return the fields that choose how exact a step is; none where its template has one level only."""
+    if not template.levels or template.default_level is None:
+        return []
+    level, tolerance = OPTIONS
+    words = {level: "Level", tolerance: "or largest error"}
+    hints = {level: f"{template.default_level.replace('_', ' ')} (default)", tolerance: "0.01"}
+    return [
+        Field(
+            name=(name := _name_of_fault(f"{block}.{option}" if block else option, faults)),
+            control=(control := f"{block}@{option}"),
+            words=words[option],
+            text=typed.get(control, text_of(chosen.get(option))),
+            error=faults.get(name),
+            hint=hints[option],
+            options=tuple(template.levels) if option == level else (),
+        )
+        for option in OPTIONS
+    ]
+
+
+def _name_of_fault(option: str, faults: Mapping[str, str]) -> str:
+    """Return the name of an option's fault: of its place, `steps.film.tolerance`, or of its value."""
+    names = (n for n in faults if n in (option, f"steps.{option}") or n.startswith(f"{option}."))
+    return next(names, option)
+
+
+def _field(
+    name: str, declared: DeclaredValue, text: str, value: object, error: str | None, needed: bool
+) -> Field:
+    return Field(
+        name=name,
+        control=name,
+        words=declared.title,
+        text=text,
+        error=error,
+        symbol=declared.symbol,
+        unit=declared.unit,
+        hint=_hint(declared),
+        options=declared.enum,
+        value=value,
+        needed=needed,
+        is_list=declared.is_list or text.startswith("["),
+    )
+
+
+def _hint(declared: DeclaredValue) -> str:
+    """Return the hint of a field: what an empty one stands for, or how a value is written."""
+    if declared.has_default:
+        return numbers.in_line(declared.default)
+    if declared.default_formula is not None:
+        return "follows from the rest"
+    example = next(iter(declared.examples), None)
+    return f"such as {text_of(example)}" if example is not None else "not given"
+
+
+def loose_faults(fields: list[Field], faults: Mapping[str, str]) -> dict[str, str]:
+    """Return the faults that belong to no field; these messages stand above the form."""
+    shown = {field.name for field in fields}
+    return {name: detail for name, detail in faults.items() if name not in shown}

@@ -1,0 +1,46 @@
+// Fields and the JSON of the interface, as app/web/shared/forms.py turns one into the other.
+
+// What the interface calls a control: `.scale` → `scale`, `film@level` → `film.level`.
+export const nameOf = (control) => control.replace("@", ".").replace(/^\./, "");
+
+export function valueOf(text) {
+  const stripped = text.trim();
+  if (!/^[[{]/.test(stripped)) return stripped;
+  const end = stripped.lastIndexOf(stripped[0] === "[" ? "]" : "}") + 1;
+  try {
+    const inside = JSON.parse(stripped.slice(0, end)), unit = stripped.slice(end).trim();
+    return unit ? { value: inside, unit } : inside;
+  } catch {
+    return stripped; // the interface says what is wrong with it
+  }
+}
+
+// Whether a fault is that of a control; one of an option may tell where it stands (`steps.film.tolerance`) or its value.
+export function isOf(fault, control) {
+  const name = nameOf(control);
+  const isOption = control.includes("@");
+  return fault === name || (isOption && (fault === `steps.${name}` || fault.startsWith(`${name}.`)));
+}
+
+const LIMITS = "limits."; // how the rest of the name of a limit's control begins
+
+// The merge patch of a design for the fields that were changed: { "film.radial_load": "25 kN" } → { steps: … }.
+export function patchOf(changed, models) {
+  const patch = {};
+  for (const [name, text] of Object.entries(changed)) {
+    const [, block, kind, tail] = name.match(/^([^.@]*)([.@])(.*)$/s);
+    const value = text.trim() === "" ? null : valueOf(text);
+    if (kind === "@" && tail.startsWith(LIMITS)) inside(patch, "steps", block, "limits")[tail.slice(LIMITS.length)] = value;
+    else if (kind === "@") inside(patch, "steps", block)[tail] = optionOf(tail, value);
+    else if (!block) inside(patch, "parameters")[tail] = value;
+    else if (models.has(block)) inside(patch, "models", block, "parameters")[tail] = value;
+    else inside(patch, "steps", block, "inputs")[tail] = value;
+  }
+  return patch;
+}
+
+const inside = (patch, ...path) => path.reduce((place, key) => (place[key] ??= {}), patch);
+
+// A tolerance is a number; the interface says what is wrong with one that is none.
+export const optionOf = (name, value) =>
+  name === "tolerance" && typeof value === "string" && Number.isFinite(Number(value)) ? Number(value) : value;

@@ -1,0 +1,1 @@
+"""Solids drawn in the browser."""

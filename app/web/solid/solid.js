@@ -1,0 +1,86 @@
+// The part in three dimensions: a GLB file read and drawn by Plotly, with its size below.
+import { units } from "../shared/api.js";
+import { readGlb } from "./glb.js";
+import { unit } from "../shared/numbers.js";
+import { plotly } from "../plots/plots.js";
+import { pressureOf } from "../plots/pressure.js";
+import { FIELD, drawScene, showColours } from "./scene.js";
+
+const PLAIN = { ambient: 1, diffuse: 0, specular: 0, fresnel: 0 }; // the light is in the colours of the corners
+const shade = (colour, power) => `rgb(${colour.map((part) => Math.min(255, Math.round(part * power * 1.25))).join(",")})`;
+const LEAST = 0.003; // of the largest pressure: what is painted
+const AGAIN = 1500, TIMES = 20; // ms
+
+export async function showSolid(place) {
+  place.setAttribute("aria-busy", "true");
+  try {
+    const bodies = readGlb(await fetched(place.dataset.solid));
+    await drawSolid(place, bodies);
+    tellSize(place);
+  } catch (error) {
+    place.textContent = `The part cannot be shown: ${error.message}`;
+  } finally {
+    place.removeAttribute("aria-busy");
+  }
+}
+
+// The file; while it is still being made (202), it is asked for again.
+async function fetched(path) {
+  for (let tried = 0; tried < TIMES; tried++) {
+    const answer = await fetch(path, { headers: { Prefer: "wait=10" } });
+    if (answer.status === 200) return answer.arrayBuffer();
+    if (answer.status !== 202) throw new Error((await answer.json()).detail);
+    await new Promise((done) => setTimeout(done, AGAIN));
+  }
+  throw new Error("it takes too long to be drawn");
+}
+
+async function drawSolid(place, bodies) {
+  const before = place.querySelector(".js-plotly-plot"), figure = before ?? document.createElement("div");
+  if (!before) place.replaceChildren(figure);
+  const traces = bodies.map(({ mesh, light, colour, painted }) => ({ type: "mesh3d", ...mesh, vertexcolor: light.map((power, corner) => shade(painted ? painted[corner] : colour, power)), hoverinfo: "skip", lighting: PLAIN }));
+  await drawScene(figure, traces);
+}
+
+// Show the part in the colours of a field, whose file, range and unit an option of a choice names; or plain again.
+export async function colourBy(place, { value, dataset }) {
+  place.setAttribute("aria-busy", "true");
+  try {
+    await drawSolid(place, readGlb(await fetched(value || place.dataset.solid)));
+    showColours(place, value ? { low: Number(dataset.low), high: Number(dataset.high), unit: unit(dataset.unit) } : undefined);
+  } finally {
+    place.removeAttribute("aria-busy");
+  }
+}
+
+function tellSize(place) {
+  const caption = Object.assign(document.createElement("p"), { className: "size muted" });
+  caption.textContent = `${place.dataset.size}; drag to turn, scroll to zoom`;
+  place.append(caption);
+}
+
+// Paint the film pressure on the bore, its load towards +y; or take it away.
+export async function paint(place, picture, values, wanted) {
+  const Plotly = await plotly();
+  const figure = place.querySelector(".js-plotly-plot");
+  if (!figure) throw new Error("the part is not drawn");
+  const painted = figure.data.findIndex((trace) => trace.name === "film pressure");
+  if (painted >= 0) await Plotly.deleteTraces(figure, painted);
+  showColours(place);
+  if (!wanted) return;
+  const field = await pressureOf(picture, values), { pressure, maximum_pressure: most } = await pressureOf(picture, values, units());
+  const radius = 0.497 * field.bearing_diameter.value; // mm, as the solid
+  const start = Math.PI / 2 + (field.attitude_angle.value * Math.PI) / 180;
+  const angles = field.angle.value.map((angle) => start + (angle * Math.PI) / 180);
+  const rows = field.place.value, least = LEAST * field.maximum_pressure.value;
+  const lowest = figure.data.reduce((low, { y }) => y.reduce((one, other) => Math.min(one, other), low), Infinity); // of a half shell: 0
+  const isOff = (row, n) => field.pressure.value[row][n] < least || radius * Math.sin(angles[n]) < lowest;
+  const on = (value) => rows.map((z, row) => angles.map((angle, n) => (isOff(row, n) ? null : value(angle, z))));
+  const surface = {
+    type: "surface", name: "film pressure", scene: figure.dataset.scene, surfacecolor: pressure.value, ...FIELD,
+    x: on((angle) => radius * Math.cos(angle)), y: on((angle) => radius * Math.sin(angle)), z: on((_, z) => z),
+    hovertemplate: "%{surfacecolor:.3g} " + unit(pressure.unit) + "<extra></extra>",
+  };
+  await Plotly.addTraces(figure, surface);
+  showColours(place, { low: 0, high: most.value, unit: unit(most.unit) });
+}

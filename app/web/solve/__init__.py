@@ -1,0 +1,1 @@
+"""The pages that solve a design or a template for one input."""

@@ -1,0 +1,187 @@
+"""The page that solves a design: which value of one parameter gives a wanted output, with the curve."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from urllib.parse import urlencode
+
+from fastapi import Request, Response
+
+from app.designs import questions
+from app.designs.schemas.designs import Design
+from app.designs.schemas.solution import DesignRoot, DesignSolution
+from app.designs.solution import SolveDesignIn
+from app.presentation import numbers
+from app.presentation.input_text import value_of
+from app.web.shared.answers import AnswerOrJob, stored
+from app.web.shared.places import PlaceOption, outputs, related, suggested, times, varied
+from app.web.shared.responses import go, show, units_of
+from app.web.shared.services import PageServices
+from app.web.solve.solution import PATIENCE, Drawing, Reply, ShownRoot, replied
+
+FIELDS = ("unknown", "low", "high", "output", "value", "tolerance", "other", "other_value")
+OPTIONAL = ("tolerance", "other", "other_value")
+
+
+WIDER = 5.0
+"""Factor by which a question searches farther to both sides, if its answer is out of reach."""
+
+
+@dataclass(frozen=True)
+class Wider:
+    """Bounds farther apart, and the address of the question between them."""
+
+    low: str
+    high: str
+    query: str
+
+
+@dataclass(frozen=True)
+class SolveForm:
+    """The texts of the form; empty where nothing was typed."""
+
+    typed: Mapping[str, str]
+
+    @classmethod
+    def of(cls, request: Request) -> SolveForm:
+        """Return the question in the address."""
+        return cls({name: request.query_params.get(name, "").strip()[:200] for name in FIELDS})
+
+    @property
+    def is_whole(self) -> bool:
+        """Return whether everything is given that an answer needs."""
+        is_paired = bool(self.typed["other"]) == bool(self.typed["other_value"])
+        return is_paired and all(self.typed[name] for name in FIELDS if name not in OPTIONAL)
+
+    def body(self) -> dict[str, object]:
+        """Return the question as the interface takes it."""
+        typed = self.typed
+        body: dict[str, object] = {
+            "unknown": typed["unknown"],
+            "between": [value_of(typed["low"]), value_of(typed["high"])],
+            "target": {typed["output"]: value_of(typed["value"])},
+        }
+        if typed["other"]:
+            body["with"] = {typed["other"]: value_of(typed["other_value"])}
+        return body | ({"tolerance": _number(typed["tolerance"])} if typed["tolerance"] else {})
+
+    def wider(self) -> Wider | None:
+        """Return the same question between bounds farther apart, if they can be multiplied."""
+        low, high = times(self.typed["low"], 1 / WIDER), times(self.typed["high"], WIDER)
+        query = urlencode({**self.typed, "low": low, "high": high})
+        return Wider(low, high, query) if low and high else None
+
+    def saved_beside(self) -> tuple[str, str] | None:
+        """Return the field of the design's form that takes the other value, and what it takes."""
+        return (_control(self.typed["other"]), self.typed["other_value"]) if self.typed["other"] else None
+
+
+async def solve_page(request: Request, services: PageServices, id: str) -> Response:
+    """Return the form, and the answer once the form is filled in."""
+    design = await services.run(services.designs.show, id)
+    network = await services.run(services.designs.network, id)
+    places = varied(design, network)
+    question, job = _with_bounds(SolveForm.of(request), places), request.query_params.get("job", "")
+    reply = Reply[DesignSolution]()
+    if question.is_whole:
+        reply = await replied(
+            stored(services, job, DesignSolution) if job else _solved(request, services, id, question)
+        )
+    if reply.job and not job:
+        return go(f"?{urlencode({**question.typed, 'job': reply.job})}")
+    solution = reply.answer
+    return show(
+        request,
+        "solve/solve.html",
+        design=design,
+        places=places,
+        related=related(design),
+        outputs=outputs(network),
+        asked=question,
+        beside=question.saved_beside(),
+        solution=solution,
+        drawing=_drawing(solution) if solution else None,
+        roots=_saved(design, solution) if solution else [],
+        refusal=reply.refusal,
+        wider=question.wider() if reply.is_out_of_reach else None,
+        job=reply.job,
+    )
+
+
+async def _solved(
+    request: Request, services: PageServices, id: str, question: SolveForm
+) -> AnswerOrJob[DesignSolution]:
+    """Return the solution, or the job that calculates it where the page does not wait so long."""
+    body = services.read(SolveDesignIn, question.body())
+    wanted = questions.DesignQuestion(
+        id, body.model_dump_json(exclude_unset=True, by_alias=True), units=units_of(request)
+    )
+    answer, job = await services.calculate(PATIENCE, services.solving.answer, wanted, services.client)
+    return AnswerOrJob(answer, job or "")
+
+
+def _drawing(solution: DesignSolution) -> Drawing:
+    """Return the curve of an answer, with what gives the target."""
+    target = solution.target
+    roots = [*solution.roots, *solution.touching]
+    return Drawing(solution.unknown, target.name, target.value, solution.curve, roots, solution.jumps)
+
+
+def _with_bounds(asked: SolveForm, places: list[PlaceOption]) -> SolveForm:
+    """Return half and twice the present value as bounds, where a value was chosen and no bound is given."""
+    chosen = next((place for place in places if place.name == asked.typed["unknown"]), None)
+    if chosen is None or asked.typed["low"] or asked.typed["high"]:
+        return asked
+    low, high = suggested(chosen)
+    return SolveForm({**asked.typed, "low": low, "high": high})
+
+
+def _number(text: str) -> float | str:
+    """Return a number as typed; the interface says what is wrong with a text that is none."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+OPEN = ("not_met", "undecided")
+COUNTED = {"met": "met", "not_checked": "not checked"}
+
+
+def _counted(root: DesignRoot) -> str:
+    """Return a sentence on how many of the other criteria are met, and how many not checked."""
+    counts = Counter[str](root.verdicts.values())
+    return ", ".join(f"{counts[word]} {words}" for word, words in COUNTED.items() if counts[word])
+
+
+@dataclass(frozen=True)
+class SavedRoot(ShownRoot):
+    """A root of a design, and the field of the design's form that takes it."""
+
+    open: list[tuple[str, str]]  # criteria that are not met or undecided
+    rest: str  # how many are met, and not checked
+    field: str
+    note: str
+
+
+def _control(name: str) -> str:
+    """Return the field of the design's form for a place."""
+    return name if "." in name else f".{name}"
+
+
+def _saved(design: Design, solution: DesignSolution) -> list[SavedRoot]:
+    """Return every solution, with what saves it as a revision; none of several is preferred."""
+    control = _control(solution.unknown)
+    target = f"{solution.target.name} = {numbers.plain(solution.target.value)} {solution.target.unit}"
+    return [
+        SavedRoot(
+            **vars(ShownRoot.of(root)),
+            open=sorted((n, v) for n, v in root.verdicts.items() if v in OPEN),
+            rest=_counted(root),
+            field=control,
+            note=f"solved for {target}",
+        )
+        for root in (*solution.roots, *solution.touching)
+    ]

@@ -1,0 +1,180 @@
+"""The page of a study: how far it is, what it found, charts of its rows, and the row that is chosen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fastapi import Request, Response
+from pydantic import BaseModel
+
+from app.http.pages import Cursor
+from app.presentation import numbers
+from app.presentation.units import System
+from app.reference import Reference
+from app.schemas.criteria import Criterion
+from app.studies.routes.studies import Fits, Sort, list_rows, list_studies, show_study
+from app.studies.schemas import Best, Index, Study
+from app.web.shared.responses import show, units_of
+from app.web.shared.services import PageServices, Refused
+
+SHOWN = 20  # rows in the table
+UNFINISHED = ("queued", "running")
+
+
+class Rows(BaseModel):
+    """The rows of a study that are wanted, as the interface takes it."""
+
+    where: Fits = None
+    sort: Sort = None
+    cursor: Cursor = None
+
+
+async def study_page(
+    request: Request, services: PageServices, id: str, notice: str | None = None
+) -> Response:
+    """Return a study, and the first of its rows."""
+    units = units_of(request)
+    study = await services.run(show_study, id, services.studies, units)
+    design = await services.run(services.designs.show, study.design)
+    cursor, sort, where = (request.query_params.get(name, "") for name in ("cursor", "sort", "where"))
+    asked = {"where": where, "sort": sort, "cursor": cursor}
+    wanted = services.read(Rows, {name: text for name, text in asked.items() if text})
+    rows = await services.run(
+        list_rows, id, services.studies, None, wanted.where, wanted.sort, SHOWN, wanted.cursor, units
+    )
+    criteria = await _criteria(services, study, units)
+    return show(
+        request,
+        "study/study.html",
+        study=study,
+        design=design,
+        rows=rows,
+        names=[*study.varied, *study.outputs],
+        unfinished=study.state in UNFINISHED,
+        indices=_indices(study),
+        limits=_limits(study, criteria),
+        judged={one.name: _sides(one)[0] for one in criteria},
+        notice=notice,
+        sort=sort,
+        where=where,
+        estimate=numbers.in_line({"value": float(f"{study.estimate.seconds:.2g}"), "unit": "s"}),
+    )
+
+
+async def _criteria(services: PageServices, study: Study, units: System) -> list[Criterion]:
+    """Return the criteria of a study as its revision states them; none where that is not kept."""
+    if not study.criteria:
+        return []
+    try:
+        sheet = await services.calculate(
+            None, services.reports.worksheet, study.design, study.revision, units
+        )
+    except Refused as refused:
+        if refused.status != 404:
+            raise
+        return []
+    return [one for one in sheet.criteria or () if one.name in study.criteria]
+
+
+def _limits(study: Study, criteria: list[Criterion]) -> dict[str, list[float]]:
+    """Return limits of criteria by output; a limit that itself follows from a row is not a line."""
+    limits: dict[str, list[float]] = {}
+    for one in criteria:
+        if line := _limit_of(study, one):
+            limits.setdefault(line[0], []).append(line[1])
+    return limits
+
+
+def _sides(one: Criterion) -> tuple[str, str]:
+    """Return the output that a criterion judges, with its step in front, and the text of its limit."""
+    left, _, right = (side.strip() for side in one.require.replace(">=", "<=").partition("<="))
+    name = Reference.parse(one.name)
+    return f"{name.block}.{left}" if name.output and left.isidentifier() else left, right
+
+
+def _limit_of(study: Study, one: Criterion) -> tuple[str, float] | None:
+    """Return the output that a criterion holds against a number written in it, and this number."""
+    name, right = _sides(one)
+    limit = one.limit.value if one.limit else None
+    if name not in study.outputs or not right[:1].isdigit() or not isinstance(limit, float | int):
+        return None
+    is_same_unit = one.limit is not None and one.limit.unit == study.units[name]
+    return (name, float(limit)) if is_same_unit else None
+
+
+async def studies_of(services: PageServices, design: str) -> list[Study]:
+    """Return the newest studies of a design."""
+    return (await services.run(list_studies, services.studies, design=design, limit=10)).items
+
+
+@dataclass(frozen=True)
+class IndexLine:
+    """The influence of a place on an output, as the page lists and draws it."""
+
+    place: str
+    cells: list[str]
+    value: float
+    low: float | None
+    high: float | None
+
+
+@dataclass(frozen=True)
+class IndexTable:
+    """The indices of one output, the largest first."""
+
+    output: str
+    heads: list[str]
+    words: str
+    lines: list[IndexLine]
+
+    def parts(self) -> list[dict[str, object]]:
+        """Return the bars of its tornado."""
+        return [
+            {"name": line.place, "value": line.value}
+            | ({} if line.low is None else {"low": line.low, "high": line.high})
+            for line in self.lines
+        ]
+
+
+def _indices(study: Study) -> list[IndexTable]:
+    indices = (study.result.indices if study.result else None) or {}
+    return [_table(output, places) for output, places in indices.items()]
+
+
+def _table(output: str, places: dict[str, Index]) -> IndexTable:
+    lines = [_line(place, index) for place, index in places.items()]
+    lines.sort(key=lambda line: -abs(line.value))
+    first = next(iter(places.values()), Index())
+    if first.total is not None:
+        heads, words = ["first order", "total"], "share of the variance, with all interactions"
+    elif first.mu_star is not None:
+        heads, words = ["mean effect", "scatter"], "mean size of elementary effects"
+    else:
+        heads, words = ["slope", "elasticity"], "relative change by relative change"
+    return IndexTable(output, heads, words, lines)
+
+
+def _line(place: str, index: Index) -> IndexLine:
+    if index.total is not None:
+        cells = [_with_error(index.first, index.first_error), _with_error(index.total, index.total_error)]
+        spread = index.total_error
+        low, high = (None, None) if spread is None else (index.total - spread, index.total + spread)
+        return IndexLine(place, cells, index.total, low, high)
+    if index.mu_star is not None:
+        cells = [numbers.in_line(index.mu_star), numbers.in_line(index.sigma)]
+        return IndexLine(place, cells, index.mu_star.value, None, None)
+    slope = numbers.in_line(index.slope) if index.slope else "–"
+    return IndexLine(place, [slope, _plain(index.elasticity)], index.elasticity or 0.0, None, None)
+
+
+def _with_error(value: float | None, error: float | None) -> str:
+    return _plain(value) + (f" ± {numbers.rough(error)}" if error is not None else "")
+
+
+def _plain(value: float | None) -> str:
+    return "–" if value is None else numbers.plain(float(f"{value:.4g}"))
+
+
+def values_of(best: Best) -> list[tuple[str, str]]:
+    """Return the places and outputs of a row, as texts."""
+    return [(name, numbers.in_line(quantity)) for name, quantity in {**best.at, **best.outputs}.items()]

@@ -1,0 +1,1 @@
+"""The page of a template, with a form to try it."""

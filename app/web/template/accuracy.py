@@ -1,0 +1,69 @@
+"""A table of a template's levels: cost and measured errors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from statistics import median
+from typing import NamedTuple
+
+from pydantic import BaseModel, JsonValue
+
+from app.catalogue.schemas.templates import Accuracy
+
+SHOWN = 6  # outputs; all are in the answer of the interface
+
+
+class Level(NamedTuple):
+    """One level: milliseconds of one point, microseconds of a point among many, errors by output."""
+
+    name: str
+    single: float | None
+    vectorised: float | None
+    errors: dict[str, tuple[float, float]]  # median and largest
+
+
+class Table(NamedTuple):
+    """All levels, and the outputs that are shown of them."""
+
+    levels: list[Level]
+    outputs: list[str]
+
+
+class _Cost(BaseModel):
+    """Seconds of one point, and of a point among many."""
+
+    single: float | None = None
+    vectorised: float | None = None
+
+
+class _MeasuredErrors(BaseModel):
+    """The measured errors of one level by output, of every cell of the plane."""
+
+    cost: _Cost | None = None
+    errors: dict[str, JsonValue]
+
+
+def table(measured: Accuracy) -> Table:
+    """Return the levels of the answer to `GET …/accuracy`, with the outputs that were measured."""
+    levels = [_level(name, _MeasuredErrors.model_validate(level)) for name, level in measured.levels.items()]
+    outputs = list(dict.fromkeys(name for level in levels for name in level.errors))
+    return Table(levels, outputs[:SHOWN])
+
+
+def _level(name: str, measured: _MeasuredErrors) -> Level:
+    cost = measured.cost or _Cost()
+    errors = {output: sorted(_numbers(cells)) for output, cells in measured.errors.items()}
+    return Level(
+        name,
+        cost.single if cost.single is None else cost.single * 1e3,
+        cost.vectorised if cost.vectorised is None else cost.vectorised * 1e6,
+        {output: (median(cells), cells[-1]) for output, cells in errors.items() if cells},
+    )
+
+
+def _numbers(cells: JsonValue) -> Iterator[float]:
+    if isinstance(cells, list):
+        for cell in cells:
+            yield from _numbers(cell)
+    elif isinstance(cells, int | float):
+        yield float(cells)

@@ -1,0 +1,1 @@
+"""The page that upgrades a design to newer versions."""

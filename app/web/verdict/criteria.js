@@ -1,0 +1,83 @@
+// Criteria in words, as app/presentation/criteria.py writes them.
+import { percent, plain, quantityText } from "../shared/numbers.js";
+
+export const WORDS = { met: "met", not_met: "not met", undecided: "undecided", not_checked: "not checked" };
+const NOT_STATED = "the error of the calculation is not stated";
+const ALMOST_ALL = 0.985;
+
+// Value, sign and limit of a requirement, as written.
+export function sides(require) {
+  const parts = require.match(/^(.*?)\s*(>=|<=)\s*(.*)$/s);
+  return parts ? parts.slice(1) : [require, "", ""];
+}
+
+export const plainName = (text) =>
+  text.replace(/(?:[A-Za-z]\w*\.)*([A-Za-z]\w*)/g, (_, name) => name.replaceAll("_", " ")).trim();
+
+export function stepOf({ name, require }) {
+  if (name.includes(".")) return name.split(".")[0];
+  const [block, ...rest] = sides(require)[0].trim().split(".");
+  return rest.length && /^[A-Za-z_]\w*$/.test(block) ? block : "";
+}
+
+const isName = (text) => /^\s*(?:[A-Za-z]\w*\.)*[A-Za-z]\w*\s*$/.test(text);
+
+// What is judged; of what is calculated within a criterion, its own name.
+export function title({ name, require }) {
+  const [left] = sides(require);
+  return plainName(isName(left) ? left : name);
+}
+
+export function compared({ value, limit, require }) {
+  if (!value || !limit) return "";
+  const [, sign, right] = sides(require);
+  const called = isName(right) ? `${plainName(right)} ` : "";
+  const atLeast = sign === ">=" ? (value.value >= limit.value ? "≥" : "<") : value.value <= limit.value ? "≤" : ">";
+  return `${quantityText(value)} ${atLeast} ${called}${quantityText(limit)}`;
+}
+
+export function margin({ margin: left, band, limit, require }) {
+  if (!left) return "";
+  const text = quantityText(left);
+  if (!band || !limit || band.unit !== limit.unit || limit.unit !== left.unit) return text;
+  const [low, high] = band.value, edge = limit.value;
+  if (low === null || high === null || low === high) return text;
+  const [least, most] = sides(require)[1] === ">=" ? [low - edge, high - edge] : [edge - high, edge - low];
+  return `${text} (${plain(least)} … ${plain(most)})`;
+}
+
+export function error({ value, error_stated: isStated = true, relative_error: relative }) {
+  if (!value) return "";
+  return isStated && typeof relative === "number" ? `± ${percent(relative)}` : "not stated";
+}
+
+export function missing({ give, verdict, needs, reason }) {
+  if (give?.length) return `give ${give.map(plainName).join(", ")}`;
+  if (verdict === "undecided" && typeof needs === "number") return `needs an error below ${percent(needs)}`;
+  return reason ?? "";
+}
+
+export function remarks(criterion) {
+  const { value, error_stated: isStated = true, unverified, waived, reason } = criterion;
+  return [
+    value && !isStated && NOT_STATED,
+    unverified && `unverified: ${unverified}`,
+    waived && `waived: ${waived}`,
+    where(criterion),
+    reason && missing(criterion) !== reason && reason,
+  ].filter(Boolean);
+}
+
+function where({ where: places = {}, points, counts = {} }) {
+  const named = Object.entries(places).map(([name, at]) => `${plainName(name)} ${quantityText(at)}`);
+  const at = named.length ? `worst at ${named.join(", ")}` : "";
+  if (!points || points === 1) return at;
+  const numbers = Object.entries(counts).filter(([, number]) => number).map(([verdict, number]) => `${number} ${WORDS[verdict]}`);
+  return [at, `${points} points: ${numbers.join(", ")}`].filter(Boolean).join("; ");
+}
+
+// About 100 % and above in four digits, to show on which side.
+export function share(used) {
+  if (typeof used !== "number") return "";
+  return used < ALMOST_ALL ? percent(used) : `${plain(Number((used * 100).toPrecision(4)))} %`;
+}

@@ -1,0 +1,171 @@
+"""The pages of worksheets: their list, the start of a new one, and the editor."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from fastapi import Request, Response
+
+from app.solids.routes.models import list_models
+from app.web.shared.responses import show
+from app.web.shared.services import PageServices
+from app.web.worksheet.preview import offered, tried_in
+from app.web.worksheet.stages import begins_next, newest_released, stages
+from app.worksheets import check
+from app.worksheets.bodies import SheetCheckIn
+from app.worksheets.routes.worksheets import list_worksheets
+from app.worksheets.schemas.worksheets import SheetCheck, SheetFault, SheetLine, SheetSummary
+from templates.examples.listing import examples
+
+EQUALS = "<mo>&#x0003D;</mo>"  # in MathML
+PAGE, MOST_PAGES = 500, 10  # worksheets of one answer, and answers that a list or a search reads
+
+
+@dataclass(frozen=True)
+class UnsavedText:
+    """A text that was not saved, as its form holds it, and why."""
+
+    text: str
+    notice: str
+    status: int
+    is_conflict: bool = False
+
+
+async def list_page(request: Request, services: PageServices, wanted: str) -> Response:
+    """Return all worksheets, or those whose id or title holds a text."""
+    sought = wanted.casefold()
+    sheets = [item for item in await _all(services) if sought in f"{item.id} {item.title}".casefold()]
+    return show(request, "worksheet/worksheets.html", sheets=sheets, wanted=wanted)
+
+
+async def _all(services: PageServices) -> list[SheetSummary]:
+    """Return every worksheet, as far as the pages show them."""
+    page = await services.run(list_worksheets, services.worksheets, PAGE)
+    sheets = page.items
+    for _ in range(MOST_PAGES - 1):
+        if page.next is None:
+            break
+        page = await services.run(list_worksheets, services.worksheets, PAGE, page.next)
+        sheets = [*sheets, *page.items]
+    return sheets
+
+
+async def start_page(
+    request: Request, services: PageServices, typed: Mapping[str, str], notice: str = "", status: int = 200
+) -> Response:
+    """Return the form of a new worksheet: empty, from an example, or from a copy."""
+    return show(
+        request,
+        "worksheet/new_worksheet.html",
+        status,
+        examples=examples(),
+        sheets=await _all(services),
+        typed=typed,
+        notice=notice,
+    )
+
+
+async def editor_page(
+    request: Request,
+    services: PageServices,
+    id: str,
+    unsaved: UnsavedText | None = None,
+    notice: str = "",
+    status: int = 200,
+    design: str = "",
+) -> Response:
+    """Return the newest version of a worksheet, to be edited; or what was typed and could not be saved.
+
+    A version that is not released is previewed in `design`, if one is named.
+    """
+    row = await services.run(services.worksheets.newest, id)
+    sheet = await services.run(services.worksheets.show, row)
+    models = await services.run(list_models, services.catalogues, limit=500)
+    text = unsaved.text if unsaved else sheet.text
+    checked = await _checked(services, text, id)
+    is_open = not begins_next(sheet) and not sheet.faults
+    return show(
+        request,
+        "worksheet/worksheet.html",
+        unsaved.status if unsaved else status,
+        sheet=sheet,
+        tag=f'"{row.edit}"',
+        text=text,
+        theirs=sheet.text if unsaved and unsaved.is_conflict else None,
+        notice=unsaved.notice if unsaved else notice,
+        checked=checked,
+        checked_json=checked.model_dump_json(exclude={"template"}),
+        rows=rows(checked),
+        listing=listing(text, checked.faults),
+        stages=stages(sheet),
+        begins_next=begins_next(sheet),
+        offered=await offered(services, sheet) if is_open else [],
+        tried=await tried_in(services, design, sheet, checked) if is_open and design else None,
+        chosen=design,
+        usable=newest_released(sheet),
+        models=[item for item in models.items if item.latest],
+    )
+
+
+async def _checked(services: PageServices, text: str, id: str) -> SheetCheck:
+    """Return every fault of a text under its line, or every line on paper with the numbers of the example."""
+    asked = services.read(SheetCheckIn, {"text": text, "id": id})
+    calculated = services.threads.run(
+        services.worksheets.calculated, services.client, check.checked, asked.text, asked.id
+    )
+    return SheetCheck.model_validate_json(await services.ask(calculated))
+
+
+@dataclass(frozen=True)
+class Row:
+    """A statement on paper, its faults and its test's outcome; `worksheet/typeset.js` draws the same."""
+
+    line: SheetLine | None
+    faults: list[SheetFault]
+    passed: bool | None
+    message: str | None
+
+    @property
+    def says_its_value(self) -> bool:
+        """Return whether it is given with a constant as its default: `T = 20 °C` needs no value beside it."""
+        _, is_equal, behind = (self.line.mathml if self.line else "").partition(EQUALS)
+        return bool(self.line and self.line.kind == "given" and is_equal and "<mi>" not in behind)
+
+
+def rows(checked: SheetCheck) -> list[Row]:
+    """Return one row per statement, in the order of the text."""
+    tests = {test.line: test for test in checked.tests}
+    at = {line.line: line for line in checked.lines}
+    starts = {number: line.line for line in checked.lines for number in range(line.line, line.last_line + 1)}
+    wrong: dict[int, list[SheetFault]] = {}
+    for fault in checked.faults:
+        wrong.setdefault(starts.get(fault.line, fault.line), []).append(fault)
+    lines = []
+    for number in sorted({*at, *wrong}):
+        line, test = at.get(number), tests.get(number)
+        message = test.message if test and not test.passed else (line.message if line else None)
+        lines.append(Row(line, wrong.get(number, []), test.passed if test else None, message))
+    return lines
+
+
+@dataclass(frozen=True)
+class TextLine:
+    """A line of the text with what is wrong in it."""
+
+    text: str
+    faults: list[SheetFault]
+
+    def mark(self, fault: SheetFault) -> str:
+        """Return blanks up to the column of a fault, then a mark under what is wrong."""
+        end = fault.end_column or fault.column + 1
+        return " " * (fault.column - 1) + "^" * max(1, min(end, len(self.text) + 1) - fault.column)
+
+
+def listing(text: str, faults: list[SheetFault]) -> list[TextLine]:
+    """Return the text line by line with its faults, for browsers without scripts; nothing without a fault."""
+    by_line: dict[int, list[SheetFault]] = {}
+    for fault in faults:
+        by_line.setdefault(fault.line, []).append(fault)
+    lines = text.split("\n")
+    return [TextLine(line, by_line.get(number, [])) for number, line in enumerate(lines, 1)] if faults else []

@@ -1,0 +1,183 @@
+"""Routes of the pages of worksheets and of their forms."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Awaitable
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Query, Request, Response
+from pydantic import JsonValue
+
+from app.http.access import needs
+from app.web.shared.forms import fields, forms_only
+from app.web.shared.paths import Id, Text
+from app.web.shared.responses import go
+from app.web.shared.services import PageServices, Refused, ThePageServices
+from app.web.worksheet.page import UnsavedText, editor_page, list_page, start_page
+from app.worksheets.bodies import ReviewIn, SheetIn, SheetPatch, WithdrawIn
+from templates.examples.listing import examples
+
+router = APIRouter(include_in_schema=False)
+forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
+
+NOT_NOW, STALE, ILL_NAMED = 409, 412, 422
+MISSED = (403, NOT_NOW, STALE, ILL_NAMED)
+"""Errors that the page of the worksheet explains, because the user can correct them."""
+
+
+@router.get("/worksheets")
+async def worksheets(request: Request, services: ThePageServices, name: Text = "") -> Response:
+    """All worksheets, or those that fit what was typed into the search."""
+    return await list_page(request, services, name.strip())
+
+
+@router.get("/worksheets/new")
+async def new_worksheet(request: Request, services: ThePageServices) -> Response:
+    """Show the form for a new worksheet."""
+    return await start_page(request, services, dict(request.query_params))
+
+
+@router.get("/worksheets/{id}")
+async def worksheet(
+    id: Id,
+    request: Request,
+    services: ThePageServices,
+    design: Annotated[str, Query(max_length=64, pattern=r"^[A-Za-z0-9_]*$")] = "",
+) -> Response:
+    """The editor; `design` names one in which a draft is previewed."""
+    return await editor_page(request, services, id, design=design)
+
+
+@router.get("/worksheets/{id}/test")
+@router.get("/worksheets/{id}/review")
+@router.get("/worksheets/{id}/release")
+@router.get("/worksheets/{id}/withdraw")
+@router.get("/worksheets/{id}/delete")
+async def after_a_form(id: Id) -> Response:
+    """The worksheet: a form that was refused is shown at the address to which it was sent."""
+    return go(f"/worksheets/{id}")
+
+
+@forms.post("/worksheets")
+async def create(request: Request, services: ThePageServices) -> Response:
+    """A new draft, shown at once; where it is refused, the form again with what is wrong."""
+    typed = await fields(request)
+    id = typed.get("id", "").strip()
+    body: dict[str, JsonValue] = {"id": id, "text": await _start(services, typed.get("start", ""), typed)}
+    if author := typed.get("author", "").strip():
+        body["author"] = author
+    try:
+        await services.ask(
+            services.threads.run(services.worksheets.create, services.read(SheetIn, body), services.once)
+        )
+    except Refused as refused:
+        if refused.status not in MISSED:
+            raise
+        said = "; ".join(refused.faults.values()) or refused.problem.detail
+        return await start_page(request, services, typed, said, refused.status)
+    return go(f"/worksheets/{id}")
+
+
+async def _start(services: PageServices, start: str, typed: dict[str, str]) -> str:
+    """Return the text with which a worksheet begins.
+
+    Of an example, of another worksheet, or its title alone.
+    """
+    group, _, name = start.partition(":")
+    if group == "example" and (text := next((one.text for one in examples() if one.id == name), "")):
+        return text
+    if group == "copy" and name.isidentifier():
+        return (await services.run(services.worksheets.newest, name)).text
+    title = typed.get("title", "").strip()
+    return f"# {title}\n" if title else ""
+
+
+@forms.post("/worksheets/{id}")
+async def save(id: Id, request: Request, services: ThePageServices) -> Response:
+    """The text as typed; where it is refused, the page again with it and what is wrong."""
+    typed = await fields(request)
+    text = typed.get("text", "").replace("\r\n", "\n")
+    try:
+        body, seen = services.read(SheetPatch, {"text": text}), typed.get("tag", "")
+        await services.ask(services.threads.run(services.worksheets.change, id, body, seen, services.once))
+    except Refused as refused:
+        if refused.status not in MISSED:
+            raise
+        return await editor_page(request, services, id, unsaved=_unsaved(text, refused))
+    return go(f"/worksheets/{id}")
+
+
+def _unsaved(text: str, refused: Refused) -> UnsavedText:
+    if refused.status == STALE:
+        notice = "Somebody else saved this worksheet meanwhile. Your text is kept; theirs stands beside it."
+        return UnsavedText(text, notice, STALE, is_conflict=True)
+    said = "; ".join(refused.faults.values()) or refused.problem.detail
+    return UnsavedText(text, f"Nothing was saved: {said}", refused.status)
+
+
+@forms.post("/worksheets/{id}/test")
+async def test(id: Id, request: Request, services: ThePageServices) -> Response:
+    """Run its tests."""
+    tested = services.threads.run(services.worksheets.test, id, None, services.client)
+    return await _act(id, services.ask(tested), request, services)
+
+
+@forms.post("/worksheets/{id}/review", dependencies=[needs("checker")])
+async def review(id: Id, request: Request, services: ThePageServices) -> Response:
+    """Somebody read the text with this digest."""
+    typed = await fields(request)
+    said = {"reviewer": typed.get("reviewer", "").strip(), "digest": typed.get("digest", "")}
+
+    async def reviewed() -> None:
+        await services.run(services.worksheets.review, id, services.read(ReviewIn, said), None)
+
+    return await _act(id, reviewed(), request, services)
+
+
+@forms.post("/worksheets/{id}/release", dependencies=[needs("checker")])
+async def release(id: Id, request: Request, services: ThePageServices) -> Response:
+    """Release it for designs, for good."""
+    released = services.threads.run(services.worksheets.release, id, None, services.client)
+    return await _act(id, services.ask(released), request, services)
+
+
+@forms.post("/worksheets/{id}/withdraw", dependencies=[needs("checker")])
+async def withdraw(id: Id, request: Request, services: ThePageServices) -> Response:
+    """Say why a released version shall not be used any longer."""
+    typed = await fields(request)
+    version = typed.get("version", "")
+    named = {"version": int(version)} if re.fullmatch("[0-9]{1,6}", version) else {}
+
+    async def withdrawn() -> None:
+        body = services.read(WithdrawIn, {"reason": typed.get("reason", "").strip(), **named})
+        await services.run(services.worksheets.withdraw, id, body, None)
+
+    return await _act(id, withdrawn(), request, services)
+
+
+@forms.post("/worksheets/{id}/delete")
+async def delete(id: Id, request: Request, services: ThePageServices) -> Response:
+    """Remove the newest version, which was never released; then the one before it, or the list."""
+    try:
+        await services.run(services.worksheets.delete, id, None)
+    except Refused as refused:
+        return await _explained(id, request, services, refused)
+    before = await services.find(services.worksheets.newest, id)
+    return go(f"/worksheets/{id}" if before else "/worksheets")
+
+
+async def _act(id: str, action: Awaitable[object], request: Request, services: PageServices) -> Response:
+    """Carry out one step of its life, then show the page; with what is missing, where that was refused."""
+    try:
+        await action
+    except Refused as refused:
+        return await _explained(id, request, services, refused)
+    return go(f"/worksheets/{id}")
+
+
+async def _explained(id: str, request: Request, services: PageServices, refused: Refused) -> Response:
+    if refused.status not in MISSED:
+        raise refused
+    said = "; ".join(refused.faults.values()) or refused.problem.detail
+    return await editor_page(request, services, id, notice=said, status=refused.status)

@@ -1,0 +1,96 @@
+"""Crank angles at which an engine is calculated: a uniform grid of at most 1°, and both sides of each jump.
+
+The step that a user chooses says which of these angles are returned. Greatest values and integrals use all of
+them, so that they do not depend on that step. Where the pressure jumps, as at an ideal combustion or when an
+exhaust valve opens late, one angle stands just before the jump and one on it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Array
+
+T = TypeVar("T", bound=np.generic)
+
+FINEST = np.pi / 180
+"""The largest step of the internal grid [rad]."""
+COARSE = 5.000001 * np.pi / 180
+"""The largest step [rad] of returned curves that shows their peaks, 5° but for rounding."""
+_BEFORE = 1e-7  # [rad] before a jump
+
+
+@dataclass(frozen=True)
+class CrankGrid:
+    """Angles of one cycle [rad], (…, K): `uniform` equal steps first, then those beside jumps."""
+
+    theta: Array
+    uniform: int
+    every: int
+    cycle: float
+
+    def returned(self, values: NDArray[T]) -> NDArray[T]:
+        """Return the values at the angles that a user asks for, of values at all angles, (…, K)."""
+        return values[..., : self.uniform : self.every] if np.ndim(values) else values
+
+    @cached_property
+    def order(self) -> NDArray[np.intp]:
+        """Return the indices by which angles ascend, (…, K)."""
+        return np.argsort(self.theta, axis=-1, kind="stable")
+
+    @cached_property
+    def ascending(self) -> Array:
+        """Return the angles in ascending order [rad], (…, K)."""
+        return np.take_along_axis(self.theta, self.order, axis=-1)
+
+    @cached_property
+    def widths(self) -> Array:
+        """Return the intervals between ascending angles [rad], to the first of the next cycle, (…, K)."""
+        first = self.ascending[..., :1] + self.cycle
+        return np.diff(self.ascending, axis=-1, append=first)
+
+    def sorted(self, values: Array) -> Array:
+        """Return values at all angles in ascending order of angles, (…, K)."""
+        order = np.broadcast_to(self.order, (*values.shape[:-1], self.order.shape[-1]))
+        return np.take_along_axis(values, order, axis=-1)
+
+    def swing(self, values: Array) -> Array:
+        """Return ascending values less their mean over the cycle by the trapezoidal rule, (…, K)."""
+        ascending = self.sorted(values)
+        return ascending - self._parts(ascending).sum(axis=-1, keepdims=True) / self.cycle
+
+    def running(self, values: Array) -> Array:
+        """Return the integral from the first angle of values less their mean, (…, K), in the grid's order.
+
+        The mean is that of the same rule on the same grid, so the integral closes over the cycle.
+        """
+        parts = self._parts(self.swing(values))
+        sums = np.concatenate([np.zeros_like(parts[..., :1]), np.cumsum(parts, axis=-1)[..., :-1]], axis=-1)
+        found = np.empty_like(sums)
+        np.put_along_axis(found, np.broadcast_to(self.order, sums.shape), sums, axis=-1)
+        return found
+
+    def _parts(self, ascending: Array) -> Array:
+        """Return the integral over each interval, (…, K)."""
+        return (ascending + np.roll(ascending, -1, axis=-1)) / 2 * self.widths
+
+
+def angles_in(strokes: Array, step: Array) -> float:
+    """Return the number of equal steps of a grid whose returned step is that [rad]."""
+    return float(np.pi * strokes / np.minimum(step, FINEST))
+
+
+def crank_grid(strokes: Array, step: Array, jumps: Array) -> CrankGrid:
+    """Return the grid of a cycle for a returned step [rad], with angles of jumps [rad], (…, J)."""
+    cycle = float(np.pi * strokes)
+    returned = round(cycle / float(step))
+    every = max(1, int(np.ceil(float(step) / FINEST - 1e-9)))
+    uniform = np.arange(returned * every) * (cycle / (returned * every))
+    near = np.concatenate([jumps - _BEFORE, jumps], axis=-1) % cycle
+    base = np.broadcast_to(uniform, (*near.shape[:-1], uniform.size))
+    return CrankGrid(np.concatenate([base, near], axis=-1), uniform.size, every, cycle)
