@@ -195,7 +195,9 @@ class TestStatedErrors:
         for axis in ("load_x", "load_y"):
             raw[axis] = si(np.asarray(raw[axis]["value"]) * ratio / RATIO, "N")
         tables = accuracy(OilFilmCycle).cases[kind][level]
-        for name, bound in stated(raw, level).items():
+        found = stated(raw, level)
+        assert np.isnan(found.pop("side_flow"))  # what the supply drives was not in the duties' flow
+        for name, bound in found.items():
             assert np.isfinite(bound), name
             assert bound == tables[name][row, column], name
 
@@ -221,10 +223,27 @@ class TestStatedErrors:
             inputs(X, Y, **PIN, pin_hole_angle="180 deg"),
             inputs(X, Y, **HOLE, sleeve_hole_angle="0 deg"),
             inputs(X, Y),
+            inputs(X, Y, **FULL | {"supply_pressure": f"{4.0 / P_S * 3} bar"}),
         ],
     )
     def test_property_none_outside_the_bands_and_for_other_supplies(self, raw):
         assert np.isnan(list(stated(raw).values())).all()
+
+    @pytest.mark.slow
+    def test_property_level_supplied_states_the_error_of_each_answer(self):
+        names = (
+            "minimum_film_thickness",
+            "maximum_eccentricity",
+            "maximum_pressure",
+            "power_loss",
+            "side_flow",
+        )
+        raw = inputs(X, Y, **FULL | PIN)
+        found, error = outputs(raw, "supplied"), stated(raw, "supplied", names)
+        assert error["minimum_film_thickness"] == found["numerical_error"] > 5e-3
+        gap = found["minimum_film_thickness"] / (D * PSI / 2 * 1e6)
+        assert error["maximum_eccentricity"] == pytest.approx(found["numerical_error"] * gap / (1 - gap))
+        assert all(0 < error[name] < 0.3 for name in names)
 
     @pytest.mark.parametrize("groove", [FULL, HALF])
     def test_property_pressures_have_none(self, groove):
@@ -255,7 +274,11 @@ class TestStatedErrors:
                 cheap = fed_orbit(level, asked)
                 answer = values(cheap, fed_film(level, asked, cheap))
                 checked += [
-                    [error(answer[name], truth[name]) <= table[level][name][row, column] for name in OUTPUTS]
+                    [
+                        error(answer[name], truth[name]) <= table[level][name][row, column]
+                        for name in OUTPUTS
+                        if name != "side_flow"
+                    ]
                 ]
         assert np.mean(checked) >= 0.93
         assert np.mean(checked, axis=0)[OUTPUTS.index("minimum_film_thickness")] >= 7 / 8
@@ -276,4 +299,4 @@ class TestSupplied:
         assert len(orbit.cycles) == 4
         missed = orbit.least_gap / 0.037242 - 1
         assert abs(missed) < 0.005
-        assert abs(missed) < orbit.mesh_error < 0.05
+        assert abs(missed) < orbit.error.gap < 0.06
