@@ -131,9 +131,7 @@ def test_analytic_constant_load_is_the_static_film_with_the_same_groove():
 def test_property_hole_that_stays_under_the_load_starves_and_is_refused_by_that_name():
     """What does not need the film is answered; of several points the others are."""
     turning_load = inputs(4 * np.cos(ANGLE), 4 * np.sin(ANGLE), **PIN)
-    with pytest.raises(
-        InvalidInputs, match=r"starved: the hole stays under the load.*move the groove"
-    ) as info:
+    with pytest.raises(InvalidInputs, match=r"hole stays under the load.*move the groove") as info:
         marched(turning_load)
     assert [fault.code for fault in info.value.faults] == ["starved"]
     answers = marched(turning_load, outputs=["verdict", "feed_under_load", "cycles_run"]).outputs
@@ -147,7 +145,7 @@ def test_property_oil_of_the_cycle_balances():
     x = 2 + 3 * np.exp(6 * (np.cos(ANGLE - 0.4) - 1)) + 0.5 * np.cos(2 * ANGLE)
     answers = marched(inputs(x, np.sin(ANGLE), **PIN)).outputs
     assert answers["verdict"].value in ("repeating", "wandering")
-    assert answers["numerical_error"].value < 0.03
+    assert 5e-3 < answers["numerical_error"].value < 0.06  # mesh and step are in it
     assert abs(answers["mass_balance"].value) < 1e-4
     assert answers["supply_flow"].value == pytest.approx(answers["side_flow"].value, rel=5e-3)
     assert answers["minimum_film_thickness"].value <= answers["film_thickness"].value.min() * (1 + 1e-9)

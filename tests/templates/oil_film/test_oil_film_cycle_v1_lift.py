@@ -231,19 +231,13 @@ class TestStatedErrors:
 
     @pytest.mark.slow
     def test_property_level_supplied_states_the_error_of_each_answer(self):
-        names = (
-            "minimum_film_thickness",
-            "maximum_eccentricity",
-            "maximum_pressure",
-            "power_loss",
-            "side_flow",
-        )
-        raw = inputs(X, Y, **FULL | PIN)
-        found, error = outputs(raw, "supplied"), stated(raw, "supplied", names)
-        assert error["minimum_film_thickness"] == found["numerical_error"] > 5e-3
+        names = ("minimum_film_thickness", "maximum_eccentricity", "power_loss", "side_flow")
+        raw = inputs(X, Y, **FULL)
+        found, errors = outputs(raw, "supplied"), stated(raw, "supplied", names)
+        assert errors["minimum_film_thickness"] == found["numerical_error"] > 5e-3
         gap = found["minimum_film_thickness"] / (D * PSI / 2 * 1e6)
-        assert error["maximum_eccentricity"] == pytest.approx(found["numerical_error"] * gap / (1 - gap))
-        assert all(0 < error[name] < 0.3 for name in names)
+        assert errors["maximum_eccentricity"] == pytest.approx(found["numerical_error"] * gap / (1 - gap))
+        assert all(0 < errors[name] < 0.06 for name in names), errors
 
     @pytest.mark.parametrize("groove", [FULL, HALF])
     def test_property_pressures_have_none(self, groove):
