@@ -176,7 +176,7 @@ class ShaftReadback:
 
     @property
     def web_width(self) -> float:
-        """Twice the distance of the sides of webs from the axis: of all planes along it none is nearer."""
+        """Return twice the distance of the sides of webs from the axis, the nearest planes along it."""
         along = [p for p in self.seen.planes if abs(p.direction.dot(Z)) < _CLEAR]
         for normal, distance in self._sides_of_middle_webs() if self.split else ():
             sides = [plane for plane in along if _lies(plane, normal, distance)]
