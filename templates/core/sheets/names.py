@@ -27,7 +27,7 @@ Call = Callable[[list[Part]], Part]
 
 
 @dataclass(frozen=True)
-class Named:
+class KnownName:
     """A name that formulas may use, for completion in an editor."""
 
     name: str
