@@ -224,7 +224,7 @@ class CycleHeatBalance(Oil, FedBearing):
     @shared
     def bearing(self) -> CycleBearing:
         """The bearing over its cycle."""
-        return CycleBearing(self.level, self.duty, self.feeding, self.p_s, self.c / 2, relieved=True)
+        return CycleBearing(self.level, self.duty, self.feeding, self.p_s, self.c / 2)
 
     @shared
     def eta_given(self) -> Array:
