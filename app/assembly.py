@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from app.api.responses import Threads
 from app.api.services import Services
 from app.approvals.comments import Comments
-from app.approvals.service import Approving
+from app.approvals.service import ApprovalService
 from app.calculations.assembly import Calculations, assemble_calculations
 from app.calculations.cache import results
 from app.calculations.questions import EVALUATION
@@ -16,7 +16,7 @@ from app.catalogue.catalogues import Catalogues, TeamCatalogues
 from app.catalogue.check import CheckInProcess
 from app.catalogue.discovery import find_templates
 from app.designs.decisions import DECISIONS
-from app.designs.labels import Labelling
+from app.designs.labels import LabelService
 from app.designs.preview import PREVIEWS
 from app.designs.questions import in_a_process
 from app.designs.regeneration import Regeneration
@@ -42,10 +42,10 @@ from app.retention.service import Retention
 from app.settings import Settings
 from app.settings.machines import LOCAL
 from app.solids.analyses import ANALYSIS, Analyses, ModelAnalysis
-from app.solids.analysis_process import Analysing
+from app.solids.analysis_process import AnalysisRunner
 from app.solids.builds import Builds
 from app.solids.models import BUILD, ModelBuild, Models
-from app.solids.repair import Healing
+from app.solids.repair import ArtifactRepair
 from app.storage.artifacts import Artifacts
 from app.storage.connection import opened_database
 from app.storage.database import Database
@@ -53,7 +53,7 @@ from app.storage.folder import DataFolder
 from app.storage.ownership import claim
 from app.storage.stores import Figures, opened_store
 from app.studies.run import LANES, StudyServices
-from app.studies.solids import SolidMaking
+from app.studies.solids import SolidPool
 from app.tolerances.answer import analysed
 from app.tolerances.schemas import ToleranceAnalysis
 from app.workers import prefork
@@ -62,7 +62,7 @@ from app.workers.choice import started_workers
 from app.workers.light import CHECKS
 from app.workers.local import LocalProcesses
 from app.worksheets.importing.service import IMPORT, Imports
-from app.worksheets.publication import Published
+from app.worksheets.publication import WorksheetPublication
 from app.worksheets.service import Worksheets
 from cad.catalogue import models as find_models
 
@@ -70,11 +70,11 @@ if TYPE_CHECKING:
     from app.observation.traces import Traces
 
 
-from app.studies.conclude import Concluding
+from app.studies.conclude import StudyConclusion
 from app.studies.repair import ChunkRepair
-from app.studies.run import STUDY, Studying
+from app.studies.run import STUDY, StudyRunner
 from app.studies.service import Studies
-from app.studies.variant_design import Building
+from app.studies.variant_design import DesignFactory
 
 NETWORK = (
     "app.designs.engine.net",
@@ -124,7 +124,9 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     programs = assembled_programs(settings, store)
     stack.callback(programs.close)
     builds = Builds(database, store, programs)
-    analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
+    analysing = AnalysisRunner(
+        database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb)
+    )
     register_jobs(jobs, builds, analysing, catalogues, calculations, calculation_cache)
     about = database, catalogues, store, jobs, calculations.steps
     evaluations = Questions(EVALUATION, *about)
@@ -137,7 +139,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     for one in (evaluations, previews, decisions, impacts, solving, tolerances, variant_details):
         jobs.register(one.kind.name, one, one.failed, lane=CALCULATION)
     designs = Designs(database, jobs, catalogues, calculation_cache)
-    solids = SolidMaking(database, builds, analysing, settings.workers)
+    solids = SolidPool(database, builds, analysing, settings.workers)
     of_studies = StudyServices(
         database, store, catalogues, calculations.pool, jobs, calculations.steps, solids
     )
@@ -163,7 +165,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
         threads=Threads(),
         evaluations=evaluations,
         designs=designs,
-        labelling=Labelling(database),
+        labelling=LabelService(database),
         previews=previews,
         decisions=decisions,
         studies=studies,
@@ -176,8 +178,8 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
         models=models,
         model_imports=model_imports,
         analyses=analyses,
-        healing=Healing(database, store, models, analyses),
-        approving=Approving(database, store),
+        healing=ArtifactRepair(database, store, models, analyses),
+        approving=ApprovalService(database, store),
         comments=Comments(database),
         reports=Reports(database, store, models, catalogues, settings.owner),
         press=Press(workers.here, Limits(settings.job_deadline, settings.job_memory_mb), settings.workers),
@@ -197,7 +199,7 @@ def data_checks(
 ) -> dict[str, readiness.Check]:
     """Return the conditions on the data under which the service is ready."""
     checks: dict[str, readiness.Check] = {
-        "database": readiness.Writing(database),
+        "database": readiness.WriterProbe(database),
         "space": readiness.Space(folder.path, settings.minimum_free_mb),
     }
     return checks if settings.artifacts_url is None else {**checks, "files": readiness.Files(store)}
@@ -218,12 +220,14 @@ def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:
         return TeamCatalogues(settings.template_folders, check, CheckInProcess(worker, limits, light))
 
 
-def published_worksheets(database: Database, catalogues: Catalogues, stack: ExitStack) -> Published:
+def published_worksheets(
+    database: Database, catalogues: Catalogues, stack: ExitStack
+) -> WorksheetPublication:
     """Return the released worksheets among the templates.
 
     A SQLite file has one server, which releases them all.
     """
-    published = Published(database, catalogues, is_shared=database.is_shared)
+    published = WorksheetPublication(database, catalogues, is_shared=database.is_shared)
     published.start()
     stack.callback(published.stop)
     return published
@@ -232,7 +236,7 @@ def published_worksheets(database: Database, catalogues: Catalogues, stack: Exit
 def register_jobs(
     jobs: Jobs,
     builds: Builds,
-    analysing: Analysing,
+    analysing: AnalysisRunner,
     catalogues: Catalogues,
     calculations: Calculations,
     calculation_cache: CalculationCache,
@@ -256,9 +260,9 @@ def register_jobs(
 
 def assemble_studies(services: StudyServices, designs: Designs) -> Studies:
     """Return the service of studies, its handler registered."""
-    conclude = Concluding(Building(services, designs))
+    conclude = StudyConclusion(DesignFactory(services, designs))
     repair = ChunkRepair(services, conclude)
-    handler = Studying(services, conclude, repair.heal)
+    handler = StudyRunner(services, conclude, repair.heal)
     services.jobs.register(STUDY, handler, handler.failed, lane=STUDY)
     return Studies(
         services.database, services.store, services.jobs, services.catalogues, designs, repair.lost

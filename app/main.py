@@ -49,7 +49,7 @@ from app.identity.errors import IdentityError
 from app.identity.routes.audit import router as audit
 from app.identity.routes.principals import router as principals
 from app.impact.routes import router as impact
-from app.imported_models.routes import router as brought_models
+from app.imported_models.routes import router as imported_models
 from app.jobs.routes import router as jobs
 from app.observation.routes import router as health
 from app.reports.routes import router as reports
@@ -108,7 +108,7 @@ ROUTERS = (
     design_events,
     study_tables,
     studies,
-    brought_models,
+    imported_models,
     models,
     analyses,
     jobs,

@@ -81,7 +81,7 @@ class Bench:
         from app.http import problems
         from app.jobs.service import Jobs
         from app.settings import Settings
-        from app.solids.analysis_process import Analysing
+        from app.solids.analysis_process import AnalysisRunner
         from app.solids.builds import Builds
         from app.storage.artifacts import ArtifactStore
         from app.storage.database import Database
@@ -96,7 +96,7 @@ class Bench:
         catalogues = Catalogues(find_templates(()), models())
         self.jobs = Jobs(self.database, Inline(), Settings(data=folder), problems.describe)
         builds = Builds(self.database, store, *_folders(Builds))
-        analysing = Analysing(self.database, store, Limits())
+        analysing = AnalysisRunner(self.database, store, Limits())
         self.designs = Designs(self.database, self.jobs, catalogues)
         self.regeneration = Regeneration(
             self.database, builds, analysing, catalogues, **_recent(self.designs)

@@ -13,7 +13,7 @@ from typing import Any
 
 from cad.assemblies import assembly_of
 from cad.imported_models import Description, ImportedModel, Parameter, attribute_of
-from templates.core.catalogue.loading import BROUGHT
+from templates.core.catalogue.loading import IMPORTED
 from templates.core.language.declare import given
 from templates.core.paper.mathml import named_symbol
 
@@ -49,7 +49,7 @@ def class_of(text: str, id: str, version: int) -> type[ImportedModel]:
     }
     space = {
         **declared,
-        "__module__": f"{BROUGHT}.{id}_v{version}",
+        "__module__": f"{IMPORTED}.{id}_v{version}",
         "__doc__": f"{description.title}.",
         "imported": description,
         "sheet": description,

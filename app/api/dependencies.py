@@ -14,13 +14,13 @@ from app.api.event_streams import Still, always
 from app.api.responses import Threads
 from app.api.services import Services
 from app.approvals.comments import Comments
-from app.approvals.service import Approving
+from app.approvals.service import ApprovalService
 from app.calculations.operations import Question
 from app.catalogue.catalogues import Catalogues
 from app.designs import decisions
-from app.designs.labels import Labelling
-from app.designs.preview import Previewed
-from app.designs.questions import Asked
+from app.designs.labels import LabelService
+from app.designs.preview import PreviewRequest
+from app.designs.questions import DesignQuestion
 from app.designs.schemas.decision import Decision
 from app.designs.schemas.designs import Preview
 from app.designs.schemas.solution import DesignSolution
@@ -43,7 +43,7 @@ from app.reports.service import Reports
 from app.settings import Settings
 from app.solids.analyses import Analyses
 from app.solids.models import Models
-from app.solids.repair import Healing
+from app.solids.repair import ArtifactRepair
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.idempotency import Once
@@ -78,21 +78,21 @@ TheJobs = Annotated[Jobs, Depends(_part("jobs"))]
 TheThreads = Annotated[Threads, Depends(_part("threads"))]
 TheEvaluations = Annotated[Questions[Question, Pieces], Depends(_part("evaluations"))]
 TheDesigns = Annotated[Designs, Depends(_part("designs"))]
-TheLabelling = Annotated[Labelling, Depends(_part("labelling"))]
+TheLabelling = Annotated[LabelService, Depends(_part("labelling"))]
 TheStudies = Annotated[Studies, Depends(_part("studies"))]
 TheImports = Annotated[Imports, Depends(_part("imports"))]
 TheWorksheets = Annotated[Worksheets, Depends(_part("worksheets"))]
-ThePreviews = Annotated[Questions[Previewed, Preview], Depends(_part("previews"))]
-TheDecisions = Annotated[Questions[decisions.Asked, Decision], Depends(_part("decisions"))]
-TheSolving = Annotated[Questions[Asked, DesignSolution], Depends(_part("solving"))]
-TheTolerances = Annotated[Questions[Asked, ToleranceAnalysis], Depends(_part("tolerances"))]
+ThePreviews = Annotated[Questions[PreviewRequest, Preview], Depends(_part("previews"))]
+TheDecisions = Annotated[Questions[decisions.DecisionQuestion, Decision], Depends(_part("decisions"))]
+TheSolving = Annotated[Questions[DesignQuestion, DesignSolution], Depends(_part("solving"))]
+TheTolerances = Annotated[Questions[DesignQuestion, ToleranceAnalysis], Depends(_part("tolerances"))]
 TheVariantDetails = Annotated[Questions[WantedVariant, VariantDetail], Depends(_part("variant_details"))]
-TheImpacts = Annotated[Questions[survey.Asked, Impact], Depends(_part("impacts"))]
+TheImpacts = Annotated[Questions[survey.ImpactQuestion, Impact], Depends(_part("impacts"))]
 TheModels = Annotated[Models, Depends(_part("models"))]
 TheModelImports = Annotated[ModelImports, Depends(_part("model_imports"))]
 TheAnalyses = Annotated[Analyses, Depends(_part("analyses"))]
-TheHealing = Annotated[Healing, Depends(_part("healing"))]
-TheApproving = Annotated[Approving, Depends(_part("approving"))]
+TheHealing = Annotated[ArtifactRepair, Depends(_part("healing"))]
+TheApproving = Annotated[ApprovalService, Depends(_part("approving"))]
 TheComments = Annotated[Comments, Depends(_part("comments"))]
 TheReports = Annotated[Reports, Depends(_part("reports"))]
 ThePress = Annotated[Press, Depends(_part("press"))]

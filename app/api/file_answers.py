@@ -18,10 +18,10 @@ from app.http.attachments import is_at_hand, unchanged
 from app.http.problem_kinds import REBUILDING
 from app.jobs.service import Jobs
 from app.schemas.problems import Responses, refusals
-from app.solids.repair import Healing, other_bytes
+from app.solids.repair import ArtifactRepair, other_bytes
 from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
-from app.storage.verification import Opened, stamp_of
+from app.storage.verification import OpenFile, stamp_of
 
 RETRY_AFTER = 2  # s
 GONE = 410
@@ -33,7 +33,7 @@ UNCHANGED: Responses = {304: {"description": "as it was when the ETag of If-None
 
 
 async def lost(
-    sha: str, healing: Healing, jobs: Jobs, prefer: str | None, *, same: bool = False
+    sha: str, healing: ArtifactRepair, jobs: Jobs, prefer: str | None, *, same: bool = False
 ) -> Response | None:
     """None once an artifact is good; the answer in its place if it is still being made again, or cannot be.
 
@@ -56,7 +56,9 @@ async def lost(
     return None
 
 
-async def _unless_healed(sha: str, healing: Healing, jobs: Jobs, prefer: str | None) -> Response | None:
+async def _unless_healed(
+    sha: str, healing: ArtifactRepair, jobs: Jobs, prefer: str | None
+) -> Response | None:
     """None once the job that makes an artifact again has ended well, else what to answer."""
     if refused := healing.refused(sha):
         return problems.answer(refused)
@@ -107,7 +109,7 @@ class StoredFile(FileResponse):
             self.set_stat_headers(self.stat_result)
             await super().__call__(scope, receive, self._watched(opened, send))
 
-    def _watched(self, opened: Opened, send: Send) -> Send:
+    def _watched(self, opened: OpenFile, send: Send) -> Send:
         async def watched(message: Message) -> None:
             nonlocal opened
             if not opened.is_unchanged():
@@ -116,11 +118,11 @@ class StoredFile(FileResponse):
 
         return watched
 
-    def _verified_again(self, opened: Opened) -> Opened:
+    def _verified_again(self, opened: OpenFile) -> OpenFile:
         """Return the file after a change that kept its bytes, such as a later time or a lost name."""
         stamp = stamp_of(opened.file)
         opened.file.seek(0)
         if hashlib.file_digest(opened.file, "sha256").hexdigest() != self._sha:
             self._store.exists(self._sha)  # sets it aside, if it still has the name
             raise ArtifactDamaged(self._sha, "it changed while it was being sent")
-        return Opened(opened.file, stamp)
+        return OpenFile(opened.file, stamp)

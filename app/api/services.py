@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 from app.api.responses import Threads
 from app.approvals.comments import Comments
-from app.approvals.service import Approving
+from app.approvals.service import ApprovalService
 from app.calculations.operations import Question
 from app.catalogue.catalogues import Catalogues
 from app.designs import decisions as decisions_of
-from app.designs.labels import Labelling
-from app.designs.preview import Previewed
-from app.designs.questions import Asked
+from app.designs.labels import LabelService
+from app.designs.preview import PreviewRequest
+from app.designs.questions import DesignQuestion
 from app.designs.schemas.decision import Decision
 from app.designs.schemas.designs import Preview
 from app.designs.schemas.solution import DesignSolution
@@ -34,7 +34,7 @@ from app.reports.service import Reports
 from app.settings import Settings
 from app.solids.analyses import Analyses
 from app.solids.models import Models
-from app.solids.repair import Healing
+from app.solids.repair import ArtifactRepair
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.studies.service import Studies
@@ -59,21 +59,21 @@ class Services:
     threads: Threads
     evaluations: Questions[Question, Pieces]
     designs: Designs
-    labelling: Labelling
-    previews: Questions[Previewed, Preview]
-    decisions: Questions[decisions_of.Asked, Decision]
+    labelling: LabelService
+    previews: Questions[PreviewRequest, Preview]
+    decisions: Questions[decisions_of.DecisionQuestion, Decision]
     studies: Studies
     worksheets: Worksheets
     imports: Imports
-    solving: Questions[Asked, DesignSolution]
-    tolerances: Questions[Asked, ToleranceAnalysis]
+    solving: Questions[DesignQuestion, DesignSolution]
+    tolerances: Questions[DesignQuestion, ToleranceAnalysis]
     variant_details: Questions[WantedVariant, VariantDetail]
-    impacts: Questions[survey.Asked, Impact]
+    impacts: Questions[survey.ImpactQuestion, Impact]
     models: Models
     model_imports: ModelImports
     analyses: Analyses
-    healing: Healing
-    approving: Approving
+    healing: ArtifactRepair
+    approving: ApprovalService
     comments: Comments
     reports: Reports
     press: Press

@@ -8,7 +8,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.approvals.errors import NotReady
-from app.approvals.schemas import Approval, Files, Present, Signed
+from app.approvals.schemas import Approval, Files, Present, SignedContent
 from app.designs.result_records import results_of
 from app.schemas.approval_steps import ORDER
 from app.solids import rows
@@ -90,6 +90,6 @@ def shown(row: ApprovalRow) -> Approval:
     )
 
 
-def hashed(content: Signed) -> str:
+def hashed(content: SignedContent) -> str:
     """Return the digest of what was signed."""
     return digest(content.plain())

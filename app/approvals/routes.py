@@ -9,7 +9,7 @@ from fastapi import APIRouter, Header, Path, Response
 from app.api.dependencies import TheApproving, TheComments, TheOnce
 from app.api.responses import written
 from app.approvals.comments import shown
-from app.approvals.schemas import ApprovalIn, Approvals, Comment, CommentIn, CommentList, Released
+from app.approvals.schemas import ApprovalIn, Approvals, Comment, CommentIn, CommentList, ReleasedRevision
 from app.designs.routes.designs import Id, Number
 from app.http.pages import Cursor, Limit, page
 from app.http.strict_requests import PreconditionRequired, StrictRoute
@@ -22,7 +22,7 @@ SEEN = "`to_sign` of the approvals that were read, in quotes"
 
 
 @router.get("/released", responses=refusals(404))
-def show_released(id: Id, approving: TheApproving) -> Released:
+def show_released(id: Id, approving: TheApproving) -> ReleasedRevision:
     """The newest released revision that is not withdrawn, and links to its report and files."""
     return approving.released(id)
 

@@ -46,7 +46,7 @@ Text = Annotated[
 ]
 
 
-class Signed(Answer):
+class SignedContent(Answer):
     """The signed content; `digest` of its step is the SHA-256 of this as canonical JSON.
 
     Canonical: names sorted, no blanks, letters beyond ASCII as they are, UTF-8; `reason` only where there is
@@ -75,7 +75,7 @@ class Approval(Answer):
     name: str = Field(description="of the principal at that time")
     at: str
     digest: str
-    content: Signed
+    content: SignedContent
 
 
 class Present(Answer):
@@ -101,7 +101,7 @@ class Approvals(Answer):
     superseded_by: int | None = Field(description="the newest released revision, if it is a later one")
 
 
-class Released(Answer):
+class ReleasedRevision(Answer):
     """The newest released revision of a design, and where its files are."""
 
     design: str

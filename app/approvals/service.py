@@ -7,7 +7,7 @@ from sqlalchemy.orm import Session
 from app.approvals.content import STEP, digest, present, require_files, shown, steps_taken, to_sign
 from app.approvals.errors import ApprovalError, NotReady, OtherDigest
 from app.approvals.rules import next_step, require_principal, require_turn, state_of
-from app.approvals.schemas import ApprovalIn, Approvals, Present, Released, Signed
+from app.approvals.schemas import ApprovalIn, Approvals, Present, ReleasedRevision, SignedContent
 from app.designs import repository
 from app.designs.releases import NEWEST_RELEASED, newest_released
 from app.identity.audit import record
@@ -21,7 +21,7 @@ from app.storage.idempotency import Once
 from app.storage.tables import ApprovalRow, RevisionRow
 
 
-class Approving:
+class ApprovalService:
     """Approvals of revisions."""
 
     def __init__(self, database: Database, store: Artifacts) -> None:
@@ -63,7 +63,7 @@ class Approving:
 
         return self.database.write(unit)
 
-    def released(self, id: str) -> Released:
+    def released(self, id: str) -> ReleasedRevision:
         """Return the newest released revision of a design.
 
         Raises
@@ -77,7 +77,7 @@ class Approving:
             release = next(one for one in steps_taken(session, row) if one.step == "released")
             now, place = present(session, row), f"/api/v1/designs/{id}/revisions/{row.number}"
         own = {name: kinds for name, kinds in now.files.items() if "." not in name}
-        return Released(
+        return ReleasedRevision(
             design=id,
             revision=row.number,
             title=row.document["name"],
@@ -108,7 +108,7 @@ def _take(session: Session, row: RevisionRow, body: ApprovalIn, expected: str) -
     previous = taken[-1].digest if taken else None
     if expected.strip() != f'"{(right := to_sign(row, held, previous))}"':
         raise OtherDigest(right)
-    signed = Signed(
+    signed = SignedContent(
         design=row.design_id,
         revision=row.number,
         title=row.document["name"],
@@ -125,7 +125,7 @@ def _take(session: Session, row: RevisionRow, body: ApprovalIn, expected: str) -
     _write(session, signed)
 
 
-def _write(session: Session, signed: Signed) -> None:
+def _write(session: Session, signed: SignedContent) -> None:
     content = signed.plain()
     session.add(
         ApprovalRow(

@@ -24,7 +24,7 @@ OIL_FILM: JsonObject = {
 }
 
 
-class Asked(Bounded):
+class CalculationRequest(Bounded):
     """Inputs and what is wanted of them."""
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
@@ -43,7 +43,7 @@ class Asked(Bounded):
     )
 
 
-class EvaluateIn(Asked):
+class EvaluateIn(CalculationRequest):
     """Evaluate a template."""
 
     per_point: bool = Field(
@@ -57,7 +57,7 @@ class EvaluateIn(Asked):
     limits: Limits = {}
 
 
-class SolveIn(Asked):
+class SolveIn(CalculationRequest):
     """Find the input that gives a wanted output."""
 
     model_config = ConfigDict(

@@ -24,12 +24,12 @@ USUAL = 256  # MiB, unless the settings say otherwise
 
 
 @dataclass(frozen=True)
-class _Sized:
+class _CacheEntry:
     value: object
     size: int  # bytes
 
 
-def _kept(megabytes: int) -> LRUCache[Hashable, _Sized]:
+def _kept(megabytes: int) -> LRUCache[Hashable, _CacheEntry]:
     return LRUCache(megabytes * 2**20, getsizeof=attrgetter("size"))
 
 
@@ -63,7 +63,7 @@ class Cache:
         with self._lock:
             self._kept.pop(key, None)
             if size <= self._kept.maxsize:
-                self._kept[key] = _Sized(value, size)
+                self._kept[key] = _CacheEntry(value, size)
 
     def limit(self, megabytes: int) -> None:
         """Begin again, empty, with another limit [MiB]."""

@@ -14,7 +14,7 @@ from pydantic import ValidationError
 from pydantic_core import from_json, to_json
 
 from app.calculations.array_files import MEDIA_TYPES, Form, npy
-from app.calculations.bodies import Asked, EvaluateIn, SolveIn
+from app.calculations.bodies import CalculationRequest, EvaluateIn, SolveIn
 from app.calculations.errors import InvalidBody
 from app.calculations.service import check_evaluate, check_solve, evaluated, run_evaluate, run_solve
 from app.calculations.worksheet import run_worksheet
@@ -28,7 +28,7 @@ from templates.core.language.template import Template
 class Operation:
     """An operation: the model of its body, the check that calculates nothing, the forms of its answer."""
 
-    body: type[Asked]
+    body: type[CalculationRequest]
     check: Callable[[type[Template], Any], None]  # takes an object of `body`
     write: Mapping[Form, Callable[[type[Template], Any, System], bytes]]
 
@@ -105,7 +105,7 @@ def checked(source: Source, question: Question) -> None:
     check(loaded(source), question)
 
 
-def _read(model: type[Asked], body: bytes) -> Asked:
+def _read(model: type[CalculationRequest], body: bytes) -> CalculationRequest:
     try:
         raw = from_json(body)
     except ValueError as error:

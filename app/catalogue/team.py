@@ -215,14 +215,14 @@ def joined(files: Snapshot, sheets: Sheets) -> Snapshot:
     return Snapshot(templates, files.models, tuple(settled), sheets)
 
 
-def with_models(files: Snapshot, brought: Mapping[Key, type[CadModel]]) -> Snapshot:
-    """Return the models of files, and those that a team has brought.
+def with_models(files: Snapshot, imported: Mapping[Key, type[CadModel]]) -> Snapshot:
+    """Return the models of files, and those that a team has imported.
 
     A file does not stand in for one of these.
     """
-    if not brought:
+    if not imported:
         return files
-    versions = dict(sorted({**files.models.versions, **brought}.items()))
+    versions = dict(sorted({**files.models.versions, **imported}.items()))
     return replace(files, models=replace(files.models, versions=versions))
 
 

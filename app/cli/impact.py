@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from app.cli.connections import connected, data_option, url_option
-from app.impact.schemas import DesignImpact, Impact, VerdictMoved
+from app.impact.schemas import CriterionChange, DesignImpact, Impact
 from app.presentation import numbers
 
 
@@ -65,7 +65,7 @@ def _print(impact: Impact) -> None:
         click.echo(f"{one.design}  {one.name}, revision {one.revision}: {_line(one)}")
 
 
-def _moved(verdict: VerdictMoved) -> str:
+def _moved(verdict: CriterionChange) -> str:
     """Return a criterion that is judged otherwise: `film.film of main_1 met → not met`."""
     variant = f" of {verdict.variant}" if verdict.variant else ""
     words = f"{verdict.old or 'none'} → {verdict.new or 'none'}".replace("_", " ")

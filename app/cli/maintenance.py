@@ -11,7 +11,7 @@ from typing import NoReturn
 import click
 
 from app.maintenance.backup import Contents, back_up
-from app.maintenance.check import Findings, check
+from app.maintenance.check import Faults, check
 from app.maintenance.errors import CannotRun
 from app.maintenance.files import IN_BUCKET, IN_SHARED_FOLDER, files_of
 from app.maintenance.folder import database_file, is_in_use
@@ -119,7 +119,7 @@ def _team_url(settings: Settings) -> str | None:
     return url if url and sqlite_file(url) is None else None
 
 
-def _check(settings: Settings, *, in_use: bool) -> Findings:
+def _check(settings: Settings, *, in_use: bool) -> Faults:
     files = files_of(settings)
     if url := _team_url(settings):
         from app.maintenance.team_check import check_shared  # PostgreSQL, which the other commands do without

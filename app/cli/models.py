@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from app.cli.connections import connected, data_option, url_option
-from app.imported_models.schemas import BroughtParameter
+from app.imported_models.schemas import ImportedParameter
 from templates.core.errors import plain
 
 
@@ -62,7 +62,7 @@ def original_command(id: str, version: int, folder: Path, url: str | None, data:
         raise click.ClickException(f"{folder.absolute()} cannot hold the file: {error.strerror}") from None
 
 
-def _line(one: BroughtParameter) -> str:
+def _line(one: ImportedParameter) -> str:
     read = f"read back as a {one.read_back}" if one.read_back else "not read back"
     return f"{one.name} = {one.value:g}{'' if one.unit == '1' else ' ' + one.unit}  ({one.source}; {read})"
 

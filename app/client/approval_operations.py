@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.approvals.schemas import Approvals, Comment, CommentList, Released
+from app.approvals.schemas import Approvals, Comment, CommentList, ReleasedRevision
 from app.client.design_operations import once
 from app.client.exchange import Exchange, answered, get, listed, post
 from app.schemas.approval_steps import Step
@@ -22,9 +22,9 @@ def approve(
     return answered(Approvals, post(path, body, {"If-Match": f'"{seen.to_sign}"', **once(key)}))
 
 
-def released(id: str) -> Exchange[Released]:
+def released(id: str) -> Exchange[ReleasedRevision]:
     """Return the newest released revision of a design, with links to its files."""
-    return answered(Released, get(f"/designs/{id}/released"))
+    return answered(ReleasedRevision, get(f"/designs/{id}/released"))
 
 
 def comments(id: str, revision: int) -> Exchange[list[Comment]]:

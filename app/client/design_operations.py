@@ -44,7 +44,7 @@ from app.designs.schemas.network import DesignNetwork
 from app.presentation.units import System
 
 
-class Wanted(TypedDict, total=False):
+class DesignFilter(TypedDict, total=False):
     """The filter of a list of designs."""
 
     name: str
@@ -54,7 +54,7 @@ class Wanted(TypedDict, total=False):
     archived: Literal["false", "true", "any"]
 
 
-def designs(**wanted: Unpack[Wanted]) -> Exchange[list[DesignSummary]]:
+def designs(**wanted: Unpack[DesignFilter]) -> Exchange[list[DesignSummary]]:
     """Return designs that are not archived, newest first; those that fit every filter given."""
     return listed(DesignList, "/designs", [*_filters(wanted)])
 
@@ -217,7 +217,7 @@ def saved(request: Request, on_progress: Progress | None) -> Exchange[Design]:
     return answer
 
 
-def _filters(wanted: Wanted) -> Iterator[tuple[str, str]]:
+def _filters(wanted: DesignFilter) -> Iterator[tuple[str, str]]:
     """Yield the filters as a query, in which a tag may stand several times."""
     for name, value in wanted.items():
         texts = [value] if isinstance(value, str) else value

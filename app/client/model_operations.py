@@ -14,7 +14,7 @@ _PATH = "/models"
 
 
 def drawing_programs() -> Exchange[list[DrawingProgram]]:
-    """Return the programs that draw brought models; of one that is missing how to install it."""
+    """Return the programs that draw imported models; of one that is missing how to install it."""
     return (yield from answered(DrawingPrograms, get(f"{_PATH}/import"))).items
 
 
@@ -40,7 +40,7 @@ def import_model(
 
 
 def model_version(id: str, version: int) -> Exchange[CadModel]:
-    """Return one version of a CAD model with its parameters, and its origin if it was brought."""
+    """Return one version of a CAD model with its parameters, and its origin if it was imported."""
     return answered(CadModel, get(f"{_PATH}/{id}/versions/{version}"))
 
 

@@ -17,7 +17,7 @@ from app.calculations.schemas.evaluations import Evaluation, Solution, Worksheet
 from app.catalogue.schemas.faults import FaultList, FaultyFile
 from app.catalogue.schemas.library import LibraryTable, LibraryTables, LibraryTableSummary
 from app.catalogue.schemas.templates import Template, TemplateList, TemplateSummary
-from app.client.design_operations import Wanted as Wanted
+from app.client.design_operations import DesignFilter as DesignFilter
 from app.client.design_operations import auto_map as auto_map
 from app.client.design_operations import change as change
 from app.client.design_operations import compare as compare

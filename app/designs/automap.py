@@ -17,7 +17,8 @@ from app.designs.network import Block, Graph
 from app.designs.schemas.designs import Proposal
 from app.reference import Reference
 from templates.core.language.spec import Choice, Curve, Profile, Table, Text
-from templates.core.units.units import compatible, unit
+from templates.core.units.conformity import misfit
+from templates.core.units.units import unit
 
 GENERAL = frozenset(
     "angle area bore clearance depth diameter face height inner length load mass number outer radius size "
@@ -39,7 +40,9 @@ def _proposal(graph: Graph, model: Block, name: str) -> Proposal | None:
     if name in model.cells or isinstance(declared, Choice):
         return None
     for called in (name, *declared.meaning.also):
-        fitting = [s for s in _named(graph, model, name, called) if _fits(graph, s, declared.meaning.unit)]
+        fitting = [
+            s for s in _named(graph, model, name, called) if _fits(graph, s, declared.meaning.accepted)
+        ]
         if fitting:
             chosen, *others = sorted(fitting, key=lambda source: not _is_namesake(source, model))
             relation = f"= {chosen}"
@@ -86,9 +89,9 @@ def _is_namesake(source: Reference, model: Block) -> bool:
 def _fits(graph: Graph, source: Reference, wanted: str) -> bool:
     """Return whether a source is of the kind that is wanted, and a single value."""
     if source.output is None:
-        return compatible(graph.kinds[source.block].base, unit(wanted).base)
+        return misfit(graph.kinds[source.block], unit(wanted), source.block) is None
     cls = graph.blocks[source.block].cls
     declared = cls.formulas.get(source.output) or cls.inputs[source.output]
     if isinstance(declared, NO_SINGLE_VALUE):
         return False
-    return compatible(unit(graph.unit_of(source)).base, unit(wanted).base)
+    return misfit(graph.kind_of(source), unit(wanted), str(source)) is None

@@ -15,7 +15,7 @@ from app.designs.engine.verdicts import Verdicts
 from app.designs.errors import DesignError
 from app.designs.graph import build_graph, raise_if, settled, starts
 from app.designs.questions import settled as settled_question
-from app.designs.schemas.decision import Decision, Tried
+from app.designs.schemas.decision import Decision, LevelTrial
 from app.plain import JsonObject, Raw
 from app.pool.questions import DECISION, Kind, Reply, json_answer, json_form
 from app.presentation.units import System
@@ -30,7 +30,7 @@ LONGEST_BUDGET = 600.0  # s
 
 
 @dataclass(frozen=True)
-class Asked:
+class DecisionQuestion:
     """The criteria of a design to decide (all, if None), and the time that may take [s].
 
     The answer has its quantities in `units`.
@@ -61,7 +61,9 @@ def read_budget(raw: Raw) -> float:
     return seconds
 
 
-def decided(asked: Asked, database: Database, catalogues: Catalogues) -> Reply[Asked, Decision]:
+def decided(
+    asked: DecisionQuestion, database: Database, catalogues: Catalogues
+) -> Reply[DecisionQuestion, Decision]:
     """Return the decision as far as its caller waits for it.
 
     Raises
@@ -81,7 +83,9 @@ def decided(asked: Asked, database: Database, catalogues: Catalogues) -> Reply[A
     return Reply(decision, None if is_whole else replace(asked, revision=number))
 
 
-def _calculated(asked: Asked, database: Database, catalogues: Catalogues) -> tuple[int, Calculation]:
+def _calculated(
+    asked: DecisionQuestion, database: Database, catalogues: Catalogues
+) -> tuple[int, Calculation]:
     """Return the revision, the newest if none is named, as it was calculated."""
     with database.read() as session:
         row = (
@@ -104,7 +108,7 @@ def _pending(calculation: Calculation) -> ClimbResult:
     return ClimbResult(judgements, (), (), (), "pending")
 
 
-def _shown(number: int, asked: Asked, decision: ClimbResult) -> Decision:
+def _shown(number: int, asked: DecisionQuestion, decision: ClimbResult) -> Decision:
     judged = {"criteria": [], **rendered(decision.criteria)}
     return Decision(
         revision=number,
@@ -119,18 +123,18 @@ def _shown(number: int, asked: Asked, decision: ClimbResult) -> Decision:
     ).in_units(asked.units)
 
 
-def _tried(trial: Trial) -> Tried:
+def _tried(trial: Trial) -> LevelTrial:
     tried: JsonObject = {"step": trial.step, "level": trial.level}
     if trial.reason is not None:
         tried["reason"] = trial.reason
     if trial.rows:
         tried |= {"rows": trial.rows, "seconds": trial.seconds, "decided": list(trial.decided)}
-    return Tried.model_validate(tried)
+    return LevelTrial.model_validate(tried)
 
 
 DECISIONS = Kind(
     DECISION,
-    json_form(Asked),
+    json_form(DecisionQuestion),
     json_answer(Decision),
     decided,
     failures=(DesignError,),

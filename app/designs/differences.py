@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from app.designs.schemas.comparison import Compared, ComparedValue, TextChange
+from app.designs.schemas.comparison import ComparedValue, TextChange, ValueDifference
 from app.plain import Json, JsonObject
 from app.schemas.answers import Quantity
 from templates.core.errors import FaultyText
@@ -21,7 +21,7 @@ PARTS = ("value", "unit", "reason", *KEYS)
 Numbers = NDArray[np.float64]
 
 
-def differing(old: Mapping[str, Json], new: Mapping[str, Json]) -> list[Compared]:
+def differing(old: Mapping[str, Json], new: Mapping[str, Json]) -> list[ValueDifference]:
     """Return every quantity that is not the same, in the order of the newer ones."""
     names = dict.fromkeys([*new, *old])
     pairs = ((name, old.get(name), new.get(name)) for name in names)
@@ -92,15 +92,15 @@ def _numbers(parts: JsonObject) -> Numbers | None:
         return None
 
 
-def _compared(name: str, old: Json, new: Json) -> Compared:
+def _compared(name: str, old: Json, new: Json) -> ValueDifference:
     one, other = _parts(old), _parts(new)
     sides: JsonObject = {"name": name, "old": _shown(one), "new": _shown(other)}
     before, after = _numbers(one), _numbers(other)
     if before is None or after is None or before.shape != after.shape or not _is_same_kind(one, other):
-        return Compared(**sides)
+        return ValueDifference(**sides)
     change, difference = _change(one, other, before, after), _difference(other, before, after)
     more = {"change": change, "difference": difference}
-    return Compared(**sides, **{key: value for key, value in more.items() if value is not None})
+    return ValueDifference(**sides, **{key: value for key, value in more.items() if value is not None})
 
 
 def _change(one: JsonObject, other: JsonObject, before: Numbers, after: Numbers) -> float | None:

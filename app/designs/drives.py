@@ -117,7 +117,7 @@ def _names(graph: Graph) -> Iterator[NetworkName]:
     """Yield every name that a relation may use."""
     for name, kind in graph.kinds.items():
         if name in graph.parameters:
-            yield _name(name, "parameter", "parameter of the design", f"{kind.base:~C}" or "1")
+            yield _name(name, "parameter", "parameter of the design", kind.unit)
     for block in graph.blocks.values():
         for tail, declared in block.cls.inputs.items():
             if not isinstance(declared, Choice):
@@ -148,4 +148,4 @@ def _words(measure: Reference) -> str:
 
 @lru_cache(maxsize=1024)
 def _dimension(unit_text: str) -> str:
-    return dimension_of(unit(unit_text).base)
+    return dimension_of(unit(unit_text))

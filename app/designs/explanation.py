@@ -8,7 +8,7 @@ from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import Verdicts
 from app.designs.schemas.designs import Explanation
-from app.designs.sensitivities import Asked, sensitivities
+from app.designs.sensitivities import SensitivityQuestion, sensitivities
 from app.presentation.units import System
 
 
@@ -26,6 +26,8 @@ def explained(
     """
     chain = Explanation.model_validate(explain_any(document, calculation, name))
     subject = Verdicts(calculation).subject(chain.name) if chain.kind == "criterion" else None
-    slopes = sensitivities(document, calculation, catalogues, Asked(chain.name, subject, system))
+    slopes = sensitivities(
+        document, calculation, catalogues, SensitivityQuestion(chain.name, subject, system)
+    )
     reason = {} if slopes.reason is None else {"reason": slopes.reason}
     return chain.in_units(system).model_copy(update={"sensitivities": list(slopes.items), **reason})

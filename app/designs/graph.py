@@ -38,10 +38,11 @@ from templates.core.judging.limits import GivenLimit, read_limits
 from templates.core.language.meaning import Meaning
 from templates.core.language.spec import Choice, Given, Input
 from templates.core.language.template import Template
-from templates.core.units.operations import Kind
+from templates.core.units.conformity import misfit, turns_remark
+from templates.core.units.nodes import Kind, kind_of
 from templates.core.units.quantity import Value, read, read_any
 from templates.core.units.relation import Relation, is_relation, parse
-from templates.core.units.units import compatible, unit
+from templates.core.units.units import unit
 
 T = TypeVar("T", bound=Template)
 
@@ -357,20 +358,16 @@ def checked_kinds(network: Network, cells: Iterable[Cell]) -> tuple[dict[str, Ki
 def _kind(network: Network, kinds: Mapping[str, Kind], cell: Cell) -> Kind:
     """Return the kind of a cell, if its relations fit what it sets."""
     if not cell.relations:
-        return Kind(unit(read_any(cell.raw).unit).base)
+        return kind_of(read_any(cell.raw).unit, cell.name)
     used = {
-        name: kinds[name] if name in network.parameters else _declared_kind(network, reference)
+        name: kinds[name] if name in network.parameters else network.kind_of(reference)
         for name, reference in cell.uses.items()
     }
     own = [relation.kind(used) for relation in cell.relations]
     if cell.declared is not None:
         for kind, relation in zip(own, cell.relations, strict=True):
             _check_target(cell, relation, kind)
-    return Kind(own[0].base)
-
-
-def _declared_kind(network: Network, reference: Reference) -> Kind:
-    return Kind(unit(network.unit_of(reference)).base)
+    return replace(own[0], literal=False, pi=0, twos=frozenset())
 
 
 def _check_target(cell: Cell, relation: Relation, kind: Kind) -> None:
@@ -379,16 +376,14 @@ def _check_target(cell: Cell, relation: Relation, kind: Kind) -> None:
     if isinstance(declared, Choice):
         message = f"{cell.name} is one of {', '.join(declared.options)}; no relation fits it"
         raise FaultyText("unit_mismatch", message)
-    want = declared.meaning.scale
-    if compatible(kind.base, want.base) and not (kind.absolute and want.difference):
-        return
-    given = f"{kind.base:~P}" or "a pure number"
-    hint = (
-        "; for a speed multiply by 1 rad" if "rad" in f"{want.base}" and "rad" not in f"{kind.base}" else ""
-    )
-    raise FaultyText(
-        "unit_mismatch", f"{relation.text} gives {given}, but {cell.name} is in {want.text}{hint}"
-    )
+    want = unit(declared.meaning.accepted)
+    text = relation.text.removeprefix("=").strip()
+    if mismatch := misfit(kind, want, text):
+        why, remedy = mismatch
+        hint = f"; {remedy}" if remedy else ""
+        raise FaultyText("unit_mismatch", f"{cell.name} is in {declared.meaning.unit}, but {why}{hint}")
+    if remark := turns_remark(kind, want, text):
+        raise FaultyText("unit_mismatch", f"{cell.name} is in {declared.meaning.unit}: {remark}")
 
 
 LONGEST_PLACE = 200  # characters of where in a document something is wrong

@@ -46,7 +46,7 @@ def clean(tag: str) -> str:
     return " ".join(filter(None, unicodedata.normalize("NFC", tag).split(" ")))
 
 
-class Labelling:
+class LabelService:
     """Changes of labels, which leave results as they are."""
 
     def __init__(self, database: Database) -> None:

@@ -33,7 +33,7 @@ from templates.core.judging.criterion import (
 from templates.core.judging.limits import GivenLimit
 from templates.core.language.spec import Choice, Declaration, Formula, Input, Table, Text
 from templates.core.language.template import Template
-from templates.core.units.operations import Kind
+from templates.core.units.nodes import Kind, kind_of
 from templates.core.units.quantity import read_any
 from templates.core.units.relation import Relation
 
@@ -211,6 +211,15 @@ class Network:
         declared = _declared(self.blocks[reference.block], reference)
         return declared.meaning.unit if declared else measured_unit(reference)
 
+    def accepted(self, reference: Reference) -> str:
+        """Return the unit by which it is known what may be typed for a name inside a block."""
+        declared = _declared(self.blocks[reference.block], reference)
+        return declared.meaning.accepted if declared else measured_unit(reference)
+
+    def kind_of(self, reference: Reference) -> Kind:
+        """Return the kind of a name inside a block, under that name."""
+        return kind_of(self.accepted(reference), str(reference))
+
 
 def limits_of(cls: type[Template]) -> dict[str, Limit]:
     """Return the limits that the criteria of a template take from its user."""
@@ -380,10 +389,11 @@ def _meaning(network: Network, kinds: Mapping[str, Kind], name: str, reference: 
     """Return the unit in which a value is shown, and its words."""
     if cell := network.parameters.get(name):
         typed = None if cell.relations else read_any(cell.raw).unit
-        return Described(typed or f"{kinds[name].base:~C}" or "1", name.replace("_", " "))
+        return Described(typed or kinds[name].unit, name.replace("_", " "), kinds[name])
     block = network.blocks[reference.block]
     declared = block.cls.inputs.get(reference.member) or block.cls.formulas.get(reference.member)
-    return Described(network.unit_of(reference), declared.meaning.words if declared else name)
+    words = declared.meaning.words if declared else name
+    return Described(network.unit_of(reference), words, network.kind_of(reference))
 
 
 def fault_of(name: str, error: FaultyText) -> Fault:

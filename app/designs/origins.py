@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from app.designs.analyses import is_table
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.needs import Needs, is_member, needs
-from app.designs.engine.row_design import Wanted
+from app.designs.engine.row_design import Targets
 from app.designs.network import Block, Cell, Graph
 from app.reference import Reference
 from templates.core.errors import FaultyText
@@ -49,7 +49,7 @@ def _is_single(calculation: Calculation, cell: Cell) -> bool:
     return column is not None and isinstance(column.value, float)
 
 
-def through_solids(graph: Graph, wanted: Wanted) -> Mapping[Reference, Block]:
+def through_solids(graph: Graph, wanted: Targets) -> Mapping[Reference, Block]:
     """Return the cells that act on values through a solid, each with the model of one such solid.
 
     A step counts as a whole, as it is calculated: all its inputs are needed.
@@ -66,7 +66,7 @@ def through_solids(graph: Graph, wanted: Wanted) -> Mapping[Reference, Block]:
     return cells
 
 
-def measures_behind(calculation: Calculation, wanted: Wanted) -> dict[Reference, float]:
+def measures_behind(calculation: Calculation, wanted: Targets) -> dict[Reference, float]:
     """Return the measures of solids [SI] that values follow from, as far as they are known; no tables."""
     measures: dict[Reference, float] = {}
     for reference in _needs(calculation.graph, wanted).waiting:
@@ -79,5 +79,5 @@ def measures_behind(calculation: Calculation, wanted: Wanted) -> dict[Reference,
     return measures
 
 
-def _needs(graph: Graph, wanted: Wanted) -> Needs:
+def _needs(graph: Graph, wanted: Targets) -> Needs:
     return needs(graph, wanted.references, (), wanted.inside)

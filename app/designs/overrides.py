@@ -59,9 +59,9 @@ def _misfit(graph: Graph, name: str, raw: Raw) -> Iterator[Fault]:
         return
     try:
         if declared is not None:
-            read(raw, declared.meaning.unit)
+            read(raw, declared.meaning.accepted)
         else:
             cell = graph.parameters[name]
-            read(raw, f"{graph.kinds[name].base:~C}" or "1" if cell.relations else read_any(cell.raw).unit)
+            read(raw, graph.kinds[name].unit if cell.relations else read_any(cell.raw).unit)
     except FaultyText as error:
         yield error.fault(name)

@@ -95,9 +95,9 @@ class Explainer:
     def _value(self, reference: Reference) -> JsonObject | None:
         """Return the value with its unit; null while it waits for a solid or is not set."""
         if reference.output is None:
-            kind = f"{self.graph.kinds[reference.block].base:~C}" or "1"
+            kind = self.graph.kinds[reference.block].unit
             column = self.calculation.values.get(reference.block)
-            return None if column is None else {"value": np.asarray(column.value).tolist(), "unit": kind}
+            return None if column is None else shown(column.value, kind)
         try:
             si = self.calculation.value(reference)
         except (KeyError, AttributeError, FaultyText):

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from app.calculations.json_values import rendered
 from app.calculations.schemas.evaluations import Output
 from app.catalogue.catalogues import Catalogues
@@ -17,6 +15,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.errors import DesignError
 from app.designs.graph import build_graph, raise_if, read_document, resolved, starts
+from app.designs.parameter_explanation import shown
 from app.designs.results import Outcome
 from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, Status
 from app.designs.variants.checks import checked
@@ -38,7 +37,7 @@ from templates.core.judging.judgement import Judgement
 
 
 @dataclass(frozen=True)
-class Previewed:
+class PreviewRequest:
     """A change that is to be previewed, and how.
 
     The patch is one of the newest revision, if none is named. With `worksheet`, the answer has every step as
@@ -52,7 +51,9 @@ class Previewed:
     revision: int | None = None
 
 
-def preview(asked: Previewed, database: Database, catalogues: Catalogues) -> Reply[Previewed, Preview]:
+def preview(
+    asked: PreviewRequest, database: Database, catalogues: Catalogues
+) -> Reply[PreviewRequest, Preview]:
     """Return old and new values for a patch of a design; nothing is saved or built.
 
     The answer is incomplete where something depends on deferred steps.
@@ -165,12 +166,7 @@ def _warnings(steps: Mapping[str, RevisionStep]) -> list[Warning]:
 def _values(new: Calculation) -> dict[str, Shown]:
     """Return the values of the design's parameters in SI, without those that wait for a solid."""
     names = (name for name in new.graph.parameters if name in new.values)
-    return {
-        name: Shown(
-            value=np.asarray(new.values[name].value).tolist(), unit=f"{new.graph.kinds[name].base:~C}" or "1"
-        )
-        for name in names
-    }
+    return {name: Shown(**shown(new.values[name].value, new.graph.kinds[name].unit)) for name in names}
 
 
 def _model_parameters(
@@ -211,7 +207,7 @@ def _status(
 
 PREVIEWS = Kind(
     PREVIEW,
-    json_form(Previewed),
+    json_form(PreviewRequest),
     json_answer(Preview),
     preview,
     failures=(DesignError,),

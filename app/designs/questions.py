@@ -27,7 +27,7 @@ T = TypeVar("T", bound=Template)
 
 
 @dataclass(frozen=True)
-class Asked:
+class DesignQuestion:
     """A question about a design: the body of its request as JSON text, and the units of its answer.
 
     `revision` is the newest, if it is None.
@@ -39,13 +39,17 @@ class Asked:
     units: System = "si"
 
 
-def in_a_process(name: str, answer: type[A], answered: Callable[[DesignTask, int, str], A]) -> Kind[Asked, A]:
+def in_a_process(
+    name: str, answer: type[A], answered: Callable[[DesignTask, int, str], A]
+) -> Kind[DesignQuestion, A]:
     """Return a kind of questions that are calculated in the pool as a whole.
 
     `answered` answers a body [JSON text] about a revision of a design, by its number and in SI units.
     """
 
-    def calculate(asked: Asked, database: Database, catalogues: Catalogues) -> Reply[Asked, A]:
+    def calculate(
+        asked: DesignQuestion, database: Database, catalogues: Catalogues
+    ) -> Reply[DesignQuestion, A]:
         with database.read() as session:
             number = asked.revision or repository.head(session, asked.design).number
             document = repository.document(session, asked.design, number)
@@ -57,7 +61,12 @@ def in_a_process(name: str, answer: type[A], answered: Callable[[DesignTask, int
         return Reply(whole.in_units(asked.units))
 
     return Kind(
-        name, json_form(Asked), json_answer(answer), calculate, failures=(DesignError,), settle=settled
+        name,
+        json_form(DesignQuestion),
+        json_answer(answer),
+        calculate,
+        failures=(DesignError,),
+        settle=settled,
     )
 
 

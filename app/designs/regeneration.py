@@ -17,14 +17,14 @@ from app.designs.graph import Graph, build_graph, raise_if, starts
 from app.designs.results import Outcome
 from app.designs.service import REGENERATE, CalculationCache, Prepared
 from app.designs.variants.checks import row_faults
-from app.designs.variants.solids import Describe, Settling, plain_problem
+from app.designs.variants.solids import Describe, VariantSolids, plain_problem
 from app.designs.variants.together import Available, together
 from app.jobs.service import Completion, Job, JobContext, JobFailed
 from app.plain import Json, JsonObject
 from app.pool.pool import Lane
 from app.pool.steps import Steps, calling
 from app.reference import Reference
-from app.solids.analysis_process import Analysing
+from app.solids.analysis_process import AnalysisRunner
 from app.solids.analysis_rows import analysed
 from app.solids.builds import Builds, failures_named
 from app.solids.rows import built
@@ -49,7 +49,7 @@ class Regeneration:
         self,
         database: Database,
         builds: Builds,
-        analysing: Analysing,
+        analysing: AnalysisRunner,
         catalogues: Catalogues,
         steps: Steps | None = None,
         calculation_cache: CalculationCache | None = None,
@@ -140,7 +140,7 @@ class Regeneration:
             return []
         raise_if(row_faults(base))
         available = Available(self.catalogues, *self._solids)
-        settling = Settling(self.builds, self._settle, self.describe, context)
+        settling = VariantSolids(self.builds, self._settle, self.describe, context)
         return settling.settled(together(document, available))
 
     def _settle(self, prepared: Prepared, context: JobContext) -> Calculation:

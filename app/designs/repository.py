@@ -35,7 +35,7 @@ _LEAN_REVISION = (
 
 
 @dataclass(frozen=True)
-class Written:
+class StoredRevision:
     """The content of a new revision."""
 
     document: JsonObject
@@ -208,7 +208,7 @@ def revisions(session: Session, id: str, limit: int, before: int | None) -> list
     return list(session.scalars(query.limit(limit + 1)))
 
 
-def create(session: Session, name: str, written: Written, at: str | None = None) -> tuple[str, int]:
+def create(session: Session, name: str, written: StoredRevision, at: str | None = None) -> tuple[str, int]:
     """Return a new design with its first revision, `at` the time given or now.
 
     Its id and the revision's number.
@@ -218,7 +218,7 @@ def create(session: Session, name: str, written: Written, at: str | None = None)
     return id, append(session, id, 0, written, created)
 
 
-def append(session: Session, id: str, base: int, written: Written, at: str | None = None) -> int:
+def append(session: Session, id: str, base: int, written: StoredRevision, at: str | None = None) -> int:
     """Return a new revision of a design whose newest one is `base`, `at` the time given or now; its number.
 
     The row of the design decides: of several servers that append to the same revision, one succeeds.

@@ -19,7 +19,7 @@ from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.net import Net, Table
 from app.designs.engine.relations import MOST_OPERATIONS
-from app.designs.engine.row_design import MOST_VALUES, Wanted
+from app.designs.engine.row_design import MOST_VALUES, Targets
 from app.designs.network import Subject
 from app.designs.origins import literals_behind, measures_behind, through_solids
 from app.designs.schemas.designs import Sensitivity
@@ -38,7 +38,7 @@ STEP = 1e-4  # of the value of a place, or of its unit where it is 0
 
 
 @dataclass(frozen=True)
-class Asked:
+class SensitivityQuestion:
     """The subject of the question: a value by its name, or the comparison of a criterion by its name.
 
     Slopes are those between units of `system`.
@@ -59,9 +59,9 @@ class Asked:
         return [self.name] if self.subject else []
 
     @property
-    def wanted(self) -> Wanted:
+    def wanted(self) -> Targets:
         """Return all values that are needed."""
-        return Wanted.of(self.values, [self.subject] if self.subject else [])
+        return Targets.of(self.values, [self.subject] if self.subject else [])
 
     def unit(self, net: Net) -> str:
         """Return the unit in which the value is shown."""
@@ -84,7 +84,7 @@ class Sensitivities:
 
 
 def sensitivities(
-    document: Document, calculation: Calculation, catalogues: Catalogues, asked: Asked
+    document: Document, calculation: Calculation, catalogues: Catalogues, asked: SensitivityQuestion
 ) -> Sensitivities:
     """Return the sensitivities of a value to the single quantities, as typed, that it follows from."""
     wanted = asked.wanted
@@ -96,7 +96,7 @@ def sensitivities(
         _of_solid(cell.name, solids[cell.reference].name) for cell in behind if cell.reference in solids
     ]
     try:
-        surroundings = Surroundings(document, calculation, catalogues, asked, places[:MOST_VARIED])
+        surroundings = DifferenceRows(document, calculation, catalogues, asked, places[:MOST_VARIED])
         items = sorted(surroundings.items(), key=_rank) if places else []
     except InvalidInputs as error:
         return Sensitivities(through[:MOST_SHOWN], error.faults[0].detail)
@@ -126,13 +126,13 @@ def _left_out(places: int, through: int, shown: int) -> str | None:
 
 
 @dataclass(frozen=True)
-class Surroundings:
+class DifferenceRows:
     """The rows around one design, and what comes out of them."""
 
     document: Document
     calculation: Calculation
     catalogues: Catalogues
-    asked: Asked
+    asked: SensitivityQuestion
     places: Sequence[Reference]
 
     def items(self) -> Iterator[Sensitivity]:

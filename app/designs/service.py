@@ -20,7 +20,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.errors import StaleRevision
 from app.designs.explanation import explained
 from app.designs.graph import Graph, build_graph, raise_if, read_document, resolved, starts
-from app.designs.repository import Written, note_revision
+from app.designs.repository import StoredRevision, note_revision
 from app.designs.results import ModelState, Outcome
 from app.designs.schemas.designs import Design, Explanation, Proposal
 from app.designs.schemas.network import DesignNetwork
@@ -83,7 +83,7 @@ with steps for which the save did not wait."""
 
 
 @dataclass(frozen=True)
-class Saved:
+class SaveResult:
     """The result of a change: a revision, and the job that regenerates it if it needs one."""
 
     design: str
@@ -104,7 +104,7 @@ class Saved:
 class Draft:
     """A revision to be written, and the job that completes it, should one have to."""
 
-    written: Written
+    written: StoredRevision
     kind: str
     is_deferred: bool
     begun: PendingCalculations | None  # what the job takes over
@@ -161,7 +161,7 @@ class Designs:
 
     def create(
         self, raw: Mapping[str, Raw], note: str | None, once: Once, action: str = "design.create"
-    ) -> Saved:
+    ) -> SaveResult:
         """Return a new design.
 
         Raises
@@ -173,7 +173,7 @@ class Designs:
             return saved_before
         draft = self.draft(raw, note, action)
 
-        def unit(session: Session) -> Saved:
+        def unit(session: Session) -> SaveResult:
             if before := once.begin(session):
                 return _saved_before(before)
             certain = _with_builds(session, draft)
@@ -185,7 +185,7 @@ class Designs:
 
     def change(
         self, id: str, patch: Mapping[str, Raw], note: str | None, expected: str | None, once: Once
-    ) -> Saved:
+    ) -> SaveResult:
         """Return a new revision with a merge patch applied; a patch that changes nothing makes none.
 
         A new name alone keeps all results: nothing is calculated.
@@ -206,7 +206,7 @@ class Designs:
         _require_match(expected, base)
         return self._append(id, base, merge(document, patch), note, once, "design.change", created)
 
-    def restore(self, id: str, number: int, note: str | None, expected: str | None, once: Once) -> Saved:
+    def restore(self, id: str, number: int, note: str | None, expected: str | None, once: Once) -> SaveResult:
         """Return a new revision equal to an old one."""
         with self.database.read() as session:
             if before := once.find(session):
@@ -217,7 +217,7 @@ class Designs:
         words = note or f"as revision {number}"
         return self._append(id, design.head, document, words, once, "design.restore", design.created)
 
-    def copy(self, id: str, name: str | None, once: Once) -> Saved:
+    def copy(self, id: str, name: str | None, once: Once) -> SaveResult:
         """Return a new design with the newest document of another."""
         with self.database.read() as session:
             number, document, *_ = repository.newest(session, id)
@@ -236,7 +236,7 @@ class Designs:
 
     def auto_map(
         self, id: str, apply: bool, expected: str | None, once: Once
-    ) -> tuple[list[Proposal], Saved | None]:
+    ) -> tuple[list[Proposal], SaveResult | None]:
         """Return proposals for unset model parameters, and the revision with them if they are applied."""
         repeated = self._repeated(once) if apply else None
         with self.database.read() as session:
@@ -274,15 +274,15 @@ class Designs:
         once: Once,
         action: str,
         created: str,
-    ) -> Saved:
+    ) -> SaveResult:
         draft = self.draft(raw, note, action)
 
-        def unit(session: Session) -> Saved:
+        def unit(session: Session) -> SaveResult:
             if before := once.begin(session):
                 return _saved_before(before)
             if repository.document(session, id, base) == draft.written.document:
                 _require_match(f'"{base}"', repository.design(session, id).head)
-                unchanged = Saved(id, base, None, created=False, fresh=False)
+                unchanged = SaveResult(id, base, None, created=False, fresh=False)
                 unchanged.keep(session, once)
                 return unchanged
             certain, at = _with_builds(session, draft), now()
@@ -293,13 +293,13 @@ class Designs:
 
     def _renamed(
         self, id: str, patch: Mapping[str, Raw], note: str | None, expected: str | None, once: Once
-    ) -> Saved | None:
+    ) -> SaveResult | None:
         """Return a revision with another name and the same results; None where the usual way has to do it.
 
         That is so if the design has no results yet, has this name, or the request was carried out before.
         """
 
-        def unit(session: Session) -> Saved:
+        def unit(session: Session) -> SaveResult:
             if once.begin(session):
                 raise _UsualWay
             number = repository.locked(session, id).head
@@ -310,7 +310,7 @@ class Designs:
             _require_match(expected, number)
             named = {**head.document, "name": read_document(document).name}
             appended = repository.append(session, id, number, _carried(head, named, note))
-            saved = Saved(id, appended, None, created=False)
+            saved = SaveResult(id, appended, None, created=False)
             note_revision(session, self.jobs.events, id, appended, head.state)
             saved.keep(session, once)
             return saved
@@ -341,7 +341,7 @@ class Designs:
         )
         if pending and not calculation.deferred:
             self.calculation_cache.keep(plain, Prepared(document, calculation))
-        written = Written(plain, stored, results.models(calculation, outcomes), state, note, action)
+        written = StoredRevision(plain, stored, results.models(calculation, outcomes), state, note, action)
         return Draft(written, _kind(calculation.graph, is_deferred), is_deferred, begun_steps())
 
     def _variants(self, document: Document, base: Calculation) -> list[Outcome]:
@@ -374,7 +374,7 @@ class Designs:
 
     def _enqueued(
         self, session: Session, design: str, revision: int, draft: Draft, once: Once, *, created: str, at: str
-    ) -> Saved:
+    ) -> SaveResult:
         """Return the job of a revision, if it needs one, and the record of the request.
 
         In one transaction.
@@ -388,12 +388,12 @@ class Designs:
                 draft.begun.leave_to(job)
         else:
             answer = views.current(design, revision, written.document, created, at)
-        saved = Saved(design, revision, job, created=revision == 1, answer=answer)
+        saved = SaveResult(design, revision, job, created=revision == 1, answer=answer)
         note_revision(session, self.jobs.events, design, revision, written.state)
         saved.keep(session, once)
         return saved
 
-    def _saved(self, unit: Unit[Saved], draft: Draft) -> Saved:
+    def _saved(self, unit: Unit[SaveResult], draft: Draft) -> SaveResult:
         saved = self.database.write(unit)
         if saved.fresh:
             saved = replace(saved, is_deferred=draft.is_deferred)
@@ -401,7 +401,7 @@ class Designs:
             self.jobs.wake(draft.kind)
         return saved
 
-    def _repeated(self, once: Once) -> Saved | None:
+    def _repeated(self, once: Once) -> SaveResult | None:
         if not once.key:
             return None
         with self.database.read() as session:
@@ -427,22 +427,22 @@ def _kind(graph: Graph, is_deferred: bool) -> str:
     return CALCULATE if is_deferred else REGENERATE
 
 
-def _saved_before(location: JsonObject) -> Saved:
-    return Saved(**{**location, "fresh": False})
+def _saved_before(location: JsonObject) -> SaveResult:
+    return SaveResult(**{**location, "fresh": False})
 
 
 class _UsualWay(Exception):
     """A patch of a name that calculates, or changes nothing, or has been carried out before."""
 
 
-def _carried(head: RevisionRow, document: JsonObject, note: str | None) -> Written:
+def _carried(head: RevisionRow, document: JsonObject, note: str | None) -> StoredRevision:
     """Return the content of a revision under another name."""
     models = [
         ModelState(m.name, m.model, m.model_version, m.parameters, m.relations, (), m.build_key)
         for m in (*head.models, *head.variant_models)
     ]
     words = note or f"renamed from {head.document['name']}"
-    return Written(document, head.results, models, head.state, words, "design.rename")
+    return StoredRevision(document, head.results, models, head.state, words, "design.rename")
 
 
 def _require_match(expected: str | None, head: int) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated
 
 import numpy as np
@@ -16,7 +17,7 @@ from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph, starts
 from app.designs.overrides import changed
 from app.designs.schemas.solution import DesignRoot, DesignSolution, Target
-from app.designs.solution_search import DesignRoots, Wanted, roots_of_design
+from app.designs.solution_search import DesignRoots, RootQuestion, roots_of_design
 from app.designs.tasks import DesignTask
 from app.designs.variants.table import applied
 from app.reference import Reference
@@ -27,7 +28,7 @@ from app.schemas.values import Given
 from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.language.confirming import Root
 from templates.core.language.roots import Jump as FoundJump
-from templates.core.units.quantity import read
+from templates.core.units.quantity import Typed, read, read_beside
 
 _NAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63}){0,2}$"
 Named = Annotated[str, StringConstraints(pattern=_NAME)]
@@ -91,19 +92,19 @@ def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
     [(name, raw)] = question.target.items()
     target = Reference.parse(name)
     net = Net.of(document, catalogues, [unknown], wanted=[target], pending=True)
-    low, high = (_single(end, net.unit(unknown), "between") for end in question.between)
+    low, high = (_single(read, end, net.accepted(unknown), "between") for end in question.between)
     if low >= high:
         detail = "the first bound must be below the second"
         raise InvalidInputs([Fault("between", "not_ascending", detail)])
-    value = _single(raw, net.unit(target), f"target.{name}")
-    solution = roots_of_design(net, Wanted(unknown, (low, high), target, value, question.tolerance))
-    return _Written(solution, document, catalogues).answer(revision)
+    value = _single(read_beside, raw, net.accepted(target), f"target.{name}")
+    solution = roots_of_design(net, RootQuestion(unknown, (low, high), target, value, question.tolerance))
+    return _SolutionText(solution, document, catalogues).answer(revision)
 
 
-def _single(raw: object, unit: str, name: str) -> float:
+def _single(read_as: Callable[[object, str], Typed], raw: object, unit: str, name: str) -> float:
     """Return one value [SI] as typed."""
     try:
-        value = read(raw, unit).si
+        value = read_as(raw, unit).si
     except FaultyText as error:
         raise InvalidInputs([error.fault(name)]) from None
     if np.ndim(value):
@@ -111,7 +112,7 @@ def _single(raw: object, unit: str, name: str) -> float:
     return float(value)
 
 
-class _Written:
+class _SolutionText:
     """The roots of a design, as the interface writes them."""
 
     def __init__(self, solution: DesignRoots, document: Document, catalogues: Catalogues) -> None:

@@ -26,7 +26,7 @@ PROBED = 33  # rows by which levels are chosen
 
 
 @dataclass(frozen=True)
-class Wanted:
+class RootQuestion:
     """A value of `target` [SI], by varying `unknown` between two bounds [SI].
 
     `tolerance` is the relative error at which solutions are confirmed; None: that of the design.
@@ -100,7 +100,7 @@ class DesignRoots:
     requested: DesignCurve
 
 
-def roots_of_design(net: Net, wanted: Wanted) -> DesignRoots:
+def roots_of_design(net: Net, wanted: RootQuestion) -> DesignRoots:
     """Return every value of the unknown that gives the target.
 
     Raises
@@ -117,7 +117,7 @@ def roots_of_design(net: Net, wanted: Wanted) -> DesignRoots:
     return DesignRoots(roots_of(requested, scanned, wanted.between), scanned, requested)
 
 
-def _levels(net: Net, wanted: Wanted) -> tuple[dict[str, str | None], dict[str, str | None]]:
+def _levels(net: Net, wanted: RootQuestion) -> tuple[dict[str, str | None], dict[str, str | None]]:
     """Return the levels of the curve, and those of its solutions.
 
     None of the first is finer than the second.

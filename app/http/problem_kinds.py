@@ -107,7 +107,7 @@ TABLE: dict[type[Exception], Kind] = {
     worksheets.TestsFailed: Kind(
         "tests-failed", 409, "The worksheet is not sound", "correct each of `errors`"
     ),
-    worksheets.Unresolved: Kind(
+    worksheets.UnresolvedRegions: Kind(
         "unresolved-import", 409, "Regions of the import are unresolved", "rewrite or remove each of `errors`"
     ),
     worksheets.OutOfOrder: Kind(

@@ -116,7 +116,7 @@ _CARRIED: dict[type[Exception], Callable[..., dict[str, object]]] = {
     },
     designs.NotConverged: lambda error: {"rounds": error.rounds},
     worksheets.TestsFailed: _untested,
-    worksheets.Unresolved: lambda error: {
+    worksheets.UnresolvedRegions: lambda error: {
         "errors": [{"name": "text", "code": "unresolved", "detail": text} for text in error.reasons]
     },
     RowsLost: lambda error: {"job": f"/api/v1/jobs/{error.job}"},

@@ -25,7 +25,7 @@ in_flight: dict[int, tuple[str, str, str, float]] = {}
 metrics.IN_FLIGHT.set_function(lambda: len(in_flight))
 
 
-class Observed:
+class RequestLog:
     """ASGI middleware; the outermost, so that refusals are seen as well."""
 
     def __init__(self, app: ASGIApp) -> None:
@@ -77,7 +77,7 @@ def what_is_in_flight() -> list[str]:
 def install(app: FastAPI) -> None:
     """Put this around all of an app, its answer to an unexpected error included."""
     build = app.build_middleware_stack  # `add_middleware` would leave Starlette's handler of those outside
-    app.build_middleware_stack = lambda: Observed(build())  # type: ignore[method-assign]
+    app.build_middleware_stack = lambda: RequestLog(build())  # type: ignore[method-assign]
 
 
 def route_of(scope: Scope) -> str:

@@ -15,7 +15,7 @@ from app.observation.traces import Traces
 _TRACEPARENT = re.compile(rb"[0-9a-f]{2}-[0-9a-f]{32}-[0-9a-f]{16}-[0-9a-f]{2}")
 
 
-class Traced:
+class RequestSpans:
     """ASGI middleware: a span with route, method, status and the id of the request, and nothing of its query.
 
     It continues the trace of the caller: a proxy's `traceparent`, or that of the page for which the service
@@ -55,7 +55,7 @@ class Traced:
 def install(app: FastAPI, traces: Traces) -> None:
     """Put this around all of an app; what observes it comes outside."""
     build = app.build_middleware_stack
-    app.build_middleware_stack = lambda: Traced(build(), traces)  # type: ignore[method-assign]
+    app.build_middleware_stack = lambda: RequestSpans(build(), traces)  # type: ignore[method-assign]
 
 
 def _of_caller(scope: Scope) -> str:

@@ -32,7 +32,7 @@ from starlette.types import Receive, Scope, Send
 from app.http import problems
 from app.http.connections import ConnectionLimits, protocol
 from app.http.problem_kinds import CROWDED
-from app.http.request_log import Observed, what_is_in_flight
+from app.http.request_log import RequestLog, what_is_in_flight
 from app.observation import logs
 from app.settings import Settings
 from app.workers import family
@@ -56,7 +56,7 @@ def configuration(app: FastAPI, settings: Settings, port: int | None = None) -> 
         app,
         host=settings.host,
         port=settings.port if port is None else port,
-        http=protocol(limits, Observed(_busy)),
+        http=protocol(limits, RequestLog(_busy)),
         ws="none",
         timeout_keep_alive=settings.keep_alive_seconds,
         timeout_graceful_shutdown=settings.drain_seconds - settings.stop_seconds,  # type: ignore[arg-type]  # waits parts of seconds too

@@ -56,7 +56,7 @@ START = Link(0, None)
 
 
 @dataclass(frozen=True)
-class Verified:
+class ChainCheck:
     """The result of a walk along the chain."""
 
     head: Link  # the last sound row
@@ -93,7 +93,7 @@ def head(session: Session) -> Link:
     return Link(seq, hash if isinstance(hash, str) else None)
 
 
-def verify(session: Session, exported: str | None = None) -> Verified:
+def verify(session: Session, exported: str | None = None) -> ChainCheck:
     """Walk along the chain to its first broken row, or to its end.
 
     Parameters
@@ -109,15 +109,15 @@ def verify(session: Session, exported: str | None = None) -> Verified:
     try:
         for row in _sealed(session):
             if fault := _fault(row, last):
-                return Verified(last, unsealed, fault)
+                return ChainCheck(last, unsealed, fault)
             last = Link(last.seq + 1, row.hash)
             met = met or row.hash == exported
     except _DAMAGED:
-        return Verified(last, unsealed, f"row {last.seq + 1} was changed: it holds what is not text")
+        return ChainCheck(last, unsealed, f"row {last.seq + 1} was changed: it holds what is not text")
     if len(waiting(session)) < min(unsealed, SOME):
-        return Verified(last, unsealed, f"a row behind row {last.seq}, not sealed, holds what is not text")
+        return ChainCheck(last, unsealed, f"a row behind row {last.seq}, not sealed, holds what is not text")
     cut = f"no row has the hash {exported}: rows were cut off at the end, or all of them written again"
-    return Verified(last, unsealed, "" if met else cut)
+    return ChainCheck(last, unsealed, "" if met else cut)
 
 
 def _sealed(session: Session) -> Iterator[AuditRow]:

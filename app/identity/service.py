@@ -24,7 +24,7 @@ from app.identity.errors import (
 from app.identity.keys import NewKey, digest, new_key
 from app.identity.limits import Limits, limits_of
 from app.identity.principal import BUILT_IN, ROLES, Principal, Role, acting
-from app.identity.usage import Used
+from app.identity.usage import PrincipalUsage
 from app.settings import Settings
 from app.storage.clock import as_text, new_id, now
 from app.storage.database import Database
@@ -175,7 +175,7 @@ class Identity:
             rows.find(session, principal)
             return rows.keys_of(session, principal)
 
-    def usage(self, principal: str) -> tuple[Used, Limits | None]:
+    def usage(self, principal: str) -> tuple[PrincipalUsage, Limits | None]:
         """Return the usage and limits of a principal, for itself or an administrator.
 
         Raises

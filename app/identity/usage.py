@@ -28,7 +28,7 @@ _RAISE = text(
 
 
 @dataclass(frozen=True)
-class Used:
+class PrincipalUsage:
     """The usage of a principal: calculation today (UTC), stored bytes, and waiting jobs."""
 
     requests: int
@@ -61,15 +61,15 @@ def note_bytes(session: Session, size: int) -> None:
         note(session, principal, bytes=size)
 
 
-def used(session: Session, principal: str) -> Used:
+def used(session: Session, principal: str) -> PrincipalUsage:
     """Return the usage of a principal."""
     row = session.get(UsageRow, (principal, today()), populate_existing=True)
     total = select(StorageRow.bytes).where(StorageRow.principal_id == principal)
     waiting = select(func.count()).where(JobRow.client == client_of(principal), JobRow.state == "queued")
     stored, queued = session.scalar(total) or 0, session.scalar(waiting) or 0
     if row is None:
-        return Used(0, 0, 0.0, stored, queued)
-    return Used(row.requests, row.jobs, row.seconds, stored, queued)
+        return PrincipalUsage(0, 0, 0.0, stored, queued)
+    return PrincipalUsage(row.requests, row.jobs, row.seconds, stored, queued)
 
 
 def own_limits(session: Session, settings: Settings) -> Limits | None:
@@ -94,7 +94,7 @@ def admit(session: Session, limits: Limits) -> None:
     note(session, who.id, jobs=1)
 
 
-def check(limits: Limits, used: Used, name: str) -> None:
+def check(limits: Limits, used: PrincipalUsage, name: str) -> None:
     """Refuse whoever has used all.
 
     Raises

@@ -6,7 +6,7 @@ from app.identity import usage
 from app.identity.limits import Limits
 from app.identity.principal import ROLES, Principal
 from app.identity.schemas import principals as schemas
-from app.identity.usage import Used
+from app.identity.usage import PrincipalUsage
 from app.storage.tables import ApiKeyRow, PrincipalRow
 
 
@@ -28,7 +28,7 @@ def key(row: ApiKeyRow) -> schemas.Key:
     return schemas.Key.model_validate({name: getattr(row, name) for name in schemas.Key.model_fields})
 
 
-def used(amounts: Used, limits: Limits | None) -> schemas.Usage:
+def used(amounts: PrincipalUsage, limits: Limits | None) -> schemas.Usage:
     """Return the usage beside the limits."""
     return schemas.Usage(
         requests=amounts.requests,

@@ -9,11 +9,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.impact.outcome import Outcome, is_temperature
-from app.impact.schemas import MarginLost, OutputMoved, ParameterMoved, VerdictMoved
+from app.impact.schemas import CriterionChange, MarginLost, ModelParameterChange, OutputChange
 from app.reference import Reference
 from app.schemas.answers import Quantity
 from templates.core.arrays import Array
-from templates.core.units.units import Value, compatible, unit
+from templates.core.units.conformity import misfit
+from templates.core.units.nodes import kind_of
+from templates.core.units.units import Value, unit
 
 SAME = 1e-9
 """Relative change below which two values are the same: far above the rounding of array calls, 3e-15."""
@@ -38,13 +40,13 @@ class Difference:
         Outputs that only the old version has.
     """
 
-    verdicts: tuple[VerdictMoved, ...] = ()
+    verdicts: tuple[CriterionChange, ...] = ()
     margin: MarginLost | None = None
-    output: OutputMoved | None = None
+    output: OutputChange | None = None
     outputs: int = 0
     size: float = 0.0
     gone: tuple[str, ...] = ()
-    parameters: tuple[ParameterMoved, ...] = ()
+    parameters: tuple[ModelParameterChange, ...] = ()
     waiting: tuple[str, ...] = field(default=())
 
     @property
@@ -78,12 +80,12 @@ def _named(name: str, variant: str | None) -> dict[str, str]:
     return {"name": name} | ({} if variant is None else {"variant": variant})
 
 
-def _verdicts(before: Outcome, after: Outcome, variant: str | None) -> Iterator[VerdictMoved]:
+def _verdicts(before: Outcome, after: Outcome, variant: str | None) -> Iterator[CriterionChange]:
     for name in dict.fromkeys([*before.judged, *after.judged]):
         old, new = (outcome.judged.get(name) for outcome in (before, after))
         words = [one.verdict if one else None for one in (old, new)]
         if words[0] != words[1] and tuple(words) not in UNREMARKABLE:
-            yield VerdictMoved.model_validate({**_named(name, variant), "old": words[0], "new": words[1]})
+            yield CriterionChange.model_validate({**_named(name, variant), "old": words[0], "new": words[1]})
 
 
 def _margin(before: Outcome, after: Outcome, variant: str | None) -> MarginLost | None:
@@ -124,7 +126,7 @@ def _outputs(before: Outcome, after: Outcome) -> Iterator[tuple[str, float]]:
 def _is_one_kind(before: Outcome, after: Outcome, name: str) -> bool:
     """Return whether both versions measure the same by a name, in whatever units."""
     one, other = before.units[name], after.units[name]
-    return one == other or compatible(unit(one).base, unit(other).base)
+    return one == other or misfit(kind_of(one), unit(other), one) is None
 
 
 def change_size(old: Value, new: Value) -> float:
@@ -159,7 +161,7 @@ def _together(old: Value, new: Value) -> tuple[Array, Array]:
     return np.broadcast_to(one, shape), np.broadcast_to(other, shape)
 
 
-def _shown(before: Outcome, after: Outcome, name: str, variant: str | None) -> OutputMoved:
+def _shown(before: Outcome, after: Outcome, name: str, variant: str | None) -> OutputChange:
     """Return a change at its largest place, in the unit that the new version declares."""
     old, new = _together(before.values[name], after.values[name])
     is_alike = old.shape == new.shape and _is_one_kind(before, after, name)
@@ -167,7 +169,7 @@ def _shown(before: Outcome, after: Outcome, name: str, variant: str | None) -> O
     units = (after if is_alike else before).units[name], after.units[name]
     ends = [_quantity(values[place], scale) for values, scale in zip((old, new), units, strict=True)]
     change = _signed(old, new, place, after.units[name]) if is_alike else None
-    return OutputMoved.model_validate(
+    return OutputChange.model_validate(
         {**_named(name, variant), "old": ends[0], "new": ends[1], "change": change}
     )
 
@@ -194,11 +196,13 @@ def _quantity(si: Value, scale: str) -> Quantity | None:
     return Quantity(value=float(unit(scale).from_si(float(si))), unit=scale)
 
 
-def _parameters(before: Outcome, after: Outcome, variant: str | None) -> Iterator[ParameterMoved]:
+def _parameters(before: Outcome, after: Outcome, variant: str | None) -> Iterator[ModelParameterChange]:
     """Yield parameters of models that change, or that are no longer known before a solid is built."""
     for name in dict.fromkeys([*before.parameters, *after.parameters]):
         old, new = (outcome.parameters.get(name) for outcome in (before, after))
         if old is None or new is None or change_size(old, new) > SAME:
             scale = (before if name in before.units else after).units[name]
             ends = [None if si is None else _quantity(si, scale) for si in (old, new)]
-            yield ParameterMoved.model_validate({**_named(name, variant), "old": ends[0], "new": ends[1]})
+            yield ModelParameterChange.model_validate(
+                {**_named(name, variant), "old": ends[0], "new": ends[1]}
+            )

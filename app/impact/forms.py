@@ -18,9 +18,9 @@ from app.storage.tables import canonical_json
 from templates.core.errors import FaultyText
 from templates.core.language.spec import Choice, Curve, Input, Table
 from templates.core.language.template import Template
+from templates.core.units.nodes import kind_of
 from templates.core.units.quantity import read, read_any
 from templates.core.units.relation import is_relation
-from templates.core.units.units import unit
 
 Quantities = Mapping[Reference, float]
 """Values [SI] of the places that are left open."""
@@ -37,7 +37,7 @@ class Form:
 def form_of(document: Document, catalogues: Catalogues) -> Form:
     """Return the form of a document whose templates and models are in the catalogues."""
     plain = document.model_dump(mode="json", exclude={"name", "variants"})
-    opening = _Opening({})
+    opening = _PlaceRemoval({})
     plain["parameters"] = {n: opening.parameter(n, raw) for n, raw in document.parameters.items()}
     for name, step in document.steps.items():
         cls = catalogues.templates.versions.get((step.template, int(step.version or 0)))
@@ -49,7 +49,7 @@ def form_of(document: Document, catalogues: Catalogues) -> Form:
 
 
 @dataclass(frozen=True)
-class _Opening:
+class _PlaceRemoval:
     """Leaves places open, and notes the values that stood there."""
 
     values: dict[Reference, float]
@@ -65,7 +65,7 @@ class _Opening:
         if not isinstance(typed.si, float):
             return raw
         self.values[Reference(name)] = typed.si
-        return {"open": f"{unit(typed.unit).base:~C}"}
+        return {"open": kind_of(typed.unit).unit}
 
     def inputs(self, block: str, values: Mapping[str, Raw], cls: type[Template] | None) -> dict[str, Raw]:
         """Return the inputs of a step, or the parameters of a model."""
@@ -76,7 +76,7 @@ class _Opening:
         if declared is None or isinstance(declared, (Choice, Curve, Table)) or _is_written_out(raw):
             return raw
         try:
-            typed = read(raw, declared.meaning.unit)
+            typed = read(raw, declared.meaning.accepted)
         except FaultyText:
             return raw
         if not isinstance(typed.si, float):

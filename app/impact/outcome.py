@@ -14,7 +14,7 @@ from templates.core.units.units import Value, registry, unit
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class JudgedCriterion:
     """A criterion as judged; the margin [`unit`] is None where there is none."""
 
     verdict: Verdict
@@ -22,12 +22,12 @@ class Judged:
     margin: float | None
 
     @classmethod
-    def alone(cls, judgement: Judgement) -> Judged:
+    def alone(cls, judgement: Judgement) -> JudgedCriterion:
         """Return the judgement of one design."""
         return cls(judgement.verdict, judgement.margin_unit or judgement.unit, _finite(judgement.margin))
 
     @classmethod
-    def in_row(cls, verdict: Verdict, criterion: Criterion, margin: float) -> Judged:
+    def in_row(cls, verdict: Verdict, criterion: Criterion, margin: float) -> JudgedCriterion:
         """Return the judgement of a row; the margin [SI] is NaN where there is none."""
         scale = "K" if criterion.is_temperature else criterion.unit
         return cls(verdict, scale, _finite(margin / unit(scale).factor))
@@ -66,5 +66,5 @@ class Outcome:
     values: Mapping[str, Value] = field(default_factory=dict)
     parameters: Mapping[str, float] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
-    judged: Mapping[str, Judged] = field(default_factory=dict)
+    judged: Mapping[str, JudgedCriterion] = field(default_factory=dict)
     waiting: tuple[str, ...] = ()

@@ -24,7 +24,7 @@ from templates.core.progress import report
 
 
 @dataclass(frozen=True)
-class Compared:
+class BatchResult:
     """The designs of a batch that move, or refuse; how many others there are, and how many variants."""
 
     designs: tuple[DesignImpact, ...]
@@ -45,7 +45,7 @@ class Case:
 Pair = tuple[Outcome, Outcome]
 
 
-def compared(batch: Batch) -> Compared:
+def compared(batch: Batch) -> BatchResult:
     """Return every design of a batch with its own versions and with the new one."""
     catalogues = batch.parts.read()
     documents = {design.id: design.read() for design in batch.designs}
@@ -57,7 +57,7 @@ def compared(batch: Batch) -> Compared:
         impact = impact_of(batch, design, documents[design.id], pairs, catalogues)
         impacts += [impact] if impact else []
     variants = sum(case.variant is not None for case in cases)
-    return Compared(tuple(impacts), len(batch.designs) - len(impacts), variants)
+    return BatchResult(tuple(impacts), len(batch.designs) - len(impacts), variants)
 
 
 def _cases(design: DesignAt, document: Document, batch: Batch) -> Iterator[Case]:

@@ -13,7 +13,7 @@ from app.http.access import TheClient
 from app.http.strict_requests import StrictRoute
 from app.impact.bodies import ImpactIn
 from app.impact.schemas import Impact
-from app.impact.survey import Asked
+from app.impact.survey import ImpactQuestion
 from app.schemas.problems import refusals
 
 router = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=StrictRoute)
@@ -38,5 +38,5 @@ async def show_impact(
 
     The worst of the designs that move come first. 202 with a job where it takes longer than is waited for.
     """
-    asked = Asked(id, number, body or ImpactIn(), units)
+    asked = ImpactQuestion(id, number, body or ImpactIn(), units)
     return await answered(impacts, asked, request, client, patience(prefer, impacts.jobs.wait_seconds))

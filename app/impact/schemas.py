@@ -20,7 +20,7 @@ class StepUse(Answer):
     version: int = Field(description="that it uses now")
 
 
-class VerdictMoved(Answer):
+class CriterionChange(Answer):
     """A criterion that is judged otherwise; null where a version has no such criterion.
 
     One that only a new version has is mentioned where it is not met or undecided.
@@ -45,7 +45,7 @@ class MarginLost(Answer):
     )
 
 
-class OutputMoved(Answer):
+class OutputChange(Answer):
     """The output that changes most; of a curve the place that does. Null where there is no value."""
 
     name: str = Field(description="as in relations: `film.minimum_film_thickness`")
@@ -58,7 +58,7 @@ class OutputMoved(Answer):
     )
 
 
-class ParameterMoved(Answer):
+class ModelParameterChange(Answer):
     """A parameter of a CAD model that would change: the solid is built again."""
 
     name: str = Field(description="such as `shell.inner_diameter`")
@@ -84,12 +84,12 @@ class DesignImpact(Answer):
     revision: int = Field(description="the newest, which was calculated")
     effect: Effect
     steps: list[StepUse]
-    verdicts: list[VerdictMoved] = Field([], description="that change; met → not met first")
+    verdicts: list[CriterionChange] = Field([], description="that change; met → not met first")
     margin: MarginLost | None = None
-    output: OutputMoved | None = None
+    output: OutputChange | None = None
     outputs_moved: int = Field(0, description="how many outputs change, of the design and its variants")
     gone: list[str] = Field([], description="outputs shown now that the version does not have")
-    parameters: list[ParameterMoved] = Field([], description="of CAD models, that would change")
+    parameters: list[ModelParameterChange] = Field([], description="of CAD models, that would change")
     refusals: list[UpgradeRefused] = Field([], description="a save of the upgrade would be refused")
     give: list[str] = Field([], description="inputs that the version needs and the design does not set")
     remove: list[str] = Field([], description="inputs and limits that the version does not have")

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from app.impact.schemas import DesignImpact, VerdictMoved
+from app.impact.schemas import CriterionChange, DesignImpact
 
 NO_LONGER_MET, NOT_MET, REFUSED, OPEN, MOVED, UNKNOWN = range(6)
 
 
-def severity(moved: VerdictMoved) -> int:
+def severity(moved: CriterionChange) -> int:
     """Return the rank a change of a verdict; the worst change has the least rank."""
     if moved.new == "not_met":
         return NO_LONGER_MET if moved.old == "met" else NOT_MET
@@ -18,7 +18,7 @@ def severity(moved: VerdictMoved) -> int:
     return MOVED
 
 
-def worst_first(moved: Iterable[VerdictMoved]) -> list[VerdictMoved]:
+def worst_first(moved: Iterable[CriterionChange]) -> list[CriterionChange]:
     """Return changes of verdicts, those that matter most first."""
     return sorted(moved, key=lambda one: (severity(one), one.name, one.variant or ""))
 

@@ -13,7 +13,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph, starts
 from app.designs.network import Block, Cell
-from app.impact.outcome import Judged, Outcome
+from app.impact.outcome import JudgedCriterion, Outcome
 from app.impact.solids import Solids
 from app.reference import Reference
 from templates.core.errors import InvalidInputs
@@ -45,7 +45,7 @@ def outcome_alone(
         values={name: value for name, (value, _) in values.items()},
         parameters={name: value for name, (value, _) in parameters.items()},
         units={name: scale for name, (_, scale) in (*values.items(), *parameters.items())},
-        judged={judgement.name: Judged.alone(judgement) for judgement in judged(calculation)},
+        judged={judgement.name: JudgedCriterion.alone(judgement) for judgement in judged(calculation)},
         waiting=tuple(sorted(_waiting(calculation))),
     )
 

@@ -15,7 +15,7 @@ from app.designs.tasks import CatalogueTask
 from app.impact import repository
 from app.impact.bodies import ImpactIn
 from app.impact.effect import described, unfinished, unusable, used_steps
-from app.impact.process import Compared, compared
+from app.impact.process import BatchResult, compared
 from app.impact.schemas import DesignImpact, Impact
 from app.impact.severity import rank
 from app.impact.task import Batch, DesignAt, missing, uses
@@ -36,7 +36,7 @@ At = tuple[DesignAt, Document]
 
 
 @dataclass(frozen=True)
-class Asked:
+class ImpactQuestion:
     """A version of a template, which designs are held against it, and the units of the answer."""
 
     template: str
@@ -45,7 +45,7 @@ class Asked:
     units: System = "si"
 
 
-def check(asked: Asked, database: Database, catalogues: Catalogues) -> None:
+def check(asked: ImpactQuestion, database: Database, catalogues: Catalogues) -> None:
     """Return if there is what is asked about.
 
     Raises
@@ -61,7 +61,9 @@ def check(asked: Asked, database: Database, catalogues: Catalogues) -> None:
             designs.design(session, id)
 
 
-def impact(asked: Asked, database: Database, catalogues: Catalogues) -> Reply[Asked, Impact]:
+def impact(
+    asked: ImpactQuestion, database: Database, catalogues: Catalogues
+) -> Reply[ImpactQuestion, Impact]:
     """Return the impact of a version; a job asks for it, since it takes long."""
     catalogues.to_try(asked.template, asked.version)
     drafts = catalogues.with_drafts([(asked.template, asked.version)])
@@ -79,7 +81,7 @@ class _Tally:
     unchanged: int = 0
     variants: int = 0
 
-    def add(self, batch: Compared) -> None:
+    def add(self, batch: BatchResult) -> None:
         """Take over the designs of a batch; no more than the limit are kept."""
         for impact in batch.designs:
             self.counts[impact.effect] = self.counts.get(impact.effect, 0) + 1
@@ -93,7 +95,7 @@ class _Tally:
 class Survey:
     """One question, with the templates as they are when it is asked."""
 
-    asked: Asked
+    asked: ImpactQuestion
     database: Database
     catalogues: Catalogues
 
@@ -133,20 +135,20 @@ class Survey:
             if used_steps(document, self.asked.template, self.asked.version)
         ]
 
-    def _of_page(self, ids: Sequence[str], seen: int, total: int) -> Iterator[Compared]:
+    def _of_page(self, ids: Sequence[str], seen: int, total: int) -> Iterator[BatchResult]:
         """Yield the comparisons of some designs, batch by batch."""
         concerned = self._concerned(ids)
         usable: list[At] = []
         for design, document in concerned:
             if absent := missing(document, self.catalogues):
                 about = described(design, document, self.asked.template, self.asked.version)
-                yield Compared((unusable(about, absent),), 0, 0)
+                yield BatchResult((unusable(about, absent),), 0, 0)
             else:
                 usable.append((design, document))
         for batch in _batches(usable):
             yield from self._of_batch(batch, _Share(seen / total, len(ids) / total, total))
 
-    def _of_batch(self, batch: Sequence[At], share: _Share) -> Iterator[Compared]:
+    def _of_batch(self, batch: Sequence[At], share: _Share) -> Iterator[BatchResult]:
         """Yield the comparisons of a batch; where its process ends, of smaller ones, down to one design."""
         try:
             yield self._compared(batch, share)
@@ -154,13 +156,13 @@ class Survey:
             if len(batch) == 1:
                 design, document = batch[0]
                 about = described(design, document, self.asked.template, self.asked.version)
-                yield Compared((unfinished(about, error),), 0, 0)
+                yield BatchResult((unfinished(about, error),), 0, 0)
                 return
             half = len(batch) // 2
             yield from self._of_batch(batch[:half], share)
             yield from self._of_batch(batch[half:], share)
 
-    def _compared(self, batch: Sequence[At], share: _Share) -> Compared:
+    def _compared(self, batch: Sequence[At], share: _Share) -> BatchResult:
         """Return a batch, calculated in the pool for the job that asks."""
         templates, models = uses(document for _, document in batch)
         parts = CatalogueTask.of(
@@ -218,4 +220,6 @@ def _batches(designs: Sequence[At]) -> Iterator[list[At]]:
         yield batch
 
 
-IMPACTS = Kind(IMPACT, json_form(Asked), json_answer(Impact), impact, failures=(DesignError,), check=check)
+IMPACTS = Kind(
+    IMPACT, json_form(ImpactQuestion), json_answer(Impact), impact, failures=(DesignError,), check=check
+)

@@ -17,11 +17,11 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.columns import Indices
 from app.designs.engine.needs import is_member
 from app.designs.engine.net import Net
-from app.designs.engine.row_design import RowDesign, Rows, Wanted
+from app.designs.engine.row_design import RowDesign, Rows, Targets
 from app.designs.engine.steps import LevelMoved, StepRows
 from app.designs.engine.verdicts import Verdicts
 from app.designs.network import Block, Graph, Subject
-from app.impact.outcome import Judged, Outcome
+from app.impact.outcome import JudgedCriterion, Outcome
 from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import Fault, TemplateError
@@ -82,10 +82,10 @@ class Together:
         return listed
 
     @property
-    def _wanted(self) -> Wanted:
-        judged = Wanted.of(self.outputs, self.subjects.values())
+    def _wanted(self) -> Targets:
+        judged = Targets.of(self.outputs, self.subjects.values())
         cells = {Reference(name) for name in self.design.graph.parameters}
-        return Wanted(judged.references | cells, judged.inside | set(self.parameters))
+        return Targets(judged.references | cells, judged.inside | set(self.parameters))
 
     def _of_chunk(self, rows: Rows, part: Calculation) -> list[Outcome] | None:
         """Return the outcomes of one array call; rows that start at different levels are calculated apart."""
@@ -116,7 +116,7 @@ class Together:
                 parameters={n: float(c[row]) for n, c in parameters.items() if not np.isnan(c[row])},
                 units=self.units,
                 judged={
-                    name: Judged.in_row(
+                    name: JudgedCriterion.in_row(
                         WORST_FIRST[int(codes[row])],
                         self.subjects[name].criterion,
                         float(column.margin[row]),

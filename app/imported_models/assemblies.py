@@ -16,7 +16,7 @@ from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
 from app.imported_models import repository
-from app.imported_models.assembly_manifest import Base, Fixed, read
+from app.imported_models.assembly_manifest import Base, FixedPart, read
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, NotFound
@@ -125,7 +125,7 @@ def _base(base: Base | None, catalogues: Catalogues) -> type[CadModel] | None:
     return cls
 
 
-def _source(session: Session, fixed: Fixed) -> _Source:
+def _source(session: Session, fixed: FixedPart) -> _Source:
     """Return the file of a fixed part.
 
     Raises
@@ -136,13 +136,13 @@ def _source(session: Session, fixed: Fixed) -> _Source:
     return _of_model(session, fixed) if fixed.model else _of_design(session, fixed)
 
 
-def _of_model(session: Session, fixed: Fixed) -> _Source:
+def _of_model(session: Session, fixed: FixedPart) -> _Source:
     id = fixed.model or ""
     numbers = repository.numbers(session, id)
     number = fixed.version or max(numbers, default=0)
     if number not in numbers:
         there_is = f"version {number}; it has versions {', '.join(map(str, numbers[-10:]))}"
-        nothing = "that was brought as a file"
+        nothing = "that was imported as a file"
         detail = f"{fixed.name}: there is no model {id} {there_is if numbers else nothing}"
         raise UnreadableModel("component", detail)
     about = description_of(repository.version(session, id, number).description)
@@ -154,7 +154,7 @@ def _of_model(session: Session, fixed: Fixed) -> _Source:
     return _Source(about.file, f"model {id} version {number}", (id,))
 
 
-def _of_design(session: Session, fixed: Fixed) -> _Source:
+def _of_design(session: Session, fixed: FixedPart) -> _Source:
     """Return the STEP file of a model of a design: of one revision, or of the newest that has one."""
     design, row = fixed.design or "", RevisionModelRow
     there = session.get(DesignRow, design)
@@ -196,7 +196,7 @@ def _held(session: Session, id: str, number: int) -> tuple[str, ...]:
     return tuple(sorted({held for one in about.components for held in one.holds}))
 
 
-def _component(fixed: Fixed, source: _Source) -> Component:
+def _component(fixed: FixedPart, source: _Source) -> Component:
     return Component(
         name=fixed.name,
         file=source.sha,

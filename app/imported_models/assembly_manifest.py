@@ -33,7 +33,7 @@ class Base(Bounded):
     version: int | None = Field(None, ge=1, le=10**6, description="the newest if it is not given")
 
 
-class Fixed(Bounded):
+class FixedPart(Bounded):
     """A fixed part: an imported STEP file, or a model of a design as one of its revisions has it."""
 
     model_config = _STRICT
@@ -111,7 +111,7 @@ class AssemblyManifest(Bounded):
     program: Literal["assembly"]
     title: str = Field(max_length=100, pattern=_TITLE)
     base: Base | None = None
-    components: list[Fixed] = Field(min_length=1, max_length=MOST_COMPONENTS)
+    components: list[FixedPart] = Field(min_length=1, max_length=MOST_COMPONENTS)
 
     @model_validator(mode="after")
     def names_are_distinct(self) -> Self:

@@ -53,7 +53,7 @@ class About(TypedDict, total=False):
 
 
 @dataclass(frozen=True)
-class Answered:
+class FreeCadAnswer:
     """An answer of FreeCAD: what it says, and what it drew."""
 
     about: About
@@ -93,7 +93,7 @@ class FreeCadProcess:
         given: list[list[str | float]],
         cancelled: threading.Event,
         seconds: float = math.inf,
-    ) -> Answered:
+    ) -> FreeCadAnswer:
         """Have FreeCAD open the file again, set some parameters, and draw, in so many seconds at most.
 
         Raises
@@ -122,7 +122,9 @@ class FreeCadProcess:
         if "refused" in about:
             raise self._refusal(about)
         parts = zip(about["parts"], shapes, strict=True)
-        return Answered(about, Drawn(tuple(DrawnPart(name, shape, size) for (name, size), shape in parts)))
+        return FreeCadAnswer(
+            about, Drawn(tuple(DrawnPart(name, shape, size) for (name, size), shape in parts))
+        )
 
     def kill(self) -> None:
         """End the process and remove its folder."""

@@ -10,7 +10,7 @@ from app.catalogue.catalogues import Catalogues
 from app.catalogue.sheets import Key
 from app.imported_models import repository
 from app.storage.database import Database
-from app.storage.tables import BroughtModelRow
+from app.storage.tables import ImportedModelRow
 from cad.imported_models import ImportedModel
 from cad.model_classes import class_of
 
@@ -20,7 +20,7 @@ EVERY = 1.0
 """Time between two looks of a server for what another one on its database has imported [s]."""
 
 
-def _classes(rows: Iterable[BroughtModelRow]) -> Iterator[tuple[Key, type[ImportedModel]]]:
+def _classes(rows: Iterable[ImportedModelRow]) -> Iterator[tuple[Key, type[ImportedModel]]]:
     """Yield the classes of rows; one that this program cannot read harms no other."""
     for row in rows:
         try:
@@ -30,13 +30,13 @@ def _classes(rows: Iterable[BroughtModelRow]) -> Iterator[tuple[Key, type[Import
 
 
 class ImportedModelRegistry:
-    """Publishes brought models; a version is read once."""
+    """Publishes imported models; a version is read once."""
 
     def __init__(self, database: Database, catalogues: Catalogues, *, is_shared: bool) -> None:
         self.database, self.catalogues = database, catalogues
         self._is_shared, self._ending = is_shared, threading.Event()
         self._looking, self._count = threading.Lock(), 0
-        self._thread = threading.Thread(target=self._watch, name="brought models", daemon=True)
+        self._thread = threading.Thread(target=self._watch, name="imported models", daemon=True)
         self.look()
 
     def start(self) -> None:
@@ -64,4 +64,4 @@ class ImportedModelRegistry:
             try:
                 self.look()
             except Exception:
-                logger.exception("The brought models could not be looked at")
+                logger.exception("The imported models could not be looked at")

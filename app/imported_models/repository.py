@@ -1,4 +1,4 @@
-"""All SQL of brought models; every function runs in its caller's transaction."""
+"""All SQL of imported models; every function runs in its caller's transaction."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from sqlalchemy.orm import Session
 from app.identity.principal import BUILT_IN, acting
 from app.storage.clock import now
 from app.storage.errors import NotFound
-from app.storage.tables import BroughtModelRow as Row
+from app.storage.tables import ImportedModelRow as Row
 from app.storage.units import insert_new
 from cad.imported_models import Description
 
 
 def all_rows(session: Session) -> list[Row]:
-    """Return every version of every brought model."""
+    """Return every version of every imported model."""
     return list(session.scalars(select(Row).order_by(Row.id, Row.number)))
 
 
@@ -24,7 +24,7 @@ def count(session: Session) -> int:
 
 
 def version(session: Session, id: str, number: int) -> Row:
-    """Return one version of a brought model.
+    """Return one version of an imported model.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def version(session: Session, id: str, number: int) -> Row:
 
 
 def numbers(session: Session, id: str) -> list[int]:
-    """Return the versions of a brought model, ascending."""
+    """Return the versions of an imported model, ascending."""
     return list(session.scalars(select(Row.number).where(Row.id == id).order_by(Row.number)))
 
 

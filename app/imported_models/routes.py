@@ -37,7 +37,7 @@ FileName = Annotated[
 
 @router.get("/import")
 def list_programs(imports: TheModelImports) -> DrawingPrograms:
-    """The programs that draw brought models; of one that is missing how to install it."""
+    """The programs that draw imported models; of one that is missing how to install it."""
     reason, place = imports.available()
     freecad = DrawingProgram(
         name="FreeCAD",

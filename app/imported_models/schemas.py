@@ -1,4 +1,4 @@
-"""Models that a team has brought, as the interface shows them."""
+"""Models that a team has imported, as the interface shows them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pydantic import Field
 from app.schemas.answers import Answer
 
 
-class BroughtParameter(Answer):
+class ImportedParameter(Answer):
     """The place of a parameter in its file, and whether the solid shows it."""
 
     name: str
@@ -20,7 +20,7 @@ class BroughtParameter(Answer):
 
 
 class ModelOrigin(Answer):
-    """The origin of a brought model, and how far its solids are to be trusted."""
+    """The origin of an imported model, and how far its solids are to be trusted."""
 
     program: str = Field(description="`freecad`, `creo`, `step` or `assembly`")
     file: str = Field(description="the name under which it was sent")
@@ -29,11 +29,11 @@ class ModelOrigin(Answer):
     trust: str = Field(description="which checks its solids pass, and which they do not have")
     author: str | None = None
     created: str
-    parameters: list[BroughtParameter]
+    parameters: list[ImportedParameter]
 
 
 class DrawingProgram(Answer):
-    """A program that draws brought models, and whether it is here."""
+    """A program that draws imported models, and whether it is here."""
 
     name: str
     files: str = Field(description="what it takes")
@@ -42,6 +42,6 @@ class DrawingProgram(Answer):
 
 
 class DrawingPrograms(Answer):
-    """The programs that draw brought models."""
+    """The programs that draw imported models."""
 
     items: list[DrawingProgram]

@@ -65,7 +65,7 @@ class ModelImports:
         ProgramMissing
             If the program that draws it is not here.
         ModelIdTaken, InvalidInputs
-            If no brought model may have the id.
+            If no imported model may have the id.
         QueueFull
             Too many jobs are waiting.
         """

@@ -1,20 +1,20 @@
-"""Brought models as the interface shows them."""
+"""Imported models as the interface shows them."""
 
 from __future__ import annotations
 
 from app.imported_models import repository
-from app.imported_models.schemas import BroughtParameter, ModelOrigin
+from app.imported_models.schemas import ImportedParameter, ModelOrigin
 from app.storage.database import Database
 from cad.model_classes import description_of
 
 
 def origin(database: Database, id: str, number: int) -> ModelOrigin:
-    """Return the origin of a brought model.
+    """Return the origin of an imported model.
 
     Raises
     ------
     NotFound
-        If it was not brought, or is not there.
+        If it was not imported, or is not there.
     """
     with database.read() as session:
         row = repository.version(session, id, number)
@@ -28,7 +28,7 @@ def origin(database: Database, id: str, number: int) -> ModelOrigin:
             author=row.author,
             created=row.created,
             parameters=[
-                BroughtParameter(
+                ImportedParameter(
                     name=one.name,
                     unit=one.unit,
                     value=one.value,

@@ -13,7 +13,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 
 from app.imported_models.freecad import FreeCad
-from app.imported_models.freecad_process import Answered, FreeCadProcess
+from app.imported_models.freecad_process import FreeCadAnswer, FreeCadProcess
 from app.workers.base import Limits
 from app.workers.errors import JobCancelled
 from cad.errors import GeometryError
@@ -39,7 +39,7 @@ class WarmProcesses:
         given: list[list[str | float]],
         cancelled: threading.Event,
         seconds: float = math.inf,
-    ) -> Answered:
+    ) -> FreeCadAnswer:
         """Ask the process of a file for an answer within some seconds; raises as `FreeCadProcess.ask`."""
         process = self._taken(sha, content)
         try:

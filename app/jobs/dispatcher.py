@@ -44,7 +44,7 @@ _PAUSE = 1.0  # before the queue is looked at again after the database has faile
 
 
 @dataclass(frozen=True)
-class Running:
+class RunningJob:
     """A job that this server has claimed, and what is set to stop it."""
 
     job: Job
@@ -92,7 +92,7 @@ class Dispatcher:
         self._awake = {FAST: threading.Semaphore(0), SLOW: threading.Semaphore(0)}
         self._stopping = threading.Event()
         self._lease = lease
-        self._running: dict[str, Running] = {}  # by job
+        self._running: dict[str, RunningJob] = {}  # by job
         self._threads: list[threading.Thread] = []
 
     def start(self, beside: Mapping[str, int]) -> None:
@@ -201,7 +201,7 @@ class Dispatcher:
 
     def _register(self, job: Job) -> None:
         self.interrupt(job.id)  # if its lease was lost here, and this is the next attempt
-        self._running[job.id] = Running(job, threading.Event())
+        self._running[job.id] = RunningJob(job, threading.Event())
 
     def _lane_name(self, kind: str) -> str:
         return self.kinds[kind].lane if kind in self.kinds else FAST

@@ -25,7 +25,7 @@ from app.maintenance.check import Say, is_still_named
 from app.maintenance.errors import CannotRun
 from app.maintenance.files import fault_of
 from app.maintenance.folder import database_file, reading, refuse_other_schema
-from app.maintenance.rows import Named, named_files
+from app.maintenance.rows import NamedFile, named_files
 from app.storage.clock import now
 from app.storage.integrity import faults
 
@@ -91,7 +91,7 @@ def _write(
         rows = {row.sha: row for row in named_files(connection)}
     about = manifest(FORMAT, snapshot, schema, len(rows))
 
-    def add(tar: tarfile.TarFile, row: Named, contents: Contents) -> None:
+    def add(tar: tarfile.TarFile, row: NamedFile, contents: Contents) -> None:
         _add_artifact(tar, row, source, data, contents)
 
     return write_archive(archive, compressed, about, snapshot, rows, add, say)
@@ -121,8 +121,8 @@ def write_archive(
     compressed: bool,
     about: Manifest,
     database: Path,
-    rows: Mapping[str, Named],
-    add: Callable[[tarfile.TarFile, Named, Contents], None],
+    rows: Mapping[str, NamedFile],
+    add: Callable[[tarfile.TarFile, NamedFile, Contents], None],
     say: Say,
 ) -> Contents:
     """Write manifest, database and the files of the rows, each by `add`, into an archive, and sync it."""
@@ -141,7 +141,7 @@ def write_archive(
     return contents
 
 
-def _add_artifact(tar: tarfile.TarFile, row: Named, source: Path, data: Path, contents: Contents) -> None:
+def _add_artifact(tar: tarfile.TarFile, row: NamedFile, source: Path, data: Path, contents: Contents) -> None:
     """Add one artifact if its bytes, as they go into the archive, have its hash."""
     path = data / artifact_entry(row.sha)
     try:

@@ -15,7 +15,7 @@ from pathlib import Path
 from app.maintenance.errors import CannotRun
 from app.maintenance.files import Files, FolderFiles
 from app.maintenance.folder import database_file, reading, refuse_other_schema
-from app.maintenance.rows import Named, broken_references, broken_worksheets, named_files
+from app.maintenance.rows import NamedFile, broken_references, broken_worksheets, named_files
 from app.storage.integrity import faults, is_damage, marker_of
 
 YOUNG = 60.0  # a file of a running service may be this old before the row that names it is committed [s]
@@ -30,13 +30,13 @@ Say = Callable[[str], None]
 
 
 @dataclass
-class Findings:
+class Faults:
     """The faults of a data folder; `damaged` and `unnamed` files can be repaired."""
 
     database: list[str] = field(default_factory=list)
     references: list[str] = field(default_factory=list)
     worksheets: list[str] = field(default_factory=list)
-    damaged: dict[Named, str] = field(default_factory=dict)  # by row, what is wrong with its file
+    damaged: dict[NamedFile, str] = field(default_factory=dict)  # by row, what is wrong with its file
     unnamed: dict[str, str] = field(default_factory=dict)  # by hash, where the file lies
     files: int = 0
     size: int = 0  # of the good files [bytes]
@@ -48,7 +48,7 @@ class Findings:
         return sum(map(len, (self.database, self.references, self.worksheets, self.damaged, self.unnamed)))
 
     def add_unnamed(
-        self, files: Files, ages: Mapping[str, float], rows: Iterable[Named], *, in_use: bool
+        self, files: Files, ages: Mapping[str, float], rows: Iterable[NamedFile], *, in_use: bool
     ) -> None:
         """Add the files that no row names, without those that a running service may just have put."""
         named, latest = {row.sha for row in rows}, time.time() - YOUNG if in_use else math.inf
@@ -68,7 +68,7 @@ class Findings:
         yield f"{self.count} fault{'' if self.count == 1 else 's'}"
 
 
-def check(data: Path, url: str | None, *, in_use: bool, files: Files | None = None) -> Findings:
+def check(data: Path, url: str | None, *, in_use: bool, files: Files | None = None) -> Faults:
     """Find the faults of a data folder; `in_use` if a service runs on it, whose newest files may lack rows.
 
     The files are those in the folder, if no others are given.
@@ -78,7 +78,7 @@ def check(data: Path, url: str | None, *, in_use: bool, files: Files | None = No
     CannotRun
         There is no database, or one of another schema.
     """
-    path, findings = database_file(data, url), Findings()
+    path, findings = database_file(data, url), Faults()
     files = files or FolderFiles(data / "artifacts")
     findings.quarantined = files.quarantined()
     # Files before rows: a row that comes meanwhile has its file already, and is among the rows.
@@ -103,7 +103,7 @@ def check(data: Path, url: str | None, *, in_use: bool, files: Files | None = No
     return findings
 
 
-def check_files(files: Files, rows: Iterable[Named], findings: Findings) -> None:
+def check_files(files: Files, rows: Iterable[NamedFile], findings: Faults) -> None:
     """Verify every file that a row names, once."""
     seen: dict[str, str | None] = {}
     for row in rows:
@@ -115,19 +115,19 @@ def check_files(files: Files, rows: Iterable[Named], findings: Findings) -> None
             findings.damaged[row] = text
 
 
-def _size(files: Files, row: Named) -> int:
+def _size(files: Files, row: NamedFile) -> int:
     return files.size(row.sha) if row.size is None else row.size
 
 
-def is_still_named(database: Path, row: Named) -> bool:
+def is_still_named(database: Path, row: NamedFile) -> bool:
     """Return whether the row of a file is still there: a running service may delete both."""
     with reading(database) as connection:
         return any(other == row for other in named_files_of(connection, row))
 
 
-def named_files_of(connection: sqlite3.Connection, row: Named) -> Iterable[Named]:
+def named_files_of(connection: sqlite3.Connection, row: NamedFile) -> Iterable[NamedFile]:
     """Return the row as it stands now, if it does."""
     if row.kind in OWNERS:
         return (other for other in named_files(connection) if other.kind == row.kind)
     query = "SELECT sha256, size, build_key, kind FROM artifact WHERE build_key = ? AND kind = ?"
-    return (Named(*fields) for fields in connection.execute(query, (row.owner, row.kind)))
+    return (NamedFile(*fields) for fields in connection.execute(query, (row.owner, row.kind)))

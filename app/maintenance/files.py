@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from app.maintenance.errors import CannotRun
-from app.maintenance.rows import Named
+from app.maintenance.rows import NamedFile
 from app.settings import Settings
 from app.storage.artifacts import QUARANTINE, SHA256
 from app.storage.errors import ArtifactsUnreachable, StoreRefused
@@ -36,7 +36,7 @@ class Files(Protocol):
         """Return when each file was put [s since 1970], by hash."""
         ...
 
-    def fault(self, row: Named) -> str | None:
+    def fault(self, row: NamedFile) -> str | None:
         """Return the fault of a row's file, or None."""
         ...
 
@@ -90,7 +90,7 @@ class FolderFiles:
                     continue
         return seconds
 
-    def fault(self, row: Named) -> str | None:
+    def fault(self, row: NamedFile) -> str | None:
         """Return the fault of a row's file, or None."""
         return fault_of(self.path(row.sha), row)
 
@@ -118,7 +118,7 @@ class BucketFiles:
         """Return when each file was put [s since 1970], by hash."""
         return {key: modified for key, modified in self._listed.items() if SHA256.fullmatch(key)}
 
-    def fault(self, row: Named) -> str | None:
+    def fault(self, row: NamedFile) -> str | None:
         """Return the fault of a row's object, or None."""
         try:
             answer = self._bucket.get(row.sha)
@@ -153,7 +153,7 @@ class BucketFiles:
             raise CannotRun(f"{self._url}: {error}") from None
 
 
-def fault_of(path: Path, row: Named) -> str | None:
+def fault_of(path: Path, row: NamedFile) -> str | None:
     """Return the fault of a row's file, or None; its size is in bytes."""
     try:
         size = path.stat().st_size

@@ -16,13 +16,13 @@ from app.catalogue.catalogues import Catalogues, loaded
 from app.imported_models.programs import Programs, assembled
 from app.imported_models.registry import ImportedModelRegistry
 from app.jobs import repository as jobs
-from app.maintenance.check import Findings, Say
-from app.maintenance.rows import Named
+from app.maintenance.check import Faults, Say
+from app.maintenance.rows import NamedFile
 from app.pool.questions import place_of_answer, question_of
 from app.pool.sources import source_of
 from app.settings import Settings
 from app.solids import analysis_rows as analyses
-from app.solids.analysis_process import Analysing
+from app.solids.analysis_process import AnalysisRunner
 from app.solids.builds import Builds
 from app.solids.shapes import shape_of
 from app.storage.artifacts import Artifacts
@@ -33,7 +33,7 @@ from app.storage.stores import opened_store
 from app.workers.base import Limits
 from app.workers.errors import WorkerError
 from app.workers.local import LocalProcesses
-from app.worksheets.publication import Published
+from app.worksheets.publication import WorksheetPublication
 from cad.analysis.kinds import SURFACE
 from cad.errors import AnalysisError, GeometryError
 from cad.export import is_derived
@@ -82,15 +82,15 @@ class Repair:
         self.database, self.store = database, store
         files = loaded(settings.template_folders)
         self.catalogues = Catalogues(files.templates, files.models)
-        Published(database, self.catalogues, is_shared=False, at_once=math.inf)
+        WorksheetPublication(database, self.catalogues, is_shared=False, at_once=math.inf)
         ImportedModelRegistry(database, self.catalogues, is_shared=False)
         self.builds = Builds(database, store, programs)
         longest = Limits(settings.analysis_deadline, settings.analysis_memory_mb)
-        self.analysing = Analysing(database, store, longest)
+        self.analysing = AnalysisRunner(database, store, longest)
         self.calculation = Limits(settings.calculation_job_deadline, settings.calculation_memory_mb)
         self.runner = Direct(worker, Limits(settings.job_deadline, settings.job_memory_mb))
 
-    def row(self, row: Named) -> str | None:
+    def row(self, row: NamedFile) -> str | None:
         """Have the file of a row good; return why it is not, if it is not."""
         if row.kind == "body":
             return "it is not kept anywhere else; nothing needs it as long as the job's answer is good"
@@ -99,7 +99,7 @@ class Repair:
         if row.kind == "import":
             return "the worksheet is kept as text; the file that it was imported from is lost"
         if row.kind == "model":
-            return "it is the file of a brought model: restore it from a backup, or import it again"
+            return "it is the file of an imported model: restore it from a backup, or import it again"
         try:
             if row.kind == "answer":
                 self._answer(row)
@@ -113,7 +113,7 @@ class Repair:
             return str(error)
         return None
 
-    def _answer(self, row: Named) -> None:
+    def _answer(self, row: NamedFile) -> None:
         """Calculate the answer of a job again: the same, but for the time that it took."""
         if self.store.exists(row.sha):  # else it has been set aside now
             return
@@ -138,7 +138,7 @@ class Repair:
         self.analysing.find(shape, question, (SURFACE,), self.runner)
 
 
-def repair(folder: DataFolder, url: str, findings: Findings, settings: Settings, say: Say) -> None:
+def repair(folder: DataFolder, url: str, findings: Faults, settings: Settings, say: Say) -> None:
     """Repair what can be repaired, and say what was done; the caller holds the data folder."""
     if findings.damaged:
         _rebuild(opened_store(settings, folder), url, findings, settings, say)
@@ -148,7 +148,7 @@ def repair(folder: DataFolder, url: str, findings: Findings, settings: Settings,
         say(f"{len(findings.unnamed)} files that no row names stay: the service deletes them after a while")
 
 
-def _rebuild(store: Artifacts, url: str, findings: Findings, settings: Settings, say: Say) -> None:
+def _rebuild(store: Artifacts, url: str, findings: Faults, settings: Settings, say: Say) -> None:
     database, worker = Database(url), LocalProcesses()
     programs = assembled(settings, store)
     try:

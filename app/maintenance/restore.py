@@ -40,7 +40,7 @@ OTHER_DATABASE = {
 
 
 @dataclass
-class Restored:
+class RestoreResult:
     """The result of restoring a backup."""
 
     form: int = FORMAT
@@ -50,7 +50,7 @@ class Restored:
     artifacts: set[str] = field(default_factory=set)
 
 
-def restore(archive: Path, data: Path, say: Say) -> Restored:
+def restore(archive: Path, data: Path, say: Say) -> RestoreResult:
     """Restore a backup into an empty or absent folder.
 
     Raises
@@ -95,9 +95,9 @@ def _sibling(data: Path) -> Iterator[Path]:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def unpacked(archive: Path, folder: Path, form: int) -> Restored:
+def unpacked(archive: Path, folder: Path, form: int) -> RestoreResult:
     """Take an archive of this format apart into a folder; raises CannotRun, or one of `BROKEN`."""
-    restored = Restored(form)
+    restored = RestoreResult(form)
     with tarfile.open(archive, "r|*") as tar:
         for entry in tar:
             if restored.end is not None:
@@ -111,7 +111,7 @@ def unpacked(archive: Path, folder: Path, form: int) -> Restored:
     return restored
 
 
-def _take(entry: tarfile.TarInfo, file: IO[bytes], folder: Path, restored: Restored) -> None:
+def _take(entry: tarfile.TarInfo, file: IO[bytes], folder: Path, restored: RestoreResult) -> None:
     """Put one entry where it belongs; the order of the entries is part of the format."""
     if not restored.manifest:
         restored.manifest = _manifest(entry, file, restored.form)
@@ -125,7 +125,7 @@ def _take(entry: tarfile.TarInfo, file: IO[bytes], folder: Path, restored: Resto
         raise CannotRun(f"The archive holds {entry.name[:100]!r}, which no backup of Crankwright puts there.")
 
 
-def _take_artifact(sha: str, file: IO[bytes], place: Path, restored: Restored) -> None:
+def _take_artifact(sha: str, file: IO[bytes], place: Path, restored: RestoreResult) -> None:
     if sha in restored.artifacts:
         raise CannotRun(f"The archive holds artifact {sha} twice.")
     place.parent.mkdir(parents=True, exist_ok=True)
@@ -166,7 +166,7 @@ def _written(file: IO[bytes], place: Path) -> str:
     return digest.hexdigest()
 
 
-def require_whole(restored: Restored) -> None:
+def require_whole(restored: RestoreResult) -> None:
     """Hold the database against its hash, and count the artifacts; raises CannotRun."""
     assert restored.end is not None
     if restored.database != restored.manifest["database"]["sha256"]:
@@ -175,7 +175,7 @@ def require_whole(restored: Restored) -> None:
         raise CannotRun("The archive is not complete: artifacts are missing.")
 
 
-def _verify(folder: Path, restored: Restored) -> None:
+def _verify(folder: Path, restored: RestoreResult) -> None:
     """Hold the database against its hash and this program, and the artifacts against the rows."""
     require_whole(restored)
     path = folder / DATABASE

@@ -10,7 +10,7 @@ from typing import Protocol
 
 
 @dataclass(frozen=True)
-class Named:
+class NamedFile:
     """A file that a row names: of a build, an analysis, a calculation, a study, an imported worksheet."""
 
     sha: str
@@ -27,27 +27,27 @@ class Rows(Protocol):
         ...
 
 
-def named_files(connection: Rows) -> Iterator[Named]:
+def named_files(connection: Rows) -> Iterator[NamedFile]:
     """Yield every file that a row names; the same file as often as it is named."""
     for sha, size, key, kind in connection.execute("SELECT sha256, size, build_key, kind FROM artifact"):
-        yield Named(sha, int(size), key, kind)
+        yield NamedFile(sha, int(size), key, kind)
     if _has_table(connection, "analysis"):
         surfaces = "SELECT key, found FROM analysis WHERE output = 'surface'"
         for key, output in connection.execute(surfaces):
             surface = json.loads(output)
-            yield Named(surface["sha256"], surface["size"], key, "surface")
+            yield NamedFile(surface["sha256"], surface["size"], key, "surface")
     for id, payload, result in connection.execute("SELECT id, payload, result FROM job"):
         yield from _files_of_question(id, json.loads(payload), result)
     if _has_table(connection, "study"):
         for id, sha in connection.execute(STUDIES):
-            yield Named(sha, None, id, "rows")
+            yield NamedFile(sha, None, id, "rows")
     yield from _files_that_were_sent(connection)
 
 
-def _files_that_were_sent(connection: Rows) -> Iterator[Named]:
+def _files_that_were_sent(connection: Rows) -> Iterator[NamedFile]:
     for table, query, kind in SENT:
         if _has_table(connection, table):
-            yield from (Named(sha, None, id, kind) for id, sha in connection.execute(query))
+            yield from (NamedFile(sha, None, id, kind) for id, sha in connection.execute(query))
 
 
 STUDIES = """
@@ -55,22 +55,22 @@ STUDIES = """
     UNION ALL SELECT study_id, sha256 FROM study_chunk"""
 
 
-BROUGHT = """
-    SELECT id, file_sha256 FROM brought_model UNION SELECT id, sent_sha256 FROM brought_model"""
+IMPORTED_MODELS = """
+    SELECT id, file_sha256 FROM imported_model UNION SELECT id, sent_sha256 FROM imported_model"""
 
-IMPORTS = "SELECT id, import_sha256 FROM worksheet_version WHERE import_sha256 IS NOT NULL"
+IMPORTED_WORKSHEETS = "SELECT id, import_sha256 FROM worksheet_version WHERE import_sha256 IS NOT NULL"
 
-SENT = (("worksheet_version", IMPORTS, "import"), ("brought_model", BROUGHT, "model"))
+SENT = (("worksheet_version", IMPORTED_WORKSHEETS, "import"), ("imported_model", IMPORTED_MODELS, "model"))
 """Files that users sent: the table that names them, by which query, and their kind."""
 
 
-def _files_of_question(id: str, payload: dict[str, str], result: str | None) -> Iterator[Named]:
+def _files_of_question(id: str, payload: dict[str, str], result: str | None) -> Iterator[NamedFile]:
     """Yield the question and the answer of a job, of whatever kind, that keeps them as files."""
     if "body" not in payload:
         return
-    yield Named(payload["body"], None, id, "body")
+    yield NamedFile(payload["body"], None, id, "body")
     if result is not None:
-        yield Named(result.rpartition("sha256=")[2], None, id, "answer")
+        yield NamedFile(result.rpartition("sha256=")[2], None, id, "answer")
 
 
 LEADING_NOWHERE = {

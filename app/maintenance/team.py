@@ -26,8 +26,8 @@ from app.maintenance.backup import (
 )
 from app.maintenance.check import Say
 from app.maintenance.errors import CannotRun
-from app.maintenance.restore import BROKEN, Restored, require_whole, unpacked
-from app.maintenance.rows import Named, named_files
+from app.maintenance.restore import BROKEN, RestoreResult, require_whole, unpacked
+from app.maintenance.rows import NamedFile, named_files
 from app.settings import Settings
 from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, ArtifactsUnreachable, StoreRefused
@@ -64,7 +64,7 @@ def back_up(settings: Settings, url: str, target: Path, say: Say, *, with_files:
         about = manifest(FORMAT_OF_DUMP, dump, known_schemas()[0], len(named))
         about["files"] = with_files
 
-        def add(tar: tarfile.TarFile, row: Named, contents: Contents) -> None:
+        def add(tar: tarfile.TarFile, row: NamedFile, contents: Contents) -> None:
             data, fault = _read(store, row)
             if data is None:
                 contents.damaged[row.sha] = fault
@@ -76,7 +76,7 @@ def back_up(settings: Settings, url: str, target: Path, say: Say, *, with_files:
     return contents
 
 
-def restore(settings: Settings, url: str, archive: Path, say: Say) -> Restored:
+def restore(settings: Settings, url: str, archive: Path, say: Say) -> RestoreResult:
     """Restore a backup into an empty database and the store: files first, then the rows, all or none.
 
     Raises
@@ -102,7 +102,7 @@ def restore(settings: Settings, url: str, archive: Path, say: Say) -> Restored:
     return restored
 
 
-def _read(store: Artifacts, row: Named) -> tuple[bytes | None, str]:
+def _read(store: Artifacts, row: NamedFile) -> tuple[bytes | None, str]:
     """Return the bytes of a file, or None and what is wrong with it."""
     try:
         data = store.read(row.sha)

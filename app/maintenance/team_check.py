@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from sqlalchemy import Connection
 from sqlalchemy.exc import SQLAlchemyError
 
-from app.maintenance.check import Findings, check_files
+from app.maintenance.check import Faults, check_files
 from app.maintenance.errors import CannotRun
 from app.maintenance.files import Files
 from app.maintenance.rows import LEADING_NOWHERE, named_files
@@ -29,7 +29,7 @@ class Rows:
         return (tuple(row) for row in self._connection.exec_driver_sql(query))
 
 
-def check_shared(url: str, files: Files) -> Findings:
+def check_shared(url: str, files: Files) -> Faults:
     """Find faulty references and files; the newest files of running servers may lack their rows.
 
     Raises
@@ -37,7 +37,7 @@ def check_shared(url: str, files: Files) -> Findings:
     CannotRun
         The database does not answer, or has another schema.
     """
-    findings = Findings(quarantined=files.quarantined())
+    findings = Faults(quarantined=files.quarantined())
     ages = files.ages()  # before the rows: a row that comes meanwhile has its file already
     engine = reading_engine(url)
     try:

@@ -48,7 +48,7 @@ class Readiness:
             return self._kept[1]
 
 
-class Writing:
+class WriterProbe:
     """Has the writer change a row. A test that still hangs is waited for again, not sent twice."""
 
     def __init__(self, database: Database, patience: float = PATIENCE) -> None:
@@ -119,7 +119,7 @@ class Space:
         return f"{free:.0f} MiB are free, less than the {self._minimum} MiB of CRANKWRIGHT_MINIMUM_FREE_MB"
 
 
-class Answering(Protocol):
+class ProcessPool(Protocol):
     """Has processes that may be alive or not."""
 
     def answers(self) -> bool:
@@ -132,7 +132,7 @@ class Processes:
 
     def __init__(
         self,
-        worker: Answering,
+        worker: ProcessPool,
         why_silent: Callable[[], str] = why_silent_here,
         patience: float = FORK,
     ) -> None:

@@ -42,21 +42,21 @@ class SheetSource:
 
 
 @dataclass(frozen=True)
-class BroughtSource:
-    """The description of a model that a team has brought, of which every process makes the class."""
+class ImportedSource:
+    """The description of a model that a team has imported, of which every process makes the class."""
 
     id: str
     version: int
     text: str
 
 
-Source = FileSource | SheetSource | BroughtSource
+Source = FileSource | SheetSource | ImportedSource
 
 
 def source_of(cls: type[Template]) -> Source:
     """Return the source of a template, with the code that this process calculates by."""
     if issubclass(cls, ImportedModel):
-        return BroughtSource(cls.id, cls.version, cls.imported.text)
+        return ImportedSource(cls.id, cls.version, cls.imported.text)
     if cls.sheet is not None:
         return SheetSource(cls.id, cls.version, cls.sheet.text, cls.withdrawn)
     module, path = inspect.getmodule(cls), inspect.getfile(cls)
@@ -77,7 +77,7 @@ def loaded(source: Source) -> type[Template]:
     SheetRefused
         If a worksheet has faults.
     """
-    if isinstance(source, BroughtSource):
+    if isinstance(source, ImportedSource):
         return class_of_description(source.text, source.id, source.version)
     if isinstance(source, SheetSource):
         return class_of(source)

@@ -7,14 +7,14 @@ from collections.abc import Collection
 from typing import Protocol, TypeVar
 
 
-class Waiting(Protocol):
+class Waiter(Protocol):
     """Something that waits for its turn."""
 
     client: str
     turn: int
 
 
-W = TypeVar("W", bound=Waiting)
+W = TypeVar("W", bound=Waiter)
 
 
 class Turns:

@@ -45,7 +45,7 @@ class Between(Protocol):
         """Return their unit."""
 
 
-class Judged(Protocol):
+class JudgedCriterion(Protocol):
     """A criterion as the interface answers it; see `app/schemas/criteria.py`."""
 
     @property
@@ -108,7 +108,7 @@ class Line:
     unverified: bool = False
 
 
-def line(criterion: Judged) -> Line:
+def line(criterion: JudgedCriterion) -> Line:
     """Return a criterion in words."""
     return Line(
         name=criterion.name,
@@ -139,7 +139,7 @@ def plain_name(text: str) -> str:
     return _NAME.sub(lambda name: name[1].replace("_", " "), text).strip()
 
 
-def step_of(criterion: Judged) -> str:
+def step_of(criterion: JudgedCriterion) -> str:
     """Return the block whose value is judged, by the name of the criterion or by what it requires."""
     name = Reference.parse(criterion.name)
     if name.output is not None:
@@ -148,13 +148,13 @@ def step_of(criterion: Judged) -> str:
     return value.block if value.output is not None and value.block.isidentifier() else ""
 
 
-def title(criterion: Judged) -> str:
+def title(criterion: JudgedCriterion) -> str:
     """Return the subject of the criterion in words; of a value calculated within it, its own name."""
     left = sides(criterion.require)[0]
     return plain_name(left if _ONE_NAME.fullmatch(left) else criterion.name)
 
 
-def compared(criterion: Judged) -> str:
+def compared(criterion: JudgedCriterion) -> str:
     """Return the value, the sign that is true of it, and the limit: `1.53 µm < 2 µm`.
 
     Empty if one is missing.
@@ -167,14 +167,14 @@ def compared(criterion: Judged) -> str:
     return f"{numbers.in_line(value)} {_sign(criterion, value, limit)} {called}{numbers.in_line(limit)}"
 
 
-def _sign(criterion: Judged, value: Amount, limit: Amount) -> str:
+def _sign(criterion: JudgedCriterion, value: Amount, limit: Amount) -> str:
     """Return the sign between value and limit that is true of them, near the one that is required."""
     if sides(criterion.require)[1] == ">=":
         return "≥" if value.value >= limit.value else "<"
     return "≤" if value.value <= limit.value else ">"
 
 
-def margin(criterion: Judged) -> str:
+def margin(criterion: JudgedCriterion) -> str:
     """Return the margin to the limit, with the range that the error allows; negative beyond the limit."""
     if criterion.margin is None:
         return ""
@@ -183,7 +183,7 @@ def margin(criterion: Judged) -> str:
     return f"{left} ({numbers.plain(ends[0])} … {numbers.plain(ends[1])})" if ends else left
 
 
-def _ends(criterion: Judged) -> tuple[float, float] | None:
+def _ends(criterion: JudgedCriterion) -> tuple[float, float] | None:
     """Return the least and the largest margin, in the unit of the margin.
 
     None where the band does not say.
@@ -198,7 +198,7 @@ def _ends(criterion: Judged) -> tuple[float, float] | None:
     return (low - limit.value, high - limit.value) if at_least else (limit.value - high, limit.value - low)
 
 
-def error(criterion: Judged) -> str:
+def error(criterion: JudgedCriterion) -> str:
     """Return the error of the value, in words."""
     if criterion.value is None:
         return ""
@@ -207,7 +207,7 @@ def error(criterion: Judged) -> str:
     return f"± {numbers.percent(criterion.relative_error)}"
 
 
-def missing(criterion: Judged) -> str:
+def missing(criterion: JudgedCriterion) -> str:
     """Return the input or result that a verdict still needs; empty where there is a verdict."""
     if criterion.give:
         return f"give {', '.join(map(plain_name, criterion.give))}"
@@ -216,7 +216,7 @@ def missing(criterion: Judged) -> str:
     return criterion.reason or ""
 
 
-def remarks(criterion: Judged) -> tuple[str, ...]:
+def remarks(criterion: JudgedCriterion) -> tuple[str, ...]:
     """Return restrictions of the verdict.
 
     An error not stated, a limit not verified, a waiver, the worst place.
@@ -231,7 +231,7 @@ def remarks(criterion: Judged) -> tuple[str, ...]:
     return tuple(remark for remark in said if remark)
 
 
-def _where(criterion: Judged) -> str:
+def _where(criterion: JudgedCriterion) -> str:
     places = [f"{plain_name(name)} {numbers.in_line(at)}" for name, at in (criterion.where or {}).items()]
     at = f"worst at {', '.join(places)}" if places else ""
     if not criterion.points or criterion.points == 1:
@@ -240,7 +240,7 @@ def _where(criterion: Judged) -> str:
     return "; ".join(filter(None, (at, f"{criterion.points} points: {', '.join(each)}")))
 
 
-class Summed(Protocol):
+class VerdictSummary(Protocol):
     """The verdict over all criteria."""
 
     @property
@@ -249,7 +249,7 @@ class Summed(Protocol):
     def green(self) -> bool: ...  # noqa: D102
 
 
-def tone(verdict: Summed) -> str:
+def tone(verdict: VerdictSummary) -> str:
     """Return the colour of a verdict: green only where the interface says so."""
     if verdict.green:
         return "green"

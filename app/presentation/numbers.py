@@ -18,14 +18,14 @@ LARGEST_PLAIN = 1e6  # from here on with a power of ten
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-class Aligned(NamedTuple):
+class AlignedNumber(NamedTuple):
     """A number in two parts that meet at the decimal point."""
 
     whole: str
     rest: str
 
 
-def aligned(value: float) -> Aligned:
+def aligned(value: float) -> AlignedNumber:
     """Return a number with five significant digits: `3.2449` → `3` and `.2449`.
 
     `1.2e-7` → `1` and `.2·10⁻⁷`.
@@ -35,7 +35,7 @@ def aligned(value: float) -> Aligned:
     mantissa, _, exponent = shown.partition("e")
     whole, point, fraction = mantissa.partition(".")
     power = f"·10{str(int(exponent)).translate(SUPERSCRIPTS)}" if exponent else ""
-    return Aligned(whole.replace("-", "−"), point + fraction + power)
+    return AlignedNumber(whole.replace("-", "−"), point + fraction + power)
 
 
 def plain(value: float) -> str:

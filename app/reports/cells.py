@@ -13,10 +13,10 @@ from app.presentation.input_text import text_of
 from app.presentation.numbers import in_line
 from app.schemas.answers import Quantity, Shown, Values
 from app.solids.schemas.analyses import AnalysisOutput
-from templates.core.units.units import compatible, unit
+from templates.core.units.units import base_text, dimension_of, unit
 
 DIGITS_TYPED = 12  # of a number that a user typed: as many as are kept
-_DERIVED = ("1", "m", "kg", "s", "N", "Pa", "J", "W", "K", "rad", "rad/s")
+_DERIVED = ("1", "m", "kg", "s", "N", "Pa", "J", "W", "K", "rad", "rad/s", "Hz")
 _COMPOSED = (*_DERIVED, "m**2", "m**3", "m**2/s", "m**3/s", "Pa*s", "N/m", "N*s/m", "kg*m**2", "N*m")
 _UNSEEN = re.compile("[\x00-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 _WORD = re.compile(r"[A-Za-zµμ°Ω%_]+")
@@ -103,7 +103,7 @@ def si_unit(text: str) -> str:
         composed = re.sub(r"(?<=/)rad/s|m\*\*3(?=\*\*)", "?", replaced)
         if "?" not in composed and unit(composed).factor == 1:
             return composed
-    return _coherent(text, _COMPOSED) or f"{unit(text).base:~C}"
+    return _coherent(text, _COMPOSED) or base_text(unit(text))
 
 
 def _coherent(text: str, candidates: tuple[str, ...]) -> str | None:
@@ -111,9 +111,9 @@ def _coherent(text: str, candidates: tuple[str, ...]) -> str | None:
 
     An angle is given in rad, though it counts as a pure number.
     """
-    base = unit(text).base
-    alike = [si for si in candidates if compatible(unit(si).base, base)]
-    exact = (si for si in alike if str(unit(si).base) == str(base))
+    measured = unit(text)
+    alike = [si for si in candidates if dimension_of(unit(si)) == dimension_of(measured)]
+    exact = (si for si in alike if str(unit(si).base) == str(measured.base))
     return next(exact, alike[0] if alike else None)
 
 

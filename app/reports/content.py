@@ -50,7 +50,7 @@ class Criterion:
 
 
 @dataclass(frozen=True)
-class Judged:
+class ReportVerdict:
     """The verdict with which a report begins; without criteria, the headline says why there is none."""
 
     headline: str
@@ -82,7 +82,7 @@ class Plot:
 
 
 @dataclass(frozen=True)
-class Warned:
+class StepWarning:
     """A warning of a step."""
 
     name: str
@@ -115,12 +115,12 @@ class Step:
     plots: list[Plot]
     ranges: list[Rule]  # the range of validity: domains and published ranges
     rules: list[Rule]
-    warnings: list[Warned]
+    warnings: list[StepWarning]
     references: list[str]
 
 
 @dataclass(frozen=True)
-class Mapped:
+class MappedParameter:
     """A parameter of a model: the relation that drives it, what it was and is, and what the solid has."""
 
     words: str
@@ -160,10 +160,10 @@ class Model:
     state: str
     build: str
     compared: str  # with which revision
-    parameters: list[Mapped]
+    parameters: list[MappedParameter]
     measures: list[Line]
     analyses: list[Line]  # what finite elements computed; origin is how
-    warnings: list[Warned]
+    warnings: list[StepWarning]
     rules: list[Rule]
     files: list[File]
     remark: str  # on pictures that could not be had
@@ -216,7 +216,7 @@ class Variants:
     """All variants of the design, the one that governs first."""
 
     governing: str  # in one sentence; empty without criteria
-    judged: Judged | None  # every criterion of the variant that governs
+    judged: ReportVerdict | None  # every criterion of the variant that governs
     lines: list[VariantLine]
     inputs: list[Columns]
     used: list[Columns]  # what each uses of each limit
@@ -258,7 +258,7 @@ class Report:
     problem: str
     program: str
     units: str
-    verdict: Judged
+    verdict: ReportVerdict
     summary: list[str]
     signatures: Signatures
     parameters: list[Line]

@@ -15,7 +15,7 @@ from app.presentation import numbers
 from app.presentation.numbers import in_line
 from app.presentation.units import System
 from app.reports.cells import NOTHING, cell, typed
-from app.reports.content import File, Line, Mapped, Model, PaintedField, Rule, Warned
+from app.reports.content import File, Line, MappedParameter, Model, PaintedField, Rule, StepWarning
 from app.reports.steps import class_of, relation_mathml, rules, symbol_of, version_of, words_of
 from app.reports.typesetting import DRAWING, PICTURE
 from app.schemas.answers import Quantity, Shown
@@ -70,9 +70,9 @@ def _painted(one: SolidField, system: System) -> PaintedField:
     return PaintedField(one.id, one.title, cell(low), cell(high))
 
 
-def _warnings(analyses: Mapping[str, ModelAnalysis]) -> list[Warned]:
+def _warnings(analyses: Mapping[str, ModelAnalysis]) -> list[StepWarning]:
     return [
-        Warned(f"{kind}: {warning.name.replace('_', ' ')}", warning.detail)
+        StepWarning(f"{kind}: {warning.name.replace('_', ' ')}", warning.detail)
         for kind, analysis in analyses.items()
         for warning in analysis.warnings
     ]
@@ -84,13 +84,13 @@ def _parameters(
     measured: Measurements | None,
     cls: type[CadModel] | None,
     system: System,
-) -> Iterator[Mapped]:
+) -> Iterator[MappedParameter]:
     """Yield the mapping; `before` are the parameters of the model that it is compared with, as stored."""
     dimensions = measured.dimensions if measured else {}
     for name in [n for n in (cls.inputs if cls else model.parameters) if n in model.parameters]:
         old = Shown.model_validate(before[name]) if name in before else None
         new = model.parameters[name]
-        yield Mapped(
+        yield MappedParameter(
             words=words_of(name, cls),
             symbol=symbol_of(name, cls),
             relation=typed(model.relations.get(name)),

@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
-from app.calculations.schemas.evaluations import Evaluated, Output, UsedInput
-from app.catalogue.schemas.declarations import Declared, properties
+from app.calculations.schemas.evaluations import Output, Results, UsedInput
+from app.catalogue.schemas.declarations import DeclaredValue, properties
 from app.catalogue.schemas.templates import Schema
 from app.designs.schemas.designs import RevisionStep
 
@@ -35,11 +35,11 @@ class Picture:
 
 
 Values = Mapping[str, UsedInput | Output]
-Members = Mapping[str, Declared]
+Members = Mapping[str, DeclaredValue]
 Rule = Callable[[Values, Members], Iterable[Picture]]
 
 
-class Declaring(Protocol):
+class Declarations(Protocol):
     """A declaration of inputs and outputs."""
 
     @property
@@ -51,7 +51,7 @@ class Declaring(Protocol):
         """Return the JSON Schema of the outputs."""
 
 
-def pictures(template: Declaring, answer: Evaluated | RevisionStep) -> list[Picture]:
+def pictures(template: Declarations, answer: Results | RevisionStep) -> list[Picture]:
     """Return the pictures of one evaluation, in the order of the table below."""
     if not answer.outputs:
         return []
@@ -61,7 +61,7 @@ def pictures(template: Declaring, answer: Evaluated | RevisionStep) -> list[Pict
     return [picture for rule in TABLE for picture in rule(values, declared)]
 
 
-def axis_of(template: Declaring, answer: Evaluated | RevisionStep, name: str) -> str | None:
+def axis_of(template: Declarations, answer: Results | RevisionStep, name: str) -> str | None:
     """Return the name of what a value of an evaluation goes along; None for a single value."""
     output = answer.outputs.get(name)
     if output is None or not isinstance(output.value, list):

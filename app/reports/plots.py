@@ -13,7 +13,7 @@ from app.presentation import numbers
 from app.reports.charts import Chart, Series, svg
 from app.reports.content import Plot
 from app.reports.crank_star import crank_star
-from app.reports.pictures import Declaring, Picture, pictures
+from app.reports.pictures import Declarations, Picture, pictures
 from templates.core.language.levels import accuracy
 from templates.core.language.template import Template
 from templates.core.paper.schema import inputs_schema, outputs_schema
@@ -33,7 +33,7 @@ def plots_of(step: PreviewedStep, cls: type[Template] | None) -> list[Plot]:
     return [*drawn(declared, step), *(plot for plot in _accuracy(cls) if plot.svg)]
 
 
-def drawn(declared: Declaring, step: PreviewedStep) -> list[Plot]:
+def drawn(declared: Declarations, step: PreviewedStep) -> list[Plot]:
     """Return the pictures of a step's values."""
     used = {name: value for name, value in step.inputs.items() if isinstance(value, UsedInput)}
     values: Values = {**used, **step.outputs}

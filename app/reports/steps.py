@@ -15,7 +15,7 @@ from app.designs.worksheet import checked
 from app.plain import Raw
 from app.presentation import numbers
 from app.reports.cells import Cell, cell, flat, in_si, typed
-from app.reports.content import Formula, Identity, Line, Rule, Step, Warned
+from app.reports.content import Formula, Identity, Line, Rule, Step, StepWarning
 from app.reports.plots import plots_of
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
@@ -39,14 +39,14 @@ Class = type[Template] | None
 """The class of a version; None if its file was taken away."""
 
 
-class StepAsTyped(TypedDict):
+class StepDocument(TypedDict):
     """The part of a step's document that a report shows."""
 
     inputs: Mapping[str, Raw]
     tolerance: NotRequired[float | None]
 
 
-def step_of(name: str, step: PreviewedStep, document: StepAsTyped, catalogues: Catalogues) -> Step:
+def step_of(name: str, step: PreviewedStep, document: StepDocument, catalogues: Catalogues) -> Step:
     """Return one step from the worksheet of a revision and from its `document`, the step as typed."""
     calculated_by, catalogue = step.template, catalogues.templates
     review = review_of(catalogues.snapshot.sheets.released.get((calculated_by.id, calculated_by.version)))
@@ -63,7 +63,9 @@ def step_of(name: str, step: PreviewedStep, document: StepAsTyped, catalogues: C
         plots=plots_of(step, cls),
         ranges=rules(check for check in checks if check.kind in RANGES),
         rules=rules(check for check in checks if check.kind not in RANGES),
-        warnings=[Warned(w.name.replace("_", " "), _about_the_case(w.detail, checks)) for w in step.warnings],
+        warnings=[
+            StepWarning(w.name.replace("_", " "), _about_the_case(w.detail, checks)) for w in step.warnings
+        ],
         references=list(documentation(cls).get("References", ())) if cls else [],
     )
 

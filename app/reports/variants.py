@@ -9,7 +9,7 @@ from app.designs.variants.names import BASE
 from app.presentation import numbers
 from app.presentation.criteria import Line, line, tone
 from app.reports.cells import clean
-from app.reports.content import Columns, File, Judged, Solid, VariantLine, Variants
+from app.reports.content import Columns, File, ReportVerdict, Solid, VariantLine, Variants
 from app.reports.typesetting import SKETCH
 from app.reports.verdict import governing_sentence, row_of
 from app.schemas.criteria import Criterion
@@ -57,11 +57,11 @@ def _governing(row: VariantResult | None) -> Criterion | None:
     return next((one for one in row.criteria if one.name == name), None) if row else None
 
 
-def _judged(row: VariantResult) -> Judged | None:
+def _judged(row: VariantResult) -> ReportVerdict | None:
     if row.verdict is None:
         return None
     criteria = [row_of(line(one), one) for one in row.criteria]
-    return Judged(row.verdict.headline, tone(row.verdict), "", criteria)
+    return ReportVerdict(row.verdict.headline, tone(row.verdict), "", criteria)
 
 
 def _line(row: VariantResult, out: VariantsOut) -> VariantLine:

@@ -5,19 +5,21 @@ from __future__ import annotations
 from app.designs.schemas.designs import RevisionWorksheet
 from app.presentation.criteria import Line, headline_of, line, tone
 from app.reports.cells import clean
-from app.reports.content import Criterion, Judged
+from app.reports.content import Criterion, ReportVerdict
 from app.schemas import criteria as schemas
 
 
-def judged(revision: RevisionWorksheet) -> Judged:
+def judged(revision: RevisionWorksheet) -> ReportVerdict:
     """Return the verdict of a revision, or why there is none."""
     verdict = revision.verdict
     if verdict is None or not revision.criteria:
-        return Judged(headline_of(revision.state, is_judged=revision.criteria is not None), "plain", "", [])
+        return ReportVerdict(
+            headline_of(revision.state, is_judged=revision.criteria is not None), "plain", "", []
+        )
     lines = [line(criterion) for criterion in revision.criteria]
     governing = next((one for one in lines if one.name == verdict.governing), None)
     rows = [row_of(one, judged) for one, judged in zip(lines, revision.criteria, strict=True)]
-    return Judged(verdict.headline, tone(verdict), _governing(governing), rows)
+    return ReportVerdict(verdict.headline, tone(verdict), _governing(governing), rows)
 
 
 def _governing(first: Line | None) -> str:

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterable
 
 from app.retention.rows import referenced_files
-from app.storage.artifacts import Artifacts, Stored
+from app.storage.artifacts import Artifacts, StoredFile
 from app.storage.copies_of_databases import require_only_copy
 from app.storage.database import Database
 from app.storage.locks import alone
@@ -27,7 +27,7 @@ class Sweep:
 
     def __init__(self, database: Database, store: Artifacts, grace: float = GRACE) -> None:
         self._database, self._store, self._grace = database, store, grace
-        self._seen: set[Stored] = set()  # by the last sweep, without a reference
+        self._seen: set[StoredFile] = set()  # by the last sweep, without a reference
 
     def run(self, is_stopping: Callable[[], bool] = lambda: False) -> int:
         """Sweep once, unless another server does; return how many files were deleted.
@@ -51,11 +51,11 @@ class Sweep:
         unused = {file for file in files if file.sha not in referenced or self._is_spare(file)}
         return sum(self._store.delete_unchanged(file) for file in self._old(unused) if not is_stopping())
 
-    def _is_spare(self, file: Stored) -> bool:
+    def _is_spare(self, file: StoredFile) -> bool:
         """Return whether a discarded file that a row names is in its place again; put it back if need be."""
         return file.is_discarded and self._store.exists(file.sha)
 
-    def _old(self, unused: set[Stored]) -> Iterable[Stored]:
+    def _old(self, unused: set[StoredFile]) -> Iterable[StoredFile]:
         if self._database.is_shared:
             latest = time.time() - self._grace
             return [file for file in unused if file.modified < latest]

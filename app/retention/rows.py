@@ -14,10 +14,10 @@ from app.storage.clock import operated
 from app.storage.tables import (
     AnalysisRow,
     ArtifactRow,
-    BroughtModelRow,
     BuildRow,
     EventRow,
     IdempotencyRow,
+    ImportedModelRow,
     JobRow,
     RevisionModelRow,
     StudyChunkRow,
@@ -81,7 +81,7 @@ def referenced_files(session: Session) -> set[str]:
 
     Files belong to artifacts, to outputs of analyses that are files, to whatever a job was given or made, and
     to studies: the rows that they were given and those that they calculated; and worksheets to the files from
-    which they were imported, and brought models to theirs.
+    which they were imported, and imported models to theirs.
     Whoever lets another column refer to files adds it here.
     """
     files = set(session.scalars(select(ArtifactRow.sha256)))
@@ -89,8 +89,8 @@ def referenced_files(session: Session) -> set[str]:
     uploads = (
         StudyRow.table_sha256,
         WorksheetVersionRow.import_sha256,
-        BroughtModelRow.file_sha256,
-        BroughtModelRow.sent_sha256,
+        ImportedModelRow.file_sha256,
+        ImportedModelRow.sent_sha256,
     )
     for given in uploads:
         files.update(sha for sha in session.scalars(select(given)) if sha)

@@ -11,7 +11,7 @@ from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.schemas.answers import Version
 from app.solids import analysis_rows as repository
 from app.solids import rows
-from app.solids.analysis_process import Analysing, bore_of, is_stored, shaft_of
+from app.solids.analysis_process import AnalysisRunner, bore_of, is_stored, shaft_of
 from app.solids.analysis_views import shown
 from app.solids.builds import Builds
 from app.solids.models import FAILURES, File
@@ -163,7 +163,7 @@ def _model_of(session: Session, build: str) -> Version:
 class ModelAnalysis:
     """The handler of jobs of the kind `analysis`: build the model, then find what was asked."""
 
-    def __init__(self, builds: Builds, analysing: Analysing, catalogues: Catalogues) -> None:
+    def __init__(self, builds: Builds, analysing: AnalysisRunner, catalogues: Catalogues) -> None:
         self.builds, self.analysing, self.catalogues = builds, analysing, catalogues
 
     def __call__(self, job: Job, context: JobContext) -> Completion:

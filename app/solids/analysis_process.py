@@ -27,7 +27,7 @@ FILE = "file"
 """In an output on its way from the worker: the bytes of what is stored as a file."""
 
 
-class Analysing:
+class AnalysisRunner:
     """Analyses built solids in a worker process and records the outputs."""
 
     def __init__(self, database: Database, store: Artifacts, limits: Limits) -> None:

@@ -14,7 +14,7 @@ from app.schemas.answers import Shown, Version
 from app.solids import measures, rows
 from app.solids.builds import Builds
 from app.solids.rows import is_fresh, renew
-from app.solids.schemas.models import Build, BuildUse, Stated, Verification
+from app.solids.schemas.models import Build, BuildUse, StepStatement, Verification
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild, NotFound
@@ -231,7 +231,7 @@ LONGEST = 200
 """Letters of a text that an answer quotes: a client may send any file."""
 
 
-def statements(original: bytes, step: bytes) -> list[Stated]:
+def statements(original: bytes, step: bytes) -> list[StepStatement]:
     """Return every statement of a build's STEP file beside that of another file.
 
     Equal bytes are read once.
@@ -239,7 +239,7 @@ def statements(original: bytes, step: bytes) -> list[Stated]:
     expected = read_statements(original)
     read = expected if step is original else read_statements(step)
     return [
-        Stated(
+        StepStatement(
             kind=one.kind[:LONGEST],
             name=one.name[:LONGEST],
             unit=UNITS.get(one.kind),

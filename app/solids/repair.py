@@ -21,7 +21,7 @@ from cad.regenerate import build_key
 REMEMBERED = 1000  # artifacts that could not be rebuilt; asked for again, they start no other job
 
 
-class Healing:
+class ArtifactRepair:
     """Rebuilds artifacts from their rows."""
 
     def __init__(self, database: Database, store: Artifacts, models: Models, analyses: Analyses) -> None:

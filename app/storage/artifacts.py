@@ -20,7 +20,7 @@ from typing import Protocol
 
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, ArtifactsUnreachable
 from app.storage.files import TEMPORARY, OwnLock, SharedLock, sync_folder, write_whole
-from app.storage.verification import Opened, Stamp, Verified, stamp_of
+from app.storage.verification import OpenFile, Stamp, VerifiedStamps, stamp_of
 
 QUARANTINE = "quarantine"
 SHA256 = re.compile(r"[0-9a-f]{64}")
@@ -31,7 +31,7 @@ _FAILING_DISK = {errno.EIO, errno.EBADMSG, getattr(errno, "EUCLEAN", errno.EIO)}
 
 
 @dataclass(frozen=True)
-class Stored:
+class StoredFile:
     """A file in the store: its name, its size [bytes] and when it was last put [s since 1970].
 
     A discarded one lies in a bucket's `discarded/`, whence it comes back if it is asked for.
@@ -71,7 +71,7 @@ class Artifacts(Protocol):
         """Return the verified bytes; raises as `fetch` does."""
         ...
 
-    def open(self, sha: str) -> Opened:
+    def open(self, sha: str) -> OpenFile:
         """Open the verified bytes for reading; they stay although the file is deleted; raises as `fetch`."""
         ...
 
@@ -83,11 +83,11 @@ class Artifacts(Protocol):
         """Remove the bytes, if they are there."""
         ...
 
-    def delete_unchanged(self, seen: Stored) -> bool:
+    def delete_unchanged(self, seen: StoredFile) -> bool:
         """Delete a file unless it was put again since it was listed; return whether it is deleted."""
         ...
 
-    def list(self) -> Iterator[Stored]:
+    def list(self) -> Iterator[StoredFile]:
         """Return every file in the store, verified or not."""
         ...
 
@@ -120,7 +120,7 @@ class ArtifactStore:
     def __init__(self, folder: Path, *, is_shared: bool = False, is_durable: bool = True) -> None:
         self.folder, self.is_shared = folder, is_shared
         self._is_durable = is_durable
-        self._verified = Verified()
+        self._verified = VerifiedStamps()
         folder.mkdir(parents=True, exist_ok=True)
         # Nobody deletes or sets aside a file while it is put.
         self._changing = SharedLock(folder / LOCK) if is_shared else OwnLock()
@@ -172,7 +172,7 @@ class ArtifactStore:
                 raise self._set_aside(sha, stamp_of(file), f"its {len(data)} bytes have another hash")
         return data
 
-    def open(self, sha: str) -> Opened:
+    def open(self, sha: str) -> OpenFile:
         """Open a verified artifact for reading; raises as `fetch` does.
 
         The file stays the verified one even if another takes its name. Its bytes are hashed once for every
@@ -180,7 +180,7 @@ class ArtifactStore:
         """
         file = self._opened(sha)
         try:
-            return Opened(file, self._verify(sha, file))
+            return OpenFile(file, self._verify(sha, file))
         except BaseException:
             file.close()
             raise
@@ -202,7 +202,7 @@ class ArtifactStore:
             self._location(sha).unlink(missing_ok=True)
         self._verified.forget(sha)
 
-    def delete_unchanged(self, seen: Stored) -> bool:
+    def delete_unchanged(self, seen: StoredFile) -> bool:
         """Delete a file unless it was put again since it was listed; return whether it is deleted."""
         location = self._location(seen.sha)
         with self._changing.removing(), suppress(FileNotFoundError):
@@ -212,13 +212,13 @@ class ArtifactStore:
                 return True
         return False
 
-    def list(self) -> Iterator[Stored]:
+    def list(self) -> Iterator[StoredFile]:
         """Yield every artifact in the folder, verified or not, without those that were set aside."""
         for path in self.folder.glob("[0-9a-f][0-9a-f]/*"):
             if SHA256.fullmatch(path.name):
                 with suppress(FileNotFoundError):  # deleted meanwhile
                     seen = path.lstat()
-                    yield Stored(path.name, seen.st_size, seen.st_mtime)
+                    yield StoredFile(path.name, seen.st_size, seen.st_mtime)
 
     def claim(self, owner: str) -> str:
         """Have the folder belong to an owner, if it has none; return whose it is."""

@@ -17,11 +17,11 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from app.storage.artifacts import OWNER, QUARANTINE, SHA256, Stored, hashed, require_name
+from app.storage.artifacts import OWNER, QUARANTINE, SHA256, StoredFile, hashed, require_name
 from app.storage.copies import Copies
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, ArtifactsUnreachable
 from app.storage.s3 import Bucket, Entry
-from app.storage.verification import Newest, Opened
+from app.storage.verification import Newest, OpenFile
 
 logger = logging.getLogger(__name__)
 
@@ -73,7 +73,7 @@ class BucketStore:
             self._keep(data)
         return data
 
-    def open(self, sha: str) -> Opened:
+    def open(self, sha: str) -> OpenFile:
         """Open a verified copy for reading, downloaded if there is none on this machine.
 
         Raises
@@ -123,7 +123,7 @@ class BucketStore:
         self._copies.delete(sha)
         self._tags.forget(sha)
 
-    def delete_unchanged(self, seen: Stored) -> bool:
+    def delete_unchanged(self, seen: StoredFile) -> bool:
         """Move an object to `discarded/` unless it was put again since; delete it for good from there.
 
         S3 cannot delete on a condition: a put between the last look and the deletion would lose its bytes.
@@ -141,12 +141,12 @@ class BucketStore:
         self._bucket.delete(key)
         return True
 
-    def list(self) -> Iterator[Stored]:
+    def list(self) -> Iterator[StoredFile]:
         """Yield every object, verified or not, and the discarded ones, without those that were set aside."""
         for key, entry in self._bucket.list():
             sha = key.removeprefix(DISCARDED)
             if SHA256.fullmatch(sha):
-                yield Stored(sha, entry.size, entry.modified, is_discarded=sha != key)
+                yield StoredFile(sha, entry.size, entry.modified, is_discarded=sha != key)
 
     def claim(self, owner: str) -> str:
         """Have the bucket belong to an owner, if it has none; return whose it is."""
@@ -235,5 +235,5 @@ class BucketStore:
             logger.warning("a copy of a file of the bucket cannot be kept: %s", error.strerror)
 
 
-def _is_same(entry: Entry | None, seen: Stored) -> bool:
+def _is_same(entry: Entry | None, seen: StoredFile) -> bool:
     return entry is not None and entry.modified == seen.modified

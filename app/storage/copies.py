@@ -8,9 +8,9 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
-from app.storage.artifacts import QUARANTINE, ArtifactStore, Stored
+from app.storage.artifacts import QUARANTINE, ArtifactStore, StoredFile
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
-from app.storage.verification import Opened
+from app.storage.verification import OpenFile
 
 IN_USE = 60.0  # a copy that was used within this time stays, whatever the limit [s]
 _KEPT = 0.9  # of the limit, after room was made: not every new copy needs room made for it
@@ -33,7 +33,7 @@ class Copies:
         self._lock = threading.Lock()
         self._making_room = threading.Lock()
 
-    def open(self, sha: str) -> Opened | None:
+    def open(self, sha: str) -> OpenFile | None:
         """Open a good copy; None if there is none."""
         try:
             opened = self._files.open(sha)
@@ -102,7 +102,7 @@ class Copies:
             self._size = size
             self._used = {sha: used for sha, used in self._used.items() if sha in files}
 
-    def _last_use(self, file: Stored) -> float:
+    def _last_use(self, file: StoredFile) -> float:
         """Return when this process, or another one as far as the file system notes it, last used a copy."""
         with suppress(OSError):
             location = self._files.folder / file.sha[:2] / file.sha

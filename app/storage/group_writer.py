@@ -116,7 +116,7 @@ class GroupWriter:
     ) -> None:
         self.engine = engine
         self._clock, self._watch, self._on_commit = clock, watch, on_commit
-        self._waiting: queue.SimpleQueue[_Pending | None] = queue.SimpleQueue()
+        self._waiting: queue.SimpleQueue[_PendingUnit | None] = queue.SimpleQueue()
         self._closing = threading.Lock()
         self._closed = False
         self._connection: Connection | None = None  # of the thread
@@ -133,7 +133,7 @@ class GroupWriter:
         """Queue a unit of work; its future raises as `write` does."""
         if self._watch.damage is not None:  # whether the file is still there shows when the group begins
             self._watch.refuse()
-        pending = _Pending(unit)
+        pending = _PendingUnit(unit)
         with self._closing:  # nothing may enter the queue behind its end
             if self._closed:
                 raise DatabaseClosed("The database is closed.")
@@ -164,9 +164,9 @@ class GroupWriter:
         if connection is not None:
             connection.close()
 
-    def _next_group(self) -> tuple[list[_Pending], bool]:
+    def _next_group(self) -> tuple[list[_PendingUnit], bool]:
         """Wait for a unit, then take those that came meanwhile; also return whether more may come."""
-        group: list[_Pending] = []
+        group: list[_PendingUnit] = []
         while not group or (len(group) < GROUP and not self._waiting.empty()):
             pending = self._waiting.get()
             if pending is None:
@@ -175,7 +175,7 @@ class GroupWriter:
                 group.append(pending)
         return group, True
 
-    def _commit(self, group: list[_Pending]) -> None:
+    def _commit(self, group: list[_PendingUnit]) -> None:
         start = time.perf_counter()
         try:
             connection = self._connection = self._connection or self.engine.connect()
@@ -217,7 +217,7 @@ def _savepoint(connection: Connection) -> Iterator[sqlite3.Connection]:
     driver.execute("RELEASE unit")
 
 
-class _Pending:
+class _PendingUnit:
     """A unit of work on its way through the writer thread."""
 
     # `Any`: one queue holds units of every type; `submit` returns the future under the type of its unit.

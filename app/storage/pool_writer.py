@@ -75,7 +75,7 @@ class PooledWriter:
         for pause in (2**n for n in range(RETRIES)):
             try:
                 return self._run(unit)
-            except _Unknown as unknown:
+            except _UnknownOutcome as unknown:
                 if not unknown.is_repeatable:
                     raise CommitUnknown from unknown.cause
                 is_unknown, wait = True, PAUSE_LOSS
@@ -86,7 +86,7 @@ class PooledWriter:
             time.sleep(wait * pause * random.uniform(0.5, 1.0))
         try:
             return self._run(unit)
-        except _Unknown as unknown:
+        except _UnknownOutcome as unknown:
             raise CommitUnknown from unknown.cause
         except DBAPIError as error:
             if is_unknown and is_loss(error):
@@ -103,14 +103,14 @@ class PooledWriter:
                 session.commit()
             except Exception as error:
                 if isinstance(error, DBAPIError) and is_loss(error):
-                    raise _Unknown(error, REPEATABLE in session.info) from error
+                    raise _UnknownOutcome(error, REPEATABLE in session.info) from error
                 if isinstance(error, DBAPIError) and is_conflict(error):
                     raise
                 raise CommitFailed("The changes could not be committed; nothing was stored.") from error
             return result, session.info.get(AFTER, [])
 
 
-class _Unknown(Exception):
+class _UnknownOutcome(Exception):
     """The connection was lost during a commit."""
 
     def __init__(self, cause: DBAPIError, is_repeatable: bool) -> None:

@@ -25,7 +25,7 @@ class Stamp:
 
 
 @dataclass(frozen=True)
-class Opened:
+class OpenFile:
     """An open file, and the stamp that it had when its bytes were verified."""
 
     file: BufferedReader
@@ -35,7 +35,7 @@ class Opened:
         """Return whether the file still has that stamp."""
         return stamp_of(self.file) == self.stamp
 
-    def __enter__(self) -> Opened:
+    def __enter__(self) -> OpenFile:
         """Keep it open."""
         return self
 
@@ -87,7 +87,7 @@ class Newest(Generic[T]):
             self._noted.pop(sha, None)
 
 
-class Verified(Newest[Stamp]):
+class VerifiedStamps(Newest[Stamp]):
     """The newest verified stamps by name."""
 
     def add(self, sha: str, noted: Stamp) -> None:

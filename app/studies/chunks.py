@@ -11,8 +11,8 @@ import numpy as np
 from app.designs.engine.net import Refusal, Table
 from app.reference import Reference
 from app.studies.archive import AnyArray, packed
-from app.studies.row_solids import Solids, Wanting
-from app.studies.task import Prepared, Task, prepared
+from app.studies.row_solids import SolidRequest, Solids
+from app.studies.task import Task, TaskState, prepared
 from app.workers.pieces import Pieces
 from templates.core.arrays import Array
 
@@ -20,10 +20,10 @@ Levels = Mapping[str, str | None]
 
 
 @dataclass(frozen=True)
-class Lacking:
+class PendingSolids:
     """The solids that rows wait for."""
 
-    solids: tuple[Wanting, ...]
+    solids: tuple[SolidRequest, ...]
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Chunk:
 
 def explored(
     task: Task, first: int, last: int, levels: Levels, criteria: tuple[str, ...], solids: Solids = ()
-) -> Chunk | Lacking:
+) -> Chunk | PendingSolids:
     """Return rows number `first` to `last`, the last one excluded, as the method has them."""
     points = prepared(task).asked.points
     assert points is not None, "a table or an optimisation gives its rows itself"
@@ -46,12 +46,12 @@ def explored(
 
 def calculated(
     task: Task, rows: Array, levels: Levels, criteria: tuple[str, ...], solids: Solids = ()
-) -> Chunk | Lacking:
+) -> Chunk | PendingSolids:
     """Return rows given by their values [SI], shape (N, d), or the solids that they wait for."""
     ready = prepared(task)
     resolved = ready.solids.resolved(placed(ready, rows), len(rows), levels, solids)
     if resolved.wanting:
-        return Lacking(tuple(resolved.wanting))
+        return PendingSolids(tuple(resolved.wanting))
     table = called(ready, rows, levels, criteria, measures=resolved.columns)
     table.refusals |= resolved.refusals
     wanted = ready.asked.wanted
@@ -62,13 +62,13 @@ def calculated(
     return Chunk(packed(arrays, about), table.count, refused_by_reason(table))
 
 
-def placed(ready: Prepared, rows: Array) -> dict[Reference, Array]:
+def placed(ready: TaskState, rows: Array) -> dict[Reference, Array]:
     """Return the columns of rows, shape (N, d), by their places."""
     return {place: rows[:, column] for column, place in enumerate(ready.asked.places)}
 
 
 def called(
-    ready: Prepared,
+    ready: TaskState,
     rows: Array,
     levels: Levels | None,
     criteria: tuple[str, ...] | None,
@@ -81,7 +81,7 @@ def called(
     return ready.net(values, ready.asked.wanted, levels=levels, criteria=criteria, judge=judge)
 
 
-def tried(ready: Prepared, count: int) -> dict[Reference, Array]:
+def tried(ready: TaskState, count: int) -> dict[Reference, Array]:
     """Return the measures of the design itself for rows that are only tried; NaN where they are not known."""
     return {r: np.full(count, ready.nominal.get(r, np.nan)) for r in ready.solids.measures}
 

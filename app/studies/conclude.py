@@ -8,21 +8,21 @@ from app.studies.archive import AnyArray
 from app.studies.front import MOST_CONFIRMED, front, ranked, signed
 from app.studies.optimisation import optimised
 from app.studies.question import directions
-from app.studies.row_columns import OUTPUT, PLACE, Stored
+from app.studies.row_columns import OUTPUT, PLACE, StoredRows
 from app.studies.row_views import rows_found
 from app.studies.run import Run
 from app.studies.schemas import StudyResult, Trade
 from app.studies.sensitivities import Shares, sensitivities
 from app.studies.task import read_body
-from app.studies.variant_design import Building
+from app.studies.variant_design import DesignFactory
 from templates.core.arrays import Integers
 from templates.core.judging.comparison import MET
 
 
-class Concluding:
+class StudyConclusion:
     """Calculates all that a method needs, and says what it found."""
 
-    def __init__(self, building: Building) -> None:
+    def __init__(self, building: DesignFactory) -> None:
         self._building = building
 
     def __call__(self, run: Run) -> StudyResult:
@@ -73,7 +73,7 @@ def _chosen(run: Run) -> StudyResult:
     return _result(run, stored, numbers, met, several=len(names) > 1)
 
 
-def _shares_met(run: Run, stored: Stored, worst: AnyArray) -> dict[str, object]:
+def _shares_met(run: Run, stored: StoredRows, worst: AnyArray) -> dict[str, object]:
     """Return the share of the rows that meet all criteria, and each of them; nothing where there are none."""
     if not run.plan.required:
         return {}
@@ -82,7 +82,7 @@ def _shares_met(run: Run, stored: Stored, worst: AnyArray) -> dict[str, object]:
 
 
 def _feasible(
-    stored: Stored, numbers: Integers, run: Run, names: list[str], maximised: list[bool]
+    stored: StoredRows, numbers: Integers, run: Run, names: list[str], maximised: list[bool]
 ) -> Integers:
     """Return the rows that count among those calculated again, the best first."""
     objectives = signed(stored.rows([f"{OUTPUT}{name}" for name in names], numbers), maximised)
@@ -94,7 +94,7 @@ def _feasible(
 
 def _result(
     run: Run,
-    stored: Stored,
+    stored: StoredRows,
     numbers: Integers,
     met: dict[str, object],
     *,
@@ -116,7 +116,7 @@ def _answered(**fields: object) -> StudyResult:
     return StudyResult.model_validate({name: value for name, value in fields.items() if value is not None})
 
 
-def _trade(run: Run, stored: Stored, explored: Integers, confirmed: Integers, *, several: bool) -> Trade:
+def _trade(run: Run, stored: StoredRows, explored: Integers, confirmed: Integers, *, several: bool) -> Trade:
     """Return the promise of each level of the exploration in some rows, and the true value there."""
     pairs = zip(
         rows_found(run, stored, explored, confirmed=False),

@@ -14,7 +14,7 @@ import numpy as np
 
 from app.studies.chunks import Levels, called
 from app.studies.front import MOST_CONFIRMED, MOST_FRONT
-from app.studies.task import Prepared
+from app.studies.task import TaskState
 from templates.core.arrays import Array
 
 FEW, MANY = 8, 512  # rows of the two calls that are timed
@@ -37,7 +37,7 @@ class Pace:
 
 
 def estimated(
-    ready: Prepared,
+    ready: TaskState,
     probe: Array,
     count: int,
     criteria: Collection[str],
@@ -58,7 +58,7 @@ def estimated(
     return pace.seconds(count) + again.seconds(min(count, repeated))
 
 
-def paced(ready: Prepared, probe: Array, criteria: tuple[str, ...], levels: Levels) -> Pace:
+def paced(ready: TaskState, probe: Array, criteria: tuple[str, ...], levels: Levels) -> Pace:
     """Return the pace at some levels, by a call of a few rows and one of as many as are affordable."""
     few, many = probe[:FEW], np.resize(probe, (MANY, probe.shape[1]))
     timed(ready, few[:1], criteria, levels)  # what is loaded once does not count
@@ -70,7 +70,7 @@ def paced(ready: Prepared, probe: Array, criteria: tuple[str, ...], levels: Leve
     return Pace(max(0.0, first - row * len(few)), row)
 
 
-def timed(ready: Prepared, rows: Array, criteria: tuple[str, ...], levels: Levels) -> float:
+def timed(ready: TaskState, rows: Array, criteria: tuple[str, ...], levels: Levels) -> float:
     """Return the processor time of a call [s]."""
     begun = time.thread_time()
     called(ready, rows, levels, criteria)

@@ -14,7 +14,7 @@ from app.presentation.spreadsheets import Value, harmless
 from app.presentation.units import System, shown_unit, shown_value
 from app.studies.archive import AnyArray, write_each
 from app.studies.schemas import StudyRow
-from app.studies.views import Listing
+from app.studies.views import RowList
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.judging.comparison import WORST_FIRST
 
@@ -22,7 +22,7 @@ MOST_XLSX = 20_000  # rows of a sheet: a spreadsheet program takes a million, bu
 SOME, SOME_SORTED = 2000, 20_000  # rows that are read and written at once; sorted ones lie in all chunks
 
 
-def heads(listing: Listing, system: System) -> list[list[str]]:
+def heads(listing: RowList, system: System) -> list[list[str]]:
     """Return the two rows above the numbers: names, then units."""
     criteria = listing.plan.criteria
     names = ["row", *listing.names, *criteria, "verdict", "level", "reason"]
@@ -30,7 +30,7 @@ def heads(listing: Listing, system: System) -> list[list[str]]:
     return [names, ["", *units, *("" for _ in criteria), "", "", ""]]
 
 
-def lines(listing: Listing, system: System) -> Iterator[list[Value]]:
+def lines(listing: RowList, system: System) -> Iterator[list[Value]]:
     """Yield a line for each row, under `heads`."""
     numbers = listing.numbers()
     size = SOME if listing.wanted.sort is None else SOME_SORTED
@@ -39,7 +39,7 @@ def lines(listing: Listing, system: System) -> Iterator[list[Value]]:
             yield _line(listing, row, system)
 
 
-def _line(listing: Listing, row: StudyRow, system: System) -> list[Value]:
+def _line(listing: RowList, row: StudyRow, system: System) -> list[Value]:
     units = listing.units
     values = [_cell(shown_value(value, units[name], system)) for name, value in row.values.items()]
     verdicts = [row.verdicts.get(name, "") for name in listing.plan.criteria]
@@ -51,7 +51,7 @@ def _cell(value: object) -> float | str:
     return value if isinstance(value, float) and math.isfinite(value) else ""
 
 
-def csv_parts(listing: Listing, system: System) -> Iterator[bytes]:
+def csv_parts(listing: RowList, system: System) -> Iterator[bytes]:
     """Yield the rows as CSV, piece by piece."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\r\n")
@@ -65,7 +65,7 @@ def csv_parts(listing: Listing, system: System) -> Iterator[bytes]:
     yield stream.getvalue().encode()
 
 
-def xlsx(listing: Listing, system: System) -> bytes:
+def xlsx(listing: RowList, system: System) -> bytes:
     """Return the rows as one sheet.
 
     Raises
@@ -89,12 +89,12 @@ def xlsx(listing: Listing, system: System) -> bytes:
     return stream.getvalue()
 
 
-def write_npz(listing: Listing, file: IO[bytes]) -> None:
+def write_npz(listing: RowList, file: IO[bytes]) -> None:
     """Write all columns as arrays by name, in their units, the verdicts as words; equal rows, equal bytes."""
     write_each(file, _arrays(listing), {"units": listing.units, "levels": dict(listing.plan.levels)})
 
 
-def _arrays(listing: Listing) -> Iterator[tuple[str, AnyArray]]:
+def _arrays(listing: RowList) -> Iterator[tuple[str, AnyArray]]:
     numbers = listing.numbers()
     yield "row", numbers
     for name in listing.names:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from app.studies.methods.confirmation import Round
-from app.studies.row_columns import CONFIRM, EXPLORE, PLACE, Stored
+from app.studies.row_columns import CONFIRM, EXPLORE, PLACE, StoredRows
 from app.studies.row_views import quantities, rows_found
 from app.studies.run import Run
 from app.studies.schemas import Best, StudyResult, Trade
-from app.studies.search_slice import Outcome, Promised, Search, Slice, searched
+from app.studies.search_slice import Outcome, Prediction, Search, Slice, searched
 from app.studies.task import read_body
 from app.workers.pieces import Pieces
 from templates.core.arrays import Array, Integers
@@ -62,7 +62,7 @@ def _listed(best: list[Best], *, several: bool) -> dict[str, object]:
     return {"front": best} if several else {"best": best[0]} if best else {}
 
 
-def _numbers(run: Run, stored: Stored, places: tuple[Array, ...]) -> Integers:
+def _numbers(run: Run, stored: StoredRows, places: tuple[Array, ...]) -> Integers:
     """Return the rows of these places, as they were confirmed."""
     rows = stored.rows([f"{PLACE}{name}" for name in run.plan.places], np.arange(stored.count))
     levels = stored.values("level")
@@ -77,7 +77,7 @@ def _objectives(run: Run) -> list[str]:
     return [*body.minimise, *body.maximise]
 
 
-def _trade(run: Run, promised: Promised) -> Trade:
+def _trade(run: Run, promised: Prediction) -> Trade:
     in_order = sorted(promised.places, key=lambda place: float(place.promise[0]))
     places = [_place(run, place) for place in in_order]
     several = len(_objectives(run)) > 1

@@ -16,11 +16,11 @@ from app.studies.bodies import MOST_BUILT, MOST_ROWS
 from app.studies.chunks import Levels, called, placed
 from app.studies.criteria import criterion_of
 from app.studies.estimate import estimated
-from app.studies.question import Asked
+from app.studies.question import StudyQuestion
 from app.studies.relations import relations_at
 from app.studies.row_table import Rows, given_rows
 from app.studies.solid_count import counted
-from app.studies.task import Prepared, Task, prepared
+from app.studies.task import Task, TaskState, prepared
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs, unknown_names
 from templates.core.judging.comparison import NOT_CHECKED
@@ -129,13 +129,13 @@ def planned(task: Task, rows: Rows | None, solid_seconds: float) -> tuple[Plan, 
     return plan, given
 
 
-def _count(asked: Asked, given: Array | None) -> int:
+def _count(asked: StudyQuestion, given: Array | None) -> int:
     if given is not None:
         return len(given)
     return asked.points.count if asked.points else asked.body.points or MOST_ROWS["optimise"]
 
 
-def _probe(asked: Asked, count: int, given: Array | None) -> Array:
+def _probe(asked: StudyQuestion, count: int, given: Array | None) -> Array:
     """Return some rows, spread over all of them."""
     if asked.points is None and given is None:
         return asked.space.at(_lattice(len(asked.space)))
@@ -154,13 +154,13 @@ def _lattice(dimensions: int) -> Array:
 
 
 def _levels(
-    ready: Prepared, rows: Array, criteria: Collection[str], tolerance: float, share: float
+    ready: TaskState, rows: Array, criteria: Collection[str], tolerance: float, share: float
 ) -> dict[str, str | None]:
     values = {place: rows[:, column] for column, place in enumerate(ready.asked.places)}
     return ready.net.levels_for(values, ready.asked.wanted, tolerance, share, criteria=criteria)
 
 
-def _chunk(ready: Prepared, criteria: Collection[str], levels: Levels) -> int:
+def _chunk(ready: TaskState, criteria: Collection[str], levels: Levels) -> int:
     """Return rows of a chunk: as many as take half a second, and a multiple of what an array call takes."""
     wanted = ready.asked.wanted  # by tables, so that equal studies have equal chunks
     seconds = ready.net.seconds(STEP_OF_CHUNK, wanted, levels, criteria=criteria, by_tables=True)
@@ -170,7 +170,7 @@ def _chunk(ready: Prepared, criteria: Collection[str], levels: Levels) -> int:
 
 
 def _searched(
-    ready: Prepared, levels: dict[str, str | None], confirm: dict[str, str | None] | None
+    ready: TaskState, levels: dict[str, str | None], confirm: dict[str, str | None] | None
 ) -> list[dict[str, str | None]]:
     """Return the levels at which an optimisation searches: explore, confirm, then cheaper ones to compare."""
     if ready.asked.points is not None or ready.asked.body.method != "optimise":
@@ -211,7 +211,7 @@ def _refuse_curves(columns: dict[Reference, Array], wanted: Sequence[Reference])
         raise InvalidInputs(Fault(f"outputs.{curve}", "shape", f"{curve} {detail}") for curve in curves)
 
 
-def _check_built(asked: Asked, count: int) -> None:
+def _check_built(asked: StudyQuestion, count: int) -> None:
     build = asked.body.build
     if build in ("best", "front") and not asked.objectives:
         raise InvalidInputs([Fault("build", "missing", "say what to minimise or maximise")])

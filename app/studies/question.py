@@ -24,7 +24,7 @@ _STEP = 1e-3  # of the interval: how far slopes look to either side
 
 
 @dataclass(frozen=True)
-class Asked:
+class StudyQuestion:
     """A study that can be calculated: its rows, and which places and outputs they have."""
 
     body: StudyIn
@@ -39,7 +39,7 @@ class Asked:
         return directions(self.body)[0]
 
 
-def asked_of(body: StudyIn, varied: Sequence[str], net: Net) -> Asked:
+def asked_of(body: StudyIn, varied: Sequence[str], net: Net) -> StudyQuestion:
     """Return a body read against the network of its design.
 
     Raises
@@ -53,7 +53,7 @@ def asked_of(body: StudyIn, varied: Sequence[str], net: Net) -> Asked:
     wanted = tuple(map(Reference.parse, names))
     _refuse(_too_many(body, space))
     points = points_of(body, space, net)
-    return Asked(body, space, tuple(map(Reference.parse, varied)), wanted, points)
+    return StudyQuestion(body, space, tuple(map(Reference.parse, varied)), wanted, points)
 
 
 def _contradictions(body: StudyIn, varied: Sequence[str]) -> Iterator[Fault]:

@@ -29,7 +29,7 @@ class _Whole(Exception):
     """All recorded chunks are there."""
 
 
-class _Repeated(Run):
+class _Repetition(Run):
     """A study that is repeated for the chunks that it has lost."""
 
     def chunks(self, until: int | None = None) -> list[StudyChunkRow]:
@@ -88,7 +88,7 @@ class ChunkRepair:
 
     def heal(self, id: str, job: Job, context: JobContext) -> None:
         """Repeat a study until all its recorded chunks are there; raises what its design brings about."""
-        run = run_of(self._services, id, job, context, _Repeated)
+        run = run_of(self._services, id, job, context, _Repetition)
         try:
             run.finish_if_whole()
             self._conclude(run)

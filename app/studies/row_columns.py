@@ -29,7 +29,7 @@ class Part:
     sha: str
 
 
-class Stored:
+class StoredRows:
     """The rows of a study in the order of its chunks; a column is read when it is asked for."""
 
     def __init__(self, store: Artifacts, chunks: Sequence[StudyChunkRow]) -> None:

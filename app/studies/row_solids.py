@@ -17,7 +17,7 @@ from app.designs.document import Document
 from app.designs.engine.needs import needs, varying
 from app.designs.engine.net import Net, Refusal
 from app.designs.engine.refusals import refusal_of
-from app.designs.engine.row_design import Levels, Rows, Wanted
+from app.designs.engine.row_design import Levels, Rows, Targets
 from app.designs.network import Block, subjects
 from app.reference import Reference
 from app.studies.bodies import StudyIn
@@ -32,7 +32,7 @@ Texts = tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
-class Wanting:
+class SolidRequest:
     """A solid that is not known, and what is to be measured on it."""
 
     model: str
@@ -41,7 +41,7 @@ class Wanting:
 
 
 @dataclass(frozen=True)
-class Measured:
+class SolidMeasures:
     """The measures of a solid [SI], by their names in relations, or why it has none."""
 
     model: str
@@ -50,13 +50,13 @@ class Measured:
     failure: Refusal | None = None
 
 
-Solids = tuple[Measured, ...]
+Solids = tuple[SolidMeasures, ...]
 
 NO_VALUE = "a parameter of the solid has no finite value here"
 
 
 @dataclass
-class Resolved:
+class RowsWithSolids:
     """Rows with what is known of their solids.
 
     Attributes
@@ -75,7 +75,7 @@ class Resolved:
 
     columns: dict[Reference, Array]
     waiting: Mask
-    wanting: list[Wanting] = field(default_factory=list)
+    wanting: list[SolidRequest] = field(default_factory=list)
     refusals: dict[int, Refusal] = field(default_factory=dict)
     levels: dict[str, str | None] = field(default_factory=dict)
 
@@ -88,7 +88,7 @@ def measures_of_rows(
     Only what the study names counts: its outputs and objectives, and the criteria of `hold`.
     """
     held = [subject for name, subject in subjects(net.graph).items() if name in (body.hold or ())]
-    wanted = Wanted.of(outputs, held)
+    wanted = Targets.of(outputs, held)
     due = needs(net.graph, wanted.references, net.varied, wanted.inside)
     moving = net.design.moving
     return sorted(
@@ -144,10 +144,10 @@ class RowSolids:
         """Return the models of which analyses by finite elements are needed."""
         return {reference.block for reference in self.measures if reference.analysis is not None}
 
-    def resolved(self, rows: Rows, count: int, levels: Levels | None, solids: Solids) -> Resolved:
+    def resolved(self, rows: Rows, count: int, levels: Levels | None, solids: Solids) -> RowsWithSolids:
         """Return the measures of rows, as far as their solids are known."""
         empty = {reference: np.full(count, np.nan) for reference in self.measures}
-        result = Resolved(empty, np.zeros(count, dtype=bool))
+        result = RowsWithSolids(empty, np.zeros(count, dtype=bool))
         by_texts = {(solid.model, solid.texts): solid for solid in solids}
         for model in self.models:
             self._measure(model, rows, levels, by_texts, result)
@@ -158,8 +158,8 @@ class RowSolids:
         model: Block,
         rows: Rows,
         levels: Levels | None,
-        by_texts: Mapping[tuple[str, Texts], Measured],
-        result: Resolved,
+        by_texts: Mapping[tuple[str, Texts], SolidMeasures],
+        result: RowsWithSolids,
     ) -> None:
         """Fill in the columns of one model."""
         names = [name for name, cell in model.cells.items() if not isinstance(cell.declared, Choice)]
@@ -179,7 +179,7 @@ class RowSolids:
             solid = by_texts.get((model.name, texts))
             if solid is None:
                 measures = tuple(reference.member for reference in self.measures_of(model.name))
-                result.wanting.append(Wanting(model.name, texts, measures))
+                result.wanting.append(SolidRequest(model.name, texts, measures))
                 result.waiting[numbers] = True
             elif solid.failure is not None:
                 _refuse(result, numbers, solid.failure)
@@ -218,7 +218,7 @@ def _word(raw: object) -> str:
     return str(raw["value"] if isinstance(raw, dict) else raw)
 
 
-def _refuse(result: Resolved, numbers: Sequence[int], refusal: Refusal) -> None:
+def _refuse(result: RowsWithSolids, numbers: Sequence[int], refusal: Refusal) -> None:
     """Note why rows have no solid; the first reason is the cause of the others."""
     result.refusals = dict.fromkeys(map(int, numbers), refusal) | result.refusals
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from app.schemas.answers import Quantity
-from app.studies.row_columns import OUTPUT, PLACE, Stored
+from app.studies.row_columns import OUTPUT, PLACE, StoredRows
 from app.studies.run import Run
 from app.studies.schemas import Best
 from templates.core.arrays import Integers
@@ -15,7 +15,7 @@ from templates.core.judging.comparison import WORST_FIRST
 from templates.core.units.units import unit
 
 
-def rows_found(run: Run, stored: Stored, numbers: Integers, *, confirmed: bool) -> list[Best]:
+def rows_found(run: Run, stored: StoredRows, numbers: Integers, *, confirmed: bool) -> list[Best]:
     """Return rows as a result shows them.
 
     `confirmed` says whether they were calculated again at finer levels.

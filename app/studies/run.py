@@ -30,13 +30,13 @@ from app.storage.errors import ArtifactDamaged, ArtifactMissing, CannotRebuild
 from app.storage.tables import StudyChunkRow, StudyRow
 from app.studies import repository
 from app.studies.archive import Archive
-from app.studies.chunks import Chunk, Lacking, calculated, explored
+from app.studies.chunks import Chunk, PendingSolids, calculated, explored
 from app.studies.front import MOST_FRONT
 from app.studies.plan import Plan
-from app.studies.row_columns import Stored
+from app.studies.row_columns import StoredRows
 from app.studies.schemas import StudyResult
 from app.studies.solid_count import MOST_SOLIDS, NEEDS_SOLIDS
-from app.studies.solids import SolidMaking, StudySolids
+from app.studies.solids import SolidPool, StudySolids
 from app.studies.task import Task
 from app.studies.variant import document_of
 from app.workers.errors import DeadlineExceeded, JobCancelled, MemoryExceeded
@@ -76,7 +76,7 @@ class StudyServices:
     pool: CalculationPool
     jobs: Jobs
     steps: Steps
-    solids: SolidMaking
+    solids: SolidPool
 
 
 class Run:
@@ -107,9 +107,9 @@ class Run:
             chunks = repository.chunks(session, self.row.id)
         return chunks if until is None else [chunk for chunk in chunks if chunk.number < until]
 
-    def stored(self, until: int | None = None) -> Stored:
+    def stored(self, until: int | None = None) -> StoredRows:
         """Return the rows of these chunks."""
-        return Stored(self.services.store, self.chunks(until))
+        return StoredRows(self.services.store, self.chunks(until))
 
     def submit(self, function: Callable[..., object], *args: object) -> Calculation:
         """Have something calculated for this study when its turn comes."""
@@ -169,7 +169,7 @@ class Run:
     def _keep_first(self, waiting: deque[tuple[int, Calculation]], started: Started) -> None:
         """Keep the first chunk, once its rows have their solids."""
         number, calculation = waiting[0]
-        while isinstance(answer := self.result_of(calculation), Lacking):
+        while isinstance(answer := self.result_of(calculation), PendingSolids):
             self._build(answer)
             calculation = started(number)
             waiting[0] = number, calculation
@@ -177,7 +177,7 @@ class Run:
         assert isinstance(answer, Chunk)
         self.keep(number, answer)
 
-    def _build(self, lacking: Lacking) -> None:
+    def _build(self, lacking: PendingSolids) -> None:
         """Make the solids that rows wait for, one by one.
 
         Raises
@@ -259,7 +259,7 @@ Heal = Callable[[str, Job, JobContext], None]
 """Calculates the recorded chunks of a study again that are lost."""
 
 
-class Studying:
+class StudyRunner:
     """The handler of the jobs of studies."""
 
     def __init__(self, services: StudyServices, conclude: Conclude, heal: Heal) -> None:

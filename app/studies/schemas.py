@@ -38,7 +38,7 @@ class StudyEstimate(Answer):
     estimate: Estimate
 
 
-class Refused(Answer):
+class RefusedRows(Answer):
     """Rows without values."""
 
     count: int
@@ -156,7 +156,7 @@ class Study(Units):
     progress: float = Field(ge=0, le=1)
     rows: int = Field(description="planned")
     done: int = Field(description="rows that were calculated")
-    refused: Refused
+    refused: RefusedRows
     varied: list[str]
     outputs: list[str]
     criteria: list[str]

@@ -23,7 +23,7 @@ from app.studies.methods.front import Effort, pareto_front
 from app.studies.methods.optimise import optimise
 from app.studies.methods.stages import Stage
 from app.studies.row_columns import CONFIRM, EXPLORE, OUTPUT
-from app.studies.task import Prepared, Task, prepared
+from app.studies.task import Task, TaskState, prepared
 from app.workers.pieces import Pieces
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
@@ -48,7 +48,7 @@ class Search:
 
 
 @dataclass(frozen=True)
-class Promised:
+class Prediction:
     """The promise of a level at its best place, or along its front [SI], and the true values there."""
 
     level: int
@@ -63,7 +63,7 @@ class Outcome:
 
     state: str
     places: tuple[Array, ...]
-    trade: tuple[Promised, ...]
+    trade: tuple[Prediction, ...]
     notes: tuple[str, ...]
 
 
@@ -75,7 +75,7 @@ class Slice:
     outcome: Outcome | None
 
 
-class Paused(Exception):
+class SearchPause(Exception):
     """A slice has calculated as much as it may."""
 
 
@@ -96,12 +96,12 @@ def searched(task: Task, search: Search, stored: tuple[Pieces, ...]) -> Slice:
     book = _Book(ready, task, search, problem, stored)
     try:
         outcome = _outcome(ready, problem, search, book)
-    except Paused:
+    except SearchPause:
         return Slice(book.chunk(), None)
     return Slice(book.chunk(), outcome)
 
 
-def _problem(ready: Prepared, search: Search) -> Problem:
+def _problem(ready: TaskState, search: Search) -> Problem:
     body = ready.asked.body
     objectives = [Objective(name) for name in body.minimise]
     objectives += [Objective(name, "maximise") for name in body.maximise]
@@ -109,24 +109,24 @@ def _problem(ready: Prepared, search: Search) -> Problem:
     return Problem(ready.asked.space, tuple(objectives), held)
 
 
-def _outcome(ready: Prepared, problem: Problem, search: Search, book: _Book) -> Outcome:
+def _outcome(ready: TaskState, problem: Problem, search: Search, book: _Book) -> Outcome:
     seed, explore, confirm = ready.asked.body.seed, book.answer(EXPLORE), book.answer(CONFIRM)
     if len(problem.objectives) > 1:
         front = pareto_front(problem, explore, confirm, seed=seed, journal=book.journal(EXPLORE))
-        first = Promised(EXPLORE, front.rounds[0], front.explored, front.seconds)
+        first = Prediction(EXPLORE, front.rounds[0], front.explored, front.seconds)
         places = tuple(place.at for place in front.places)
         return Outcome(front.state, places, *_compared(problem, search, book, seed, first, ()))
     optimum = optimise(problem, explore, confirm, seed=seed)
-    first = Promised(EXPLORE, optimum.rounds[:1], optimum.explored, optimum.seconds)
+    first = Prediction(EXPLORE, optimum.rounds[:1], optimum.explored, optimum.seconds)
     notes = tuple(f"{v.criterion} is not met by {v.relative:.2%} of its limit" for v in optimum.violations)
     return Outcome(optimum.state, (optimum.best.at,), *_compared(problem, search, book, seed, first, notes))
 
 
 def _compared(
-    problem: Problem, search: Search, book: _Book, seed: int, first: Promised, notes: tuple[str, ...]
-) -> tuple[tuple[Promised, ...], tuple[str, ...]]:
+    problem: Problem, search: Search, book: _Book, seed: int, first: Prediction, notes: tuple[str, ...]
+) -> tuple[tuple[Prediction, ...], tuple[str, ...]]:
     """Return the promise of each level, and the notes, with one more if rows are lacking for a level."""
-    others: list[Promised] = []
+    others: list[Prediction] = []
     try:
         for level in range(CONFIRM + 1, len(search.levels)):
             others += _alone(problem, book, level, seed)
@@ -136,7 +136,7 @@ def _compared(
     return (first, *others), notes
 
 
-def _alone(problem: Problem, book: _Book, level: int, seed: int) -> list[Promised]:
+def _alone(problem: Problem, book: _Book, level: int, seed: int) -> list[Prediction]:
     """Return the result of one level by itself, confirmed once; nothing of a level that lacks a result."""
     answer, confirm = book.answer(level), book.answer(CONFIRM)
     try:
@@ -144,11 +144,11 @@ def _alone(problem: Problem, book: _Book, level: int, seed: int) -> list[Promise
             front = pareto_front(
                 problem, answer, confirm, seed=seed, effort=ALONE, journal=book.journal(level)
             )
-            return [Promised(level, front.rounds[0], front.explored, front.seconds)]
+            return [Prediction(level, front.rounds[0], front.explored, front.seconds)]
         optimum = optimise(problem, answer, confirm, seed=seed, rounds=1)
     except AllRefused:
         return []
-    return [Promised(level, optimum.rounds[:1], optimum.explored, optimum.seconds)]
+    return [Prediction(level, optimum.rounds[:1], optimum.explored, optimum.seconds)]
 
 
 @dataclass(frozen=True)
@@ -187,7 +187,7 @@ class _Book:
     """All answers of a search, by level and by the bytes of the rows; and its stages."""
 
     def __init__(
-        self, ready: Prepared, task: Task, search: Search, problem: Problem, stored: Sequence[Pieces]
+        self, ready: TaskState, task: Task, search: Search, problem: Problem, stored: Sequence[Pieces]
     ) -> None:
         self._ready, self._task, self._search, self._problem = ready, task, search, problem
         self._levels: list[Levels] = [dict(pairs) for pairs in search.levels]
@@ -249,7 +249,7 @@ class _Book:
             The slice has calculated enough.
         """
         if self._spent >= SLICE_SECONDS:
-            raise Paused
+            raise SearchPause
         if self._rows + len(rows) > self._search.most:
             detail = (
                 f"the search needs more than {self._search.most} rows; narrow the bounds, or raise `points`"

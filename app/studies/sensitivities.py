@@ -21,8 +21,7 @@ from app.studies.schemas import Index
 from app.studies.task import Task, prepared
 from templates.core.arrays import Array
 from templates.core.errors import InvalidInputs
-from templates.core.units.quotient import difference
-from templates.core.units.units import unit
+from templates.core.units.units import difference_of, unit
 
 
 @dataclass(frozen=True)
@@ -90,7 +89,7 @@ def _indices(
 
 def _difference(declared: str) -> Callable[[float], Quantity]:
     """Return a change [SI] of something declared in a unit."""
-    factor, name = unit(declared).factor, difference(declared)
+    factor, name = unit(declared).factor, difference_of(declared)
     return lambda change: Quantity(value=change / factor, unit=name)
 
 

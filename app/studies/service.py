@@ -15,7 +15,7 @@ from app.designs.bodies import LONGEST_NOTE
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.graph import build_graph
-from app.designs.service import Designs, Saved
+from app.designs.service import Designs, SaveResult
 from app.designs.variant_sheets.reader import Units
 from app.designs.variant_sheets.units import units_of
 from app.identity.audit import record
@@ -37,7 +37,7 @@ from app.studies.archive import packed
 from app.studies.bodies import StudyIn
 from app.studies.plan import Plan
 from app.studies.relations import relations_at, words
-from app.studies.row_columns import PLACE, Stored
+from app.studies.row_columns import PLACE, StoredRows
 from app.studies.row_table import Rows, columns_named
 from app.studies.run import STUDY
 from app.studies.task import Task
@@ -150,7 +150,7 @@ class Studies:
         self.jobs.wake(STUDY)
         return id
 
-    def choose(self, id: str, row: int, note: str | None, expected: str | None, once: Once) -> Saved:
+    def choose(self, id: str, row: int, note: str | None, expected: str | None, once: Once) -> SaveResult:
         """Return a new revision of the design with the values of a row.
 
         Its note names the relations they replace.
@@ -177,7 +177,7 @@ class Studies:
     def values(self, study: StudyRow, number: int) -> dict[str, float]:
         """Return the values [SI] of the places in a row that was calculated; raises InvalidInputs."""
         with self.database.read() as session:
-            stored = Stored(self.store, repository.chunks(session, study.id))
+            stored = StoredRows(self.store, repository.chunks(session, study.id))
         part = next((p for p in stored.parts if p.first <= number < p.first + p.count), None)
         if part is None:
             detail = f"the study has calculated {stored.count} rows so far, numbered from 0"

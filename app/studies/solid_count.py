@@ -10,7 +10,7 @@ import numpy as np
 from app.designs.engine.needs import solids_in_the_way
 from app.designs.network import Block
 from app.studies.chunks import Levels, placed
-from app.studies.task import Prepared
+from app.studies.task import TaskState
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
 
@@ -26,14 +26,14 @@ SEARCHES = "a search asks for its rows one after another; sample these places fi
 
 
 @dataclass(frozen=True)
-class Needed:
+class SolidCount:
     """Number of solids that a study needs at most, and of those that finite elements analyse."""
 
     solids: int = 0
     analysed: int = 0
 
 
-def counted(ready: Prepared, count: int, given: Array | None, levels: Levels, seconds: float) -> Needed:
+def counted(ready: TaskState, count: int, given: Array | None, levels: Levels, seconds: float) -> SolidCount:
     """Return the solids that the rows of a study need; to build one takes so long [s].
 
     Raises
@@ -43,11 +43,11 @@ def counted(ready: Prepared, count: int, given: Array | None, levels: Levels, se
     """
     solids, points = ready.solids, ready.asked.points
     if not solids.measures:
-        return Needed()
+        return SolidCount()
     if points is None and given is None:
         raise InvalidInputs(_refused(ready, count, count, seconds, SEARCHES))
     several = {model.name: _of_model(ready, model, count, given, levels) for model in solids.models}
-    needed = Needed(sum(several.values()), sum(several[name] for name in solids.analysed))
+    needed = SolidCount(sum(several.values()), sum(several[name] for name in solids.analysed))
     if needed.solids > MOST_SOLIDS:
         why = f"a study builds at most {MOST_SOLIDS}"
         raise InvalidInputs(_refused(ready, count, needed.solids, seconds, why))
@@ -57,7 +57,7 @@ def counted(ready: Prepared, count: int, given: Array | None, levels: Levels, se
     return needed
 
 
-def _refused(ready: Prepared, rows: int, solids: int, seconds: float, why: str) -> Iterator[Fault]:
+def _refused(ready: TaskState, rows: int, solids: int, seconds: float, why: str) -> Iterator[Fault]:
     """Yield a fault for each measure, which names the chain from what varies."""
     graph, measures = ready.net.graph, ready.solids.measures
     hours = f"about {solids * seconds / HOUR:.2g} h at {seconds:.2g} s each, as jobs have taken lately"
@@ -65,7 +65,7 @@ def _refused(ready: Prepared, rows: int, solids: int, seconds: float, why: str) 
         yield replace(fault, detail=f"{fault.detail}: {rows} rows are up to {solids} solids, {hours}; {why}")
 
 
-def _of_model(ready: Prepared, model: Block, count: int, given: Array | None, levels: Levels) -> int:
+def _of_model(ready: TaskState, model: Block, count: int, given: Array | None, levels: Levels) -> int:
     """Number of solids of a model; at most, if it is not known before other solids are built."""
     places = [ready.asked.places.index(place) for place in ready.solids.drivers(model)]
     chosen = _distinct(ready, places, count, given)
@@ -78,12 +78,12 @@ def _of_model(ready: Prepared, model: Block, count: int, given: Array | None, le
     return len(own) if own or not wanting else len(chosen)  # else it follows from solids that are not built
 
 
-def _is_affordable(ready: Prepared, model: Block, count: int, levels: Levels) -> bool:
+def _is_affordable(ready: TaskState, model: Block, count: int, levels: Levels) -> bool:
     references = [cell.reference for cell in model.cells.values()]
     return ready.net.seconds(count, references, levels, by_tables=True) <= AFFORDABLE
 
 
-def _distinct(ready: Prepared, places: Sequence[int], count: int, given: Array | None) -> Array:
+def _distinct(ready: TaskState, places: Sequence[int], count: int, given: Array | None) -> Array:
     """Return the first row of each distinct set of values of some places; not all, if there are too many."""
     chosen: Array = np.empty((0, len(ready.asked.places)))
     for first in range(0, count, AT_ONCE):

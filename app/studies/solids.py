@@ -21,14 +21,14 @@ from app.designs.graph import build_graph, raise_if
 from app.designs.network import Graph
 from app.jobs.service import JobContext
 from app.reference import Reference
-from app.solids.analysis_process import Analysing
+from app.solids.analysis_process import AnalysisRunner
 from app.solids.analysis_rows import analysed
 from app.solids.builds import Builds
 from app.solids.questions import in_order
 from app.solids.rows import built
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild
-from app.studies.row_solids import Measured, Solids, Texts, Wanting
+from app.studies.row_solids import SolidMeasures, SolidRequest, Solids, Texts
 from app.workers.base import Runner
 from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed, MemoryExceeded
 from cad.errors import AnalysisError, GeometryError
@@ -51,10 +51,10 @@ MOST_CRASHES = 2  # of the process that builds one solid
 GLANCE = 0.05  # how often a study that waits for its turn looks whether it was cancelled [s]
 
 
-class SolidMaking:
+class SolidPool:
     """Makes solids for studies, no more at a time than the service has job threads."""
 
-    def __init__(self, database: Database, builds: Builds, analysing: Analysing, most: int) -> None:
+    def __init__(self, database: Database, builds: Builds, analysing: AnalysisRunner, most: int) -> None:
         self.database, self.builds, self.analysing = database, builds, analysing
         self._turns = threading.BoundedSemaphore(most)
 
@@ -84,35 +84,35 @@ class SolidMaking:
 class StudySolids:
     """The solids of one study while a job works on it."""
 
-    making: SolidMaking
+    making: SolidPool
     document: Document
     catalogues: Catalogues
     context: JobContext
     _graph: Graph | None = None
-    _measures: dict[tuple[str, Texts], Measured] = field(default_factory=dict)
+    _measures: dict[tuple[str, Texts], SolidMeasures] = field(default_factory=dict)
 
     @property
     def measured(self) -> Solids:
         """Return the measures so far."""
         return tuple(self._measures.values())
 
-    def is_known(self, wanting: Wanting) -> bool:
+    def is_known(self, wanting: SolidRequest) -> bool:
         """Return whether a solid was measured, or has failed."""
         return (wanting.model, wanting.texts) in self._measures
 
-    def make(self, wanting: Wanting) -> None:
+    def make(self, wanting: SolidRequest) -> None:
         """Build a solid and measure it, or note why it has no measures; raises JobCancelled."""
         with self.making.turn(self.context):
             self._measures[wanting.model, wanting.texts] = self._measured_solid(wanting)
 
-    def _measured_solid(self, wanting: Wanting) -> Measured:
+    def _measured_solid(self, wanting: SolidRequest) -> SolidMeasures:
         try:
             measures = tuple(self._measured(wanting).items())
         except FAILURES as error:
-            return Measured(wanting.model, wanting.texts, failure=_refusal(wanting.model, error))
-        return Measured(wanting.model, wanting.texts, measures)
+            return SolidMeasures(wanting.model, wanting.texts, failure=_refusal(wanting.model, error))
+        return SolidMeasures(wanting.model, wanting.texts, measures)
 
-    def _measured(self, wanting: Wanting) -> dict[str, float]:
+    def _measured(self, wanting: SolidRequest) -> dict[str, float]:
         """Return the measures of a solid [SI], by their names within its model."""
         model = self.document.models[wanting.model]
         assert isinstance(model.version, int), "a revision pins every version"
@@ -140,7 +140,7 @@ class StudySolids:
             else:
                 return
 
-    def _analysed(self, wanting: Wanting, shape: CadModel, runner: Runner) -> dict[str, float]:
+    def _analysed(self, wanting: SolidRequest, shape: CadModel, runner: Runner) -> dict[str, float]:
         """Return the results of finite elements on a solid [SI]."""
         references = [Reference.parse(f"{wanting.model}.{name}") for name in wanting.measures]
         values: dict[str, float] = {}

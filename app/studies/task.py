@@ -17,7 +17,7 @@ from app.plain import JsonObject
 from app.reference import Reference
 from app.storage.tables import canonical_json
 from app.studies.bodies import StudyIn
-from app.studies.question import Asked, asked_of
+from app.studies.question import StudyQuestion, asked_of
 from app.studies.row_solids import RowSolids, iterated, measures_of_rows, tables_among
 from templates.core.errors import Fault, InvalidInputs
 
@@ -56,7 +56,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Prepared:
+class TaskState:
     """A task in the process that calculates it: read, checked, built once.
 
     Attributes
@@ -68,12 +68,12 @@ class Prepared:
     """
 
     net: Net
-    asked: Asked
+    asked: StudyQuestion
     solids: RowSolids
     nominal: Mapping[Reference, float]
 
 
-def prepared(task: Task) -> Prepared:
+def prepared(task: Task) -> TaskState:
     """Return the design of a task as a function of rows, and what is asked of it.
 
     Raises
@@ -90,7 +90,7 @@ def read_body(body: str) -> StudyIn:
 
 
 @lru_cache(maxsize=4)
-def _prepared(task: Task) -> Prepared:
+def _prepared(task: Task) -> TaskState:
     document, catalogues = task.design.read()
     varied = [Reference.parse(name) for name in task.varied]
     measured_si = {Reference.parse(name): value for name, value in task.measured}
@@ -107,7 +107,7 @@ def _prepared(task: Task) -> Prepared:
     }
     if measures or constant != measured_si:
         net = _net(document, catalogues, [*varied, *measures], constant, aside)
-    return Prepared(net, asked, RowSolids(net, tuple(measures)), nominal)
+    return TaskState(net, asked, RowSolids(net, tuple(measures)), nominal)
 
 
 def _net(

@@ -23,7 +23,7 @@ from templates.core.units.units import unit
 LONGEST_NAME = 180  # letters of the first design's name that the new one keeps
 
 
-class Building:
+class DesignFactory:
     """Makes the designs that studies ask for."""
 
     def __init__(self, services: StudyServices, service: Designs) -> None:

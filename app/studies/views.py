@@ -15,8 +15,8 @@ from app.storage.tables import StudyRow as Row
 from app.studies import repository
 from app.studies.archive import AnyArray, Archive
 from app.studies.plan import Plan
-from app.studies.row_columns import CONFIRM, ERROR, OUTPUT, PLACE, VERDICT, Part, Stored
-from app.studies.schemas import Estimate, Refused, Study, StudyEstimate, StudyResult, StudyRow, StudyRows
+from app.studies.row_columns import CONFIRM, ERROR, OUTPUT, PLACE, VERDICT, Part, StoredRows
+from app.studies.schemas import Estimate, RefusedRows, Study, StudyEstimate, StudyResult, StudyRow, StudyRows
 from templates.core.arrays import Array, Integers
 from templates.core.errors import InvalidInputs, unknown_names
 from templates.core.judging.comparison import NOT_CHECKED, WORST_FIRST
@@ -43,7 +43,7 @@ def study(session: Session, row: Row) -> Study:
         "progress": 1.0 if row.state == "done" else _share(session, row, plan, progress.rows),
         "rows": row.rows,
         "done": progress.rows,
-        "refused": Refused(count=sum(progress.refused.values()), reasons=dict(frequent)),
+        "refused": RefusedRows(count=sum(progress.refused.values()), reasons=dict(frequent)),
         "varied": plan.places,
         "outputs": plan.outputs,
         "criteria": plan.criteria,
@@ -90,7 +90,7 @@ def _share(session: Session, row: Row, plan: Plan, rows: int) -> float:
 
 
 @dataclass(frozen=True)
-class Wanted:
+class RowQuery:
     """The rows and columns to list, and their order."""
 
     columns: tuple[str, ...] = ()  # all, if none is named
@@ -98,10 +98,10 @@ class Wanted:
     sort: str | None = None  # a column; with `-` before it the largest first
 
 
-class Listing:
+class RowList:
     """The rows of a study that were calculated, filtered and sorted."""
 
-    def __init__(self, row: Row, stored: Stored, wanted: Wanted) -> None:
+    def __init__(self, row: Row, stored: StoredRows, wanted: RowQuery) -> None:
         self.plan, self.stored, self.wanted = Plan.of(row.plan), stored, wanted
         names = [*self.plan.places, *self.plan.outputs]
         sort = (wanted.sort or "").removeprefix("-")

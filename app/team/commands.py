@@ -9,7 +9,7 @@ from pathlib import Path
 
 import httpx
 
-from app.team.processes import LOOPBACK, START, Tied, free_port, listens
+from app.team.processes import LOOPBACK, START, ChildProgram, free_port, listens
 
 
 class Command:
@@ -32,7 +32,7 @@ class Command:
     ) -> None:
         self.name, self._arguments = name, arguments
         self._log, self._environment = folder / f"{name.replace(' ', '-')}.log", environment
-        self._process: Tied | None = None
+        self._process: ChildProgram | None = None
 
     @property
     def lives(self) -> bool:
@@ -48,10 +48,10 @@ class Command:
         """Start it; it works some seconds later."""
         self.stop()  # what is left of a process that has died
         command = [sys.executable, "-m", "app", *self._arguments]
-        self._process = Tied(self.name, command, self._log, environment=self._environment)
+        self._process = ChildProgram(self.name, command, self._log, environment=self._environment)
 
     def until(self, answers: Callable[[], bool], seconds: float = START) -> None:
-        """Wait until it answers; raises as `Tied.until` does."""
+        """Wait until it answers; raises as `ChildProgram.until` does."""
         assert self._process is not None, "it has been started"
         self._process.until(answers, seconds)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import httpx
 
 from app.team.errors import DidNotStart, Missing
-from app.team.processes import LOOPBACK, Tied, free_port, listens
+from app.team.processes import LOOPBACK, ChildProgram, free_port, listens
 
 MISSING = "no S3 server for trials is installed: pip install 'moto[s3]' flask flask-cors"
 AWS = {
@@ -41,7 +41,7 @@ class ObjectStore:
             raise Missing(MISSING)
         self.port = free_port()
         command = [sys.executable, "-m", "moto.server", "-H", LOOPBACK, "-p", str(self.port)]
-        self._process = Tied("the S3 server", command, folder / "s3.log")
+        self._process = ChildProgram("the S3 server", command, folder / "s3.log")
         try:
             self._process.until(lambda: listens(self.port))
         except DidNotStart:

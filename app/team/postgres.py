@@ -16,7 +16,7 @@ from tempfile import mkdtemp
 
 from app.storage.postgres_programs import postgres_program
 from app.team.errors import DidNotStart, Missing
-from app.team.processes import LOOPBACK, START, Tied, free_port
+from app.team.processes import LOOPBACK, START, ChildProgram, free_port
 
 USER = "crankwright"
 MISSING = "PostgreSQL is not installed: apt-get install postgresql"
@@ -44,7 +44,7 @@ class Cluster:
         _require_driver()
         self.port = free_port()
         self.folder = Path(mkdtemp(prefix="crankwright-postgres-"))
-        self._process: Tied | None = None
+        self._process: ChildProgram | None = None
         self._options = ["fsync=on" if is_durable else "fsync=off", f"listen_addresses={LOOPBACK}"]
         self._options += ["unix_socket_directories=", "max_connections=200", "shared_buffers=64MB"]
         if _NOBODY:
@@ -105,7 +105,7 @@ class Cluster:
     def _start(self) -> None:
         options = [argument for option in self._options for argument in ("-c", option)]
         command = [str(self._postgres), "-D", str(self.folder / "data"), "-p", str(self.port), *options]
-        self._process = Tied("PostgreSQL", command, self.folder / "log", user=_NOBODY)
+        self._process = ChildProgram("PostgreSQL", command, self.folder / "log", user=_NOBODY)
         self._process.until(self._answers)
 
     def stop(self) -> None:

@@ -37,7 +37,7 @@ def listens(port: int) -> bool:
     return False
 
 
-class Tied:
+class ChildProgram:
     """A program in a session of its own, with its output in a file; it ends with this process.
 
     Parameters

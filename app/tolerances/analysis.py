@@ -17,12 +17,12 @@ from app.designs.engine.net import Net, Refusal, Table
 from app.designs.graph import Catalogues, Graph, build_graph, raise_if
 from app.reference import Reference
 from app.schemas.answers import Warning
-from app.tolerances.criteria import Demanded, demanded
+from app.tolerances.criteria import CriterionVariable, demanded
 from app.tolerances.factors import Factor
 from app.tolerances.question import Question
 from app.tolerances.scatter import SCRAMBLINGS, Rows, Scatter, scatter
 from app.tolerances.shares import Shares, shares
-from app.tolerances.variables import Varied, faults, varied
+from app.tolerances.variables import TolerancedVariable, faults, varied
 from app.tolerances.worst import Worst, worst
 from templates.core.arrays import Array
 from templates.core.errors import Fault, unknown_name, unknown_names
@@ -40,7 +40,7 @@ LONGEST = 600.0
 
 
 @dataclass(frozen=True)
-class Findings:
+class ToleranceResults:
     """The results of an analysis, in SI."""
 
     nominal: Table
@@ -68,8 +68,8 @@ class Analysis:
     net: Net
     question: Question
     outputs: list[Reference]
-    demands: dict[str, Demanded]
-    varied: list[Varied]
+    demands: dict[str, CriterionVariable]
+    varied: list[TolerancedVariable]
     warnings: list[Warning]
     first_refusal: Refusal | None = None
     stated: dict[str, bool] = field(default_factory=dict)  # by criterion: the errors of all models behind it
@@ -112,7 +112,7 @@ class Analysis:
         """Return rows of each sample for the shares."""
         return (self.question.points or USUAL_POINTS) // SCRAMBLINGS
 
-    def carried_out(self) -> Findings:
+    def carried_out(self) -> ToleranceResults:
         """Calculate everything.
 
         Raises
@@ -131,7 +131,7 @@ class Analysis:
         spread = scatter(self.factors, self._judged, question.points or USUAL_POINTS, question.seed, most)
         report(0.7, "shares are estimated")
         causes = shares(self.factors, self._outputs, self.base, self.question.seed)
-        return Findings(nominal, ends, spread, causes, self._errors)
+        return ToleranceResults(nominal, ends, spread, causes, self._errors)
 
     def _nominal(self) -> Table:
         """Return the values of the design itself, at the levels that all rows have from here on."""
@@ -206,7 +206,7 @@ def _stacked(table: Table, outputs: Sequence[Reference]) -> Array:
     return np.stack([table.columns[output] for output in outputs], axis=1)
 
 
-def _faults(graph: Graph, question: Question, every: Mapping[str, Demanded]) -> Iterator[Fault]:
+def _faults(graph: Graph, question: Question, every: Mapping[str, CriterionVariable]) -> Iterator[Fault]:
     """Yield the faults of the names and numbers of a question."""
     unknown = [name for name in question.criteria or () if name not in every]
     yield from (fault.within("criteria") for fault in unknown_names(unknown, every, "criterion"))
@@ -242,7 +242,7 @@ def _is_quantity(graph: Graph, reference: Reference) -> bool:
     return not isinstance(declared, (Choice, Text, TableInput))
 
 
-def _outputs(graph: Graph, question: Question, demands: Mapping[str, Demanded]) -> list[Reference]:
+def _outputs(graph: Graph, question: Question, demands: Mapping[str, CriterionVariable]) -> list[Reference]:
     """Return the outputs asked for; else those that criteria hold against limits; else all of the steps."""
     if question.outputs is not None:
         return [Reference.parse(name) for name in dict.fromkeys(question.outputs)]

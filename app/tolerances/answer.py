@@ -12,9 +12,9 @@ from app.reference import Reference
 from app.schemas.answers import Quantity
 from app.tolerances import schemas as answers
 from app.tolerances import shares as indices
-from app.tolerances.analysis import Analysis, Findings
+from app.tolerances.analysis import Analysis, ToleranceResults
 from app.tolerances.bodies import ToleranceIn
-from app.tolerances.criteria import Demanded
+from app.tolerances.criteria import CriterionVariable
 from app.tolerances.scatter import AIM, Spread, Yield
 from app.tolerances.schemas import ToleranceAnalysis
 from app.tolerances.worst import Extreme
@@ -26,15 +26,15 @@ REFUSED = "the design refuses some products, so there are no shares; see analysi
 STEADY = "no tolerance changes it"
 
 
-def answer(analysis: Analysis, findings: Findings, revision: int) -> answers.ToleranceAnalysis:
+def answer(analysis: Analysis, findings: ToleranceResults, revision: int) -> answers.ToleranceAnalysis:
     """Return the whole answer."""
-    return _Answering(analysis, findings).whole(revision)
+    return _Answer(analysis, findings).whole(revision)
 
 
 @dataclass(frozen=True)
-class _Answering:
+class _Answer:
     analysis: Analysis
-    findings: Findings
+    findings: ToleranceResults
 
     def whole(self, revision: int) -> answers.ToleranceAnalysis:
         """Return the answer: the analysis, and every output by its name."""
@@ -67,12 +67,12 @@ class _Answering:
         left_out = {name for name in optional if parts[name] in (None, [], {})}
         return answers.About(**{name: part for name, part in parts.items() if name not in left_out})
 
-    def _toleranced(self, place: int) -> answers.Toleranced:
+    def _toleranced(self, place: int) -> answers.TolerancedValue:
         one, quantity = self.analysis.varied[place].factor, self._quantity
         zone = getattr(self.analysis.varied[place].typed.tolerance, "zone", None)
         ends = {name: quantity(place, getattr(one, name)) for name in ("nominal", "low", "high")}
         parts = {**ends, "distribution": one.distribution, **({"zone": zone} if zone else {})}
-        return answers.Toleranced.model_validate(parts)
+        return answers.TolerancedValue.model_validate(parts)
 
     def _quantity(self, place: int, si: float) -> Quantity:
         """Return a toleranced value in the unit in which it was typed."""
@@ -91,10 +91,10 @@ class _Answering:
         at = {} if worst.first_refused is None else self._at(worst.first_refused)
         return answers.RefusedProducts(rows=rows, at=at, reason=f"{refusal.place}: {refusal.detail}")
 
-    def _why(self, name: str) -> answers.NotJudged:
+    def _why(self, name: str) -> answers.UnjudgedCriterion:
         if missing := self.analysis.demands[name].missing:
-            return answers.NotJudged(reason="a limit is missing", give=missing)
-        return answers.NotJudged(reason="its value or its limit has no value")
+            return answers.UnjudgedCriterion(reason="a limit is missing", give=missing)
+        return answers.UnjudgedCriterion(reason="its value or its limit has no value")
 
     def _output(self, column: int, reference: Reference) -> answers.OutputScatter:
         scale = unit(self.analysis.net.unit(reference))
@@ -164,7 +164,7 @@ class _Answering:
         }
         return answers.Yield.model_validate({n: part for n, part in parts.items() if part is not None})
 
-    def _limit(self, name: str, demand: Demanded) -> float | None:
+    def _limit(self, name: str, demand: CriterionVariable) -> float | None:
         """Return the limit [SI], where it is one for all products."""
         if not demand.has_one_limit:
             return None

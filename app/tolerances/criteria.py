@@ -11,7 +11,7 @@ from templates.core.judging.criterion import Criterion
 
 
 @dataclass(frozen=True)
-class Demanded:
+class CriterionVariable:
     """A criterion, as an analysis sees it."""
 
     subject: Subject
@@ -53,9 +53,11 @@ class Demanded:
         return [f"{block.name}.{one.name}" for one in self.criterion.limits if one.name not in given]
 
 
-def demanded(graph: Graph) -> dict[str, Demanded]:
+def demanded(graph: Graph) -> dict[str, CriterionVariable]:
     """Return every criterion of a design that is judged and not waived."""
-    return {name: Demanded(one) for name, one in subjects(graph).items() if _counts(graph, name, one)}
+    return {
+        name: CriterionVariable(one) for name, one in subjects(graph).items() if _counts(graph, name, one)
+    }
 
 
 def _counts(graph: Graph, name: str, subject: Subject) -> bool:

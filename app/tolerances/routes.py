@@ -7,7 +7,7 @@ from fastapi import APIRouter, Request, Response
 from app.api.answers import answered
 from app.api.dependencies import TheTolerances, Units
 from app.api.responses import LATER, patience
-from app.designs.questions import Asked
+from app.designs.questions import DesignQuestion
 from app.designs.routes.designs import Id, Prefer
 from app.http.access import TheClient, needs
 from app.http.strict_requests import StrictRoute
@@ -34,5 +34,5 @@ async def analyse_tolerances(
     prefer: Prefer = None,
 ) -> Response:
     """Analyse the tolerances of the newest revision: worst case, scatter, shares, yields."""
-    asked = Asked(id, (body or ToleranceIn()).model_dump_json(exclude_unset=True), units=units)
+    asked = DesignQuestion(id, (body or ToleranceIn()).model_dump_json(exclude_unset=True), units=units)
     return await answered(tolerances, asked, request, client, patience(prefer, tolerances.steps.deadline))

@@ -11,7 +11,7 @@ from app.presentation.units import System, shown_unit, shown_value
 from app.schemas.answers import Answer, Quantity, Warning
 
 
-class Toleranced(Answer):
+class TolerancedValue(Answer):
     """A value that lies between limits."""
 
     nominal: Quantity
@@ -147,7 +147,7 @@ class RefusedProducts(Answer):
     reason: str
 
 
-class NotJudged(Answer):
+class UnjudgedCriterion(Answer):
     """A criterion without a yield."""
 
     reason: str
@@ -161,10 +161,10 @@ class About(Answer):
     points: int = Field(description="products that were sampled for quantiles and yields")
     seed: int
     rows: int = Field(description="rows of the design that were calculated in all")
-    toleranced: dict[str, Toleranced] = Field(description="values that varied")
+    toleranced: dict[str, TolerancedValue] = Field(description="values that varied")
     levels: dict[str, str] = Field(description="of fidelity, by step; the same for all rows")
     criteria: dict[str, Yield] = Field({}, description="the yield of each criterion")
-    not_judged: dict[str, NotJudged] = {}
+    not_judged: dict[str, UnjudgedCriterion] = {}
     refused: RefusedProducts | None = None
     warnings: list[Warning] = Field([], description="tolerances that had no part in this")
 

@@ -24,7 +24,7 @@ APART = "nothing that was asked for follows from it"
 
 
 @dataclass(frozen=True)
-class Varied:
+class TolerancedVariable:
     """A toleranced value: where it stands, as its user wrote it, and as a factor of the analysis."""
 
     reference: Reference
@@ -32,21 +32,21 @@ class Varied:
     factor: Factor
 
 
-def varied(graph: Graph, behind: Collection[Cell]) -> tuple[list[Varied], list[Warning]]:
+def varied(graph: Graph, behind: Collection[Cell]) -> tuple[list[TolerancedVariable], list[Warning]]:
     """Return the toleranced values from which something follows, and a warning for every other one.
 
     `behind` are the cells from which anything that was asked for follows.
     """
-    chosen: list[Varied] = []
+    chosen: list[TolerancedVariable] = []
     warnings: list[Warning] = []
     for cell in graph.cells():
         if cell.relations or not is_toleranced(cell.raw) or isinstance(cell.declared, Choice):
             continue
-        typed = read(cell.raw, cell.declared.meaning.unit) if cell.declared else read_any(cell.raw)
+        typed = read(cell.raw, cell.declared.meaning.accepted) if cell.declared else read_any(cell.raw)
         factor = _factor(cell, typed)
         reason = factor if isinstance(factor, str) else None if cell in behind else APART
         if isinstance(factor, Factor) and reason is None:
-            chosen.append(Varied(cell.reference, typed, factor))
+            chosen.append(TolerancedVariable(cell.reference, typed, factor))
         elif reason is not None:
             detail = f"its tolerance has no part in this analysis: {reason}"
             warnings.append(Warning(code=UNUSED, name=cell.name, detail=detail))
@@ -68,7 +68,7 @@ def _factor(cell: Cell, typed: Typed) -> Factor | str:
     return Factor(cell.name, value, low, high, tolerance.distribution)
 
 
-def faults(chosen: Sequence[Varied], warnings: Sequence[Warning]) -> Iterator[Fault]:
+def faults(chosen: Sequence[TolerancedVariable], warnings: Sequence[Warning]) -> Iterator[Fault]:
     """Yield a fault if nothing, or too much, varies."""
     if not chosen:
         others = "; ".join(f"{w.name}: {w.detail}" for w in warnings[:3])

@@ -15,7 +15,7 @@ import signal
 
 
 class WorkerError(Exception):
-    """A function could not be brought to its end."""
+    """A function could not be completed."""
 
 
 class JobCrashed(WorkerError):

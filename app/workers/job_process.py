@@ -19,7 +19,16 @@ from typing import NoReturn, cast
 from app.workers.base import Limits
 from app.workers.errors import MemoryExceeded, RemoteError, WorkerError
 from app.workers.lifeline import hang_on, has_hung_up
-from app.workers.messages import Packed, Progress, Raised, Request, Returned, pack, receive, send
+from app.workers.messages import (
+    ErrorMessage,
+    PackedMessage,
+    Progress,
+    Request,
+    ResultMessage,
+    pack,
+    receive,
+    send,
+)
 from templates.core.progress import reporting
 
 Rehearsal = Callable[[Callable[[], bool]], object]
@@ -71,7 +80,7 @@ def _die_with(parent: int) -> None:
         raise ProcessLookupError(parent)
 
 
-def _answer(packed: Packed, connection: Connection) -> tuple[Packed, bool]:
+def _answer(packed: PackedMessage, connection: Connection) -> tuple[PackedMessage, bool]:
     """Run a pickled request; the pickled message that says how it ended, and whether another may follow."""
     reusable = False
     try:
@@ -83,7 +92,7 @@ def _answer(packed: Packed, connection: Connection) -> tuple[Packed, bool]:
         return _run(task, request, connection)
     except BaseException as error:  # whatever it is belongs to the caller
         reusable = reusable and isinstance(error, Exception) and not isinstance(error, WorkerError)
-        return pack(Raised(pack(_portable(error)), reusable)), reusable
+        return pack(ErrorMessage(pack(_portable(error)), reusable)), reusable
 
 
 def _task(request: Request) -> Callable[[], object]:
@@ -91,17 +100,17 @@ def _task(request: Request) -> Callable[[], object]:
     return partial(function, *args)
 
 
-def _run(task: Callable[[], object], request: Request, connection: Connection) -> tuple[Packed, bool]:
+def _run(task: Callable[[], object], request: Request, connection: Connection) -> tuple[PackedMessage, bool]:
     try:
         with reporting(lambda fraction, text: send(connection, pack(Progress(fraction, text)))):
             result = task()
         reusable = request.reusable and not _has_grown(request.limits)
-        return pack(Returned(_packed_result(result), reusable)), reusable
+        return pack(ResultMessage(_packed_result(result), reusable)), reusable
     except MemoryError:
         raise MemoryExceeded(request.limits.memory_mb) from None
 
 
-def _packed_result(result: object) -> Packed:
+def _packed_result(result: object) -> PackedMessage:
     try:
         return pack(result)
     except (pickle.PicklingError, TypeError, AttributeError) as error:

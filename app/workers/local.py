@@ -11,7 +11,7 @@ from typing import NamedTuple, TypeVar, TypeVarTuple, cast
 
 from app.workers.base import GEOMETRY, UNLIMITED, Lane, Limits, shares_process
 from app.workers.errors import DeadlineExceeded, JobCancelled, WorkerError
-from app.workers.messages import Outcome, Request, Returned
+from app.workers.messages import Outcome, Request, ResultMessage
 from app.workers.prefork import fork_server
 from app.workers.processes import JobProcess
 from app.workers.threads import ONE_THREAD
@@ -37,7 +37,7 @@ class LocalProcesses:
         self._forkserver = fork_server(preload, ONE_THREAD)
         self._lock = threading.Lock()
         self._spare = self._forkserver.fork()
-        self._kept: list[Used] = []
+        self._kept: list[IdleProcess] = []
         self._closed = False
 
     def run(
@@ -86,12 +86,12 @@ class LocalProcesses:
                 used.process.kill()
             self._kept.clear()
 
-    def lend(self) -> "Used | None":
+    def lend(self) -> "IdleProcess | None":
         """Return the process that an earlier job has left, if one waits."""
         with self._lock:
             return self._kept.pop() if self._kept else None
 
-    def keep(self, used: "Used") -> None:
+    def keep(self, used: "IdleProcess") -> None:
         """Keep the process of a job for the next one, or end it if another one waits already."""
         with self._lock:
             if len(self._kept) < MOST_KEPT and not self._closed:
@@ -115,7 +115,7 @@ MOST_IN_BATCH = 100  # functions that one process runs: what leaks in it ends wi
 MOST_KEPT = 1  # processes that wait for another job after their own
 
 
-class Used(NamedTuple):
+class IdleProcess(NamedTuple):
     """A process that has returned from so many functions, and waits for another."""
 
     process: JobProcess
@@ -180,7 +180,7 @@ class Batch:
             except (OSError, WorkerError) as error:  # it died, maybe while it waited
                 logger.info("once more in a new process: %s", error)
             else:
-                if isinstance(outcome, Returned):
+                if isinstance(outcome, ResultMessage):
                     return outcome
                 logger.info("once more in a new process: its predecessors may be to blame")
         self._count = 0
@@ -191,7 +191,7 @@ class Batch:
         if (process := self._taken()) is None:
             return
         if self._keeper is not None and self._is_shared:
-            self._keeper.keep(Used(process, self._count))
+            self._keeper.keep(IdleProcess(process, self._count))
         else:
             process.kill()
 
@@ -220,7 +220,7 @@ class Batch:
         """
         outcome = process.finish(limits, on_progress, cancelled)
         self._count += 1
-        if isinstance(outcome, Returned) and process.reusable and self._count < MOST_IN_BATCH:
+        if isinstance(outcome, ResultMessage) and process.reusable and self._count < MOST_IN_BATCH:
             self._process = process
         else:
             process.kill()

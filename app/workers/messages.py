@@ -20,7 +20,7 @@ _COUNT = Struct("!I")
 
 
 @dataclass(frozen=True)
-class Packed:
+class PackedMessage:
     """A pickled message, and beside it the large bytes that it holds, piece by piece."""
 
     message: bytes
@@ -33,14 +33,14 @@ class Packed:
     def __reduce_ex__(self, protocol: SupportsIndex) -> tuple[object, ...]:
         """Return the parts to pickle; within another message, large parts go beside it and are not copied."""
         message = PickleBuffer(self.message) if len(self.message) > PIECE else self.message
-        return Packed, (message, tuple(map(PickleBuffer, self.pieces)))
+        return PackedMessage, (message, tuple(map(PickleBuffer, self.pieces)))
 
 
 @dataclass(frozen=True)
 class Request:
     """To the process: what to run, within what limits, and whether another request may follow."""
 
-    task: Packed
+    task: PackedMessage
     limits: Limits
     reusable: bool = False
 
@@ -65,10 +65,10 @@ class Progress:
 
 
 @dataclass(frozen=True)
-class Returned:
+class ResultMessage:
     """From the process: the result, and whether it waits for another request."""
 
-    value: Packed
+    value: PackedMessage
     reusable: bool = False
 
     def result(self) -> object:
@@ -77,10 +77,10 @@ class Returned:
 
 
 @dataclass(frozen=True)
-class Raised:
+class ErrorMessage:
     """From the process: the exception, and whether it waits for another request."""
 
-    error: Packed
+    error: PackedMessage
     reusable: bool = False
 
     def result(self) -> NoReturn:
@@ -90,25 +90,25 @@ class Raised:
         raise error
 
 
-Outcome = Returned | Raised
+Outcome = ResultMessage | ErrorMessage
 
 
-def pack(message: object) -> Packed:
+def pack(message: object) -> PackedMessage:
     """Pickle a message; raises what pickle raises."""
     pieces: list[PickleBuffer] = []
     packed = pickle.dumps(message, protocol=5, buffer_callback=pieces.append)
-    return Packed(packed, tuple(pieces))
+    return PackedMessage(packed, tuple(pieces))
 
 
-def send(connection: Connection, packed: Packed) -> None:
+def send(connection: Connection, packed: PackedMessage) -> None:
     """Send a message: how many pieces follow, itself, the pieces."""
     connection.send_bytes(_COUNT.pack(len(packed.pieces)) + packed.message)
     for piece in packed.pieces:
         connection.send_bytes(piece)
 
 
-def receive(connection: Connection) -> Packed:
+def receive(connection: Connection) -> PackedMessage:
     """Receive a message; blocks. Raises EOFError if the other end closes before all of it has come."""
     head = connection.recv_bytes()
     (count,) = _COUNT.unpack_from(head)
-    return Packed(head[_COUNT.size :], tuple(connection.recv_bytes() for _ in range(count)))
+    return PackedMessage(head[_COUNT.size :], tuple(connection.recv_bytes() for _ in range(count)))

@@ -38,11 +38,13 @@ def fork(preload: Sequence[str], prepare: Callable[[], object] | None = None) ->
     if not _may_fork():
         return
 
-    def begin(modules: Sequence[str], channel: int, lifeline: int, environment: Mapping[str, str]) -> Forked:
+    def begin(
+        modules: Sequence[str], channel: int, lifeline: int, environment: Mapping[str, str]
+    ) -> ForkedProcess:
         sys.stdout.flush()
         sys.stderr.flush()
         if pid := os.fork():
-            return Forked(pid)
+            return ForkedProcess(pid)
         _become_fork_server(modules, channel, lifeline, environment, prepare)
 
     _started[tuple(preload)] = ForkServer(preload, ONE_THREAD, begin)
@@ -64,7 +66,7 @@ def close() -> None:
         _started.popitem()[1].close()
 
 
-class Forked:
+class ForkedProcess:
     """A child of this process; behaves as a `subprocess.Popen`."""
 
     def __init__(self, pid: int) -> None:

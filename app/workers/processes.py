@@ -20,7 +20,7 @@ from typing import Protocol
 from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed
 from app.workers.lifeline import Lifeline
-from app.workers.messages import Outcome, Progress, Raised, Request, Returned, pack, receive, send
+from app.workers.messages import ErrorMessage, Outcome, Progress, Request, ResultMessage, pack, receive, send
 from templates.core.progress import Reporter
 
 _BOOT = (
@@ -112,7 +112,7 @@ class JobProcess:
                 case Progress(fraction, text):
                     if on_progress is not None:
                         on_progress(fraction, text)
-                case Returned() | Raised() as outcome:
+                case ResultMessage() | ErrorMessage() as outcome:
                     self.reusable = outcome.reusable
                     return outcome
 

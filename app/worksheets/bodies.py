@@ -64,13 +64,13 @@ def _examples(**example: JsonValue) -> ConfigDict:
     return ConfigDict(extra="forbid", strict=True, json_schema_extra={"examples": [{**example}]})
 
 
-class Asked(Bounded):
+class WorksheetBody(Bounded):
     """The body of a request about worksheets."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
 
-class SheetCheckIn(Asked):
+class SheetCheckIn(WorksheetBody):
     """A text that is to be checked."""
 
     model_config = _examples(text=EXAMPLE)
@@ -79,7 +79,7 @@ class SheetCheckIn(Asked):
     id: str | None = Field(None, max_length=64, pattern=ID, description="under which it would be described")
 
 
-class SheetIn(Asked):
+class SheetIn(WorksheetBody):
     """A new worksheet."""
 
     model_config = _examples(id="bush_duty", text=EXAMPLE, author="A. Weber")
@@ -94,7 +94,7 @@ class SheetIn(Asked):
     author: Person | None = Field(None, description="who wrote it; nobody proves the name yet")
 
 
-class SheetPatch(Asked):
+class SheetPatch(WorksheetBody):
     """A change of a worksheet: what is not named stays."""
 
     model_config = _examples(text=EDITED)
@@ -103,7 +103,7 @@ class SheetPatch(Asked):
     author: Person | None = None
 
 
-class ReviewIn(Asked):
+class ReviewIn(WorksheetBody):
     """A review of one text."""
 
     model_config = _examples(reviewer="B. Klein", digest="0" * 64)
@@ -112,7 +112,7 @@ class ReviewIn(Asked):
     digest: str = Field(max_length=64, pattern=r"^[0-9a-f]{64}$", description="of the text that was reviewed")
 
 
-class WithdrawIn(Asked):
+class WithdrawIn(WorksheetBody):
     """Why a released version shall not be used any longer."""
 
     model_config = _examples(reason="the clearance is too small")

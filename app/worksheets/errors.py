@@ -51,7 +51,7 @@ class TestsFailed(OutOfOrder):
         super().__init__(f"{count} {'fault' if count == 1 else 'faults'}: {'; '.join(self.reasons)}")
 
 
-class Unresolved(OutOfOrder):
+class UnresolvedRegions(OutOfOrder):
     """Regions of the import differ, are refused or blocked, and their lines stand as imported."""
 
     def __init__(self, reasons: Sequence[str]) -> None:

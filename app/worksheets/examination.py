@@ -22,7 +22,7 @@ LONGEST_TITLE = 200
 
 
 @dataclass(frozen=True)
-class Examined:
+class Examination:
     """The contents that a text declares, and all its faults."""
 
     title: str
@@ -32,7 +32,7 @@ class Examined:
 
 
 @dataclass(frozen=True)
-class Tried:
+class TestRun:
     """A text whose tests ran: why it cannot be released, or its golden record."""
 
     tests: tuple[TestResult, ...]
@@ -40,29 +40,29 @@ class Tried:
     record: Mapping[str, object] | None = None
 
 
-def examined(text: str) -> Examined:
+def examined(text: str) -> Examination:
     """Read a text."""
     try:
         sheet = read(text)
     except SheetRefused as refused:
-        return Examined(title_of(text), None, refused.faults)
-    return Examined(sheet.title[:LONGEST_TITLE], sheet.digest(), (), sheet.language)
+        return Examination(title_of(text), None, refused.faults)
+    return Examination(sheet.title[:LONGEST_TITLE], sheet.digest(), (), sheet.language)
 
 
-def tried(id: str, version: int, text: str) -> Tried:
+def tried(id: str, version: int, text: str) -> TestRun:
     """Run the tests of a text, and calculate its golden record: the example, and steps around it."""
     try:
         cls = read(text).template(id, version)
     except SheetRefused as refused:
-        return Tried((), tuple(fault.sentence for fault in refused.faults))
+        return TestRun((), tuple(fault.sentence for fault in refused.faults))
     tests = run_tests(cls)
     failed = (f"line {one.line}: test {one.words!r}: {one.message}" for one in tests if not one.passed)
     if reasons := (*failed, *_unusable(cls)):
-        return Tried(tests, reasons)
+        return TestRun(tests, reasons)
     try:
-        return Tried(tests, (), record(cls))
+        return TestRun(tests, (), record(cls))
     except InvalidInputs as error:
-        return Tried(tests, tuple(f"the example: {fault.name}: {fault.detail}" for fault in error.faults))
+        return TestRun(tests, tuple(f"the example: {fault.name}: {fault.detail}" for fault in error.faults))
 
 
 def _unusable(cls: type[Template]) -> Iterator[str]:

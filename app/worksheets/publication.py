@@ -27,7 +27,7 @@ AT_ONCE = 15.0  # how long a look reads releases; those that are left are read b
 WAITING = "its release is being read again, as at every start of the service; ask again in some seconds"
 
 
-class Published:
+class WorksheetPublication:
     """Keeps the worksheets among the templates as the database has them.
 
     A released version is read from its text once in every server. If its digest or its golden results are not

@@ -24,10 +24,10 @@ from app.workers.errors import DeadlineExceeded
 from app.worksheets import repository, views
 from app.worksheets.bodies import ReviewIn, SheetIn, SheetPatch, WithdrawIn
 from app.worksheets.errors import IdTaken, OtherText, OutOfOrder, OwnReview, StaleWorksheet, TestsFailed
-from app.worksheets.examination import Examined, Tried, examined, tried
+from app.worksheets.examination import Examination, TestRun, examined, tried
 from app.worksheets.importing.record import ImportRecord, require_resolved
 from app.worksheets.names import is_same_person, require_free, signed
-from app.worksheets.publication import Published
+from app.worksheets.publication import WorksheetPublication
 from app.worksheets.repository import RELEASED
 from app.worksheets.schemas.worksheets import Sheet
 
@@ -44,7 +44,11 @@ class Worksheets:
     """All changes of worksheets; every method answers with the version that it led to."""
 
     def __init__(
-        self, database: Database, catalogues: Catalogues, pool: CalculationPool, published: Published
+        self,
+        database: Database,
+        catalogues: Catalogues,
+        pool: CalculationPool,
+        published: WorksheetPublication,
     ) -> None:
         self.database, self.catalogues, self.pool, self.published = database, catalogues, pool, published
 
@@ -271,7 +275,7 @@ class Worksheets:
             self.pool.cancel(calculation)
         return result
 
-    def _tried(self, client: str, row: Row) -> Tried:
+    def _tried(self, client: str, row: Row) -> TestRun:
         result = self.calculated(client, tried, row.id, row.number, row.text)
         if result.reasons:
             raise TestsFailed(result.reasons)
@@ -307,7 +311,7 @@ def _record(session: Session, action: str, row: Row) -> None:
     record(session, action, f"worksheets/{row.id}/versions/{row.number}", row.digest)
 
 
-def _draft(id: str, number: int, text: str, reading: Examined) -> Row:
+def _draft(id: str, number: int, text: str, reading: Examination) -> Row:
     return Row(
         id=id,
         number=number,

@@ -49,8 +49,8 @@ def matched(
 ) -> tuple[list[Dimension], list[str]]:
     """A dimension for every parameter that is seen, and the names of the lengths and angles that are not.
 
-    `parameters` are as in the header of a STEP file: `{"inner_diameter": "50 mm", "shell": "half"}`; `limits`
-    are those of toleranced ones.
+    `parameters` are as in the header of a STEP file: `{"inner_diameter": "50 mm", "shells": "upper"}`;
+    `limits` are those of toleranced ones.
     """
     matches: list[Dimension] = []
     unseen: list[str] = []

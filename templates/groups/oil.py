@@ -54,7 +54,7 @@ class Oil(Template):
     T_1: Array = given("degC", "temperature 1", default="40 degC", ge=-100, le=500)
     T_2: Array = given("degC", "temperature 2", default="100 degC", ge=-100, le=500)
     law: str = choice("walther", "vogel", words="viscosity law", default="walther")
-    c_V: Array = given("K", "Vogel offset", symbol="c_{V}", default="95 K", source="Cameron 1966")
+    c_V: Array = given("delta_degC", "Vogel offset", symbol="c_{V}", default="95 K", source="Cameron 1966")
     T_ref: Array = given("degC", "reference temperature", default="20 degC", ge=-100, le=500)
     rho_ref: Array = given("kg/m**3", "reference density", default="875 kg/m**3", gt=0)
 
@@ -68,7 +68,9 @@ class Oil(Template):
         """That of the grade at 100 °C."""
         return viscosity_at_100(self.grade)
 
-    @derived("K", "Vogel slope", symbol="b_{V}", shown=True, ge=0, source="Vogel 1921", absent=BELOW_POLE)
+    @derived(
+        "delta_degC", "Vogel slope", symbol="b_{V}", shown=True, ge=0, source="Vogel 1921", absent=BELOW_POLE
+    )
     def b_V(self) -> Array:
         """Through the two viscosities."""
         return vogel_slope(self.eta_1, self.T_1, self.eta_2, self.T_2, self.c_V)
@@ -209,7 +211,7 @@ class WarmOil(Oil):
         """Of the oil that leaves, by the heat balance."""
         return outlet_temperature(self.balance)
 
-    @formula("K", "temperature rise", symbol=r"\Delta T", absent=NO_SUPPLY, source=ISO)
+    @formula("delta_degC", "temperature rise", symbol=r"\Delta T", absent=NO_SUPPLY, source=ISO)
     def rise(self) -> Array:
         """From supply to outlet."""
         return self.T_e - self.T_s

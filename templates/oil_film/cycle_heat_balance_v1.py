@@ -162,7 +162,7 @@ class CycleHeatBalance(Oil, FedBearing):
             "words": "the oil grows no warmer on its way than its user permits",
             "limits": {
                 "permissible_temperature_rise": {
-                    "unit": "K",
+                    "unit": "delta_degC",
                     "words": "largest temperature rise from supply to outlet",
                 }
             },
@@ -283,7 +283,7 @@ class CycleHeatBalance(Oil, FedBearing):
         """Where the oil leaves."""
         return 2 * self.T_film - self.T_s
 
-    @formula("K", "temperature rise", symbol=r"\Delta T", source=ISO)
+    @formula("delta_degC", "temperature rise", symbol=r"\Delta T", source=ISO)
     def rise(self) -> Array:
         """From supply to outlet."""
         return self.T_ex - self.T_s

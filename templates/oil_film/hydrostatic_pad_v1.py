@@ -100,7 +100,7 @@ class HydrostaticPad(Template):
             "words": "the oil grows no warmer on its way than its user permits",
             "limits": {
                 "permissible_temperature_rise": {
-                    "unit": "K",
+                    "unit": "delta_degC",
                     "words": "largest temperature rise from supply to edge",
                 }
             },
@@ -241,7 +241,7 @@ class HydrostaticPad(Template):
     def P(self) -> Array:
         return self.P_p + self.P_f
 
-    @formula("K", "temperature rise", symbol=r"\Delta T")
+    @formula("delta_degC", "temperature rise", symbol=r"\Delta T")
     def dT(self) -> Array:
         return self.P / (self.rho_c * self.Q)
 

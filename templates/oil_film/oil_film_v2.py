@@ -218,9 +218,9 @@ class OilFilm(WarmOil, Journal):
         return self.start_line == "fixed" or not (self.grooves or np.any(self.preload > 0))
 
     def ladder(self) -> tuple[str, ...]:
-        """The levels that know the bore, the tilt, and how the bearing is fed."""
+        """The levels that know the bore, the tilt, and how the bearing is fed; fit is taken by name only."""
         levels = ladder(self.levels, self.p_s, self.grooves)
-        return levels[-1:] if self.is_shaped else levels
+        return levels[-1:] if self.is_shaped else tuple(level for level in levels if level != "fit")
 
     def is_measured(self) -> bool:
         """Errors were measured of plain, aligned bearings without grooves and supply pressure."""

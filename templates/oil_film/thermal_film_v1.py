@@ -261,7 +261,7 @@ class ThermalFilm(Oil, Template):
         """Anywhere in the oil or at the bush's surface."""
         return in_kelvin(self.film.T_max)
 
-    @formula("K", "mesh change", symbol="e_{T}", absent=ONE_HAS_NONE)
+    @formula("delta_degC", "mesh change", symbol="e_{T}", absent=ONE_HAS_NONE)
     def mesh_change(self) -> Array:
         """Change of the largest temperature from half the mesh."""
         return in_kelvin(self.film.mesh_change)
@@ -367,7 +367,7 @@ class ThermalFilm(Oil, Template):
         """Loss of one temperature over that of all."""
         return self.P_one / self.P
 
-    @formula("K", "unseen rise", symbol=r"\Delta T_{1}")
+    @formula("delta_degC", "unseen rise", symbol=r"\Delta T_{1}")
     def unseen(self) -> Array:
         """Return by how much the film is hotter somewhere than the one temperature."""
         return self.T_max - self.T_one

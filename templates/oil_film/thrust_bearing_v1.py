@@ -217,7 +217,7 @@ class ThrustBearing(Oil):
     def Q(self) -> Array:
         return self.Q_i - self.k * (self.Q_i - self.Q_s)
 
-    @formula("K", "temperature gain", symbol=r"\delta T")
+    @formula("delta_degC", "temperature gain", symbol=r"\delta T")
     def gain(self) -> Array:
         return self.P / (self.rho_c * (self.Q_i - self.Q_s / 2))
 
@@ -234,7 +234,7 @@ class ThrustBearing(Oil):
     def T_film(self) -> Array:
         return (self.T_i + self.T_e) / 2
 
-    @formula("K", "temperature rise", symbol=r"\Delta T", absent=NO_SUPPLY)
+    @formula("delta_degC", "temperature rise", symbol=r"\Delta T", absent=NO_SUPPLY)
     def rise(self) -> Array:
         return self.T_e - self.T_s
 

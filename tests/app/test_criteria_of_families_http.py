@@ -55,7 +55,7 @@ def test_a_sound_film_has_none_of_these_warnings(http):
     answer = evaluated(http)
     assert answer["warnings"] == []
     assert {c["name"] for c in answer["criteria"] if c["verdict"] == "met"} == {
-        "film_exists", "roughness", "full_film", "rigid", "isoviscous", "laminar", "whirl",
+        "film_exists", "roughness", "full_film", "rigid", "isoviscous", "hot_oil", "laminar", "whirl",
     }  # fmt: skip
     film = criteria(answer)["film"]
     assert film["verdict"] == "not_met"

@@ -4,7 +4,7 @@ import pytest
 
 from app.catalogue.discovery import find_templates
 from app.presentation.units import shown_unit, shown_value
-from templates.core.units.units import compatible, unit
+from templates.core.units.units import require_same_kind
 
 METRIC_THERE_TOO = {
     "1",
@@ -40,7 +40,7 @@ def test_every_unit_of_the_templates_is_shown_in_a_customary_one():
 
 @pytest.mark.parametrize("name", sorted(declared()))
 def test_the_unit_shown_measures_the_same(name):
-    assert compatible(unit(shown_unit(name, "us")).base, unit(name).base)
+    assert require_same_kind(shown_unit(name, "us"), name)
 
 
 @pytest.mark.parametrize(
@@ -48,6 +48,8 @@ def test_the_unit_shown_measures_the_same(name):
     [
         (11.877, "mPa*s", 1.72261, "ureyn"),  # 1 reyn = 6894.757 Pa·s
         (1.5e5, "N*m/rad", 1.32761e6, "lbf*inch/rad"),  # 1 lbf·in = 0.1129848 N·m
+        (56.697, "delta_degC", 102.0546, "delta_degF"),  # a difference: 1.8 °F for each kelvin
+        (56.697, "degC", 134.0546, "degF"),
         (110.0, "mm**2/s", 0.170500, "inch**2/s"),  # 1 in² = 645.16 mm²
     ],
 )

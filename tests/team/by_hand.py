@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from app.team.processes import Tied
+from app.team.processes import ChildProgram
 
 ROOT = Path(__file__).parents[2]
 COMPOSE = ROOT / "docs" / "deploy" / "compose.yaml"
@@ -81,7 +81,9 @@ class Stack:
 
     def start(self, name, log, *arguments, **more):
         """Start a service, with what stands for its place in the network behind its command."""
-        return Tied(name, [*self.command(name), *arguments], log, environment=self.environment(name, **more))
+        return ChildProgram(
+            name, [*self.command(name), *arguments], log, environment=self.environment(name, **more)
+        )
 
     def _here(self, text):
         text = _VARIABLE.sub(lambda found: self.values[found[1]], text)

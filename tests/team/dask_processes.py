@@ -8,13 +8,13 @@ from patience import patient, until
 from serving import alive
 
 from app.settings import Settings
-from app.team.processes import LOOPBACK, Tied, free_port, listens
+from app.team.processes import LOOPBACK, ChildProgram, free_port, listens
 from app.workers.remote.engine import DaskWorker
 
 
 def commanded(name, folder, *arguments, **environment):
     """A command of the program, as `crankwright …` would run it."""
-    return Tied(
+    return ChildProgram(
         name, [sys.executable, "-m", "app", *arguments], folder / f"{name}.log", environment=environment
     )
 

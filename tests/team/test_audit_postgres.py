@@ -9,9 +9,9 @@ from sqlalchemy.exc import DatabaseError
 
 from app.approvals.errors import ApprovalError
 from app.approvals.schemas import ApprovalIn
-from app.approvals.service import Approving
+from app.approvals.service import ApprovalService
 from app.designs import repository
-from app.designs.repository import Written
+from app.designs.repository import StoredRevision
 from app.identity import chain
 from app.identity.audit import record
 from app.identity.principal import Principal, acting_as
@@ -65,7 +65,7 @@ def test_the_database_refuses_changes_of_rows(both, statement):
 
 def test_of_two_checkers_at_once_one_signs(both):
     with acting_as(person("author")):
-        written = Written(DOCUMENT, {"steps": {}, "iterations": []}, [], "current", None)
+        written = StoredRevision(DOCUMENT, {"steps": {}, "iterations": []}, [], "current", None)
         id, number = both[0].write(lambda session: repository.create(session, "d", written))
         hand_over(both[0], id, number, "calculated")
     begin = Barrier(2)
@@ -90,6 +90,6 @@ def test_of_two_checkers_at_once_one_signs(both):
 
 
 def hand_over(database, id, number, step):
-    approving = Approving(database, None)
+    approving = ApprovalService(database, None)
     seen = approving.show(id, number).to_sign
     return approving.sign(id, number, ApprovalIn(step=step), f'"{seen}"', ONCE)

@@ -13,7 +13,7 @@ from sqlalchemy import text
 from app.storage.engines import writing_engine
 from app.team.errors import DidNotStart
 from app.team.postgres import Cluster
-from app.team.processes import Tied, listens
+from app.team.processes import ChildProgram, listens
 
 
 def rows(url):
@@ -62,7 +62,7 @@ def test_the_object_store_holds_what_is_put(s3):
 
 def test_a_program_that_ends_at_once_is_reported_with_its_words(tmp_path):
     command = [sys.executable, "-c", "print('no such thing'); raise SystemExit(3)"]
-    process = Tied("the program", command, tmp_path / "log")
+    process = ChildProgram("the program", command, tmp_path / "log")
     with pytest.raises(DidNotStart, match=r"ended with exit code 3; .* ends with\s+no such thing"):
         process.until(lambda: False)
 

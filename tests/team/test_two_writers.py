@@ -181,7 +181,7 @@ class TestUnits:
 
     @pytest.mark.slow
     def test_one_of_eight_appends_wins(self, database):
-        written = designs.Written({"name": "a"}, None, [], "current", None)
+        written = designs.StoredRevision({"name": "a"}, None, [], "current", None)
         id, _ = database.write(lambda session: designs.create(session, "a", written))
 
         def append():

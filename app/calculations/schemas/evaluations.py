@@ -58,7 +58,7 @@ LEVEL: JsonDict = {
 Level = Annotated[object, WithJsonSchema(LEVEL)]
 
 
-class Evaluated(Answer):
+class Results(Answer):
     """Inputs as they were used, and the outputs that follow."""
 
     template: CalculatedBy
@@ -73,7 +73,7 @@ class Evaluated(Answer):
     verdict: Verdict | None = Field(None, description="over all criteria; absent where there are none")
 
 
-class Evaluation(Evaluated):
+class Evaluation(Results):
     """The answer to `evaluate`."""
 
     seconds: float = Field(description="time that the evaluation took, in s")

@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field, JsonValue, TypeAdapter
 from app.catalogue.schemas.templates import Schema
 
 
-class Declared(BaseModel):
+class DeclaredValue(BaseModel):
     """One input, parameter or output; the schema says more, which the pages do not use."""
 
     title: str
@@ -49,7 +49,7 @@ def _is_list(form: dict[str, JsonValue]) -> bool:
     return False
 
 
-_PROPERTIES = TypeAdapter(dict[str, Declared])
+_PROPERTIES = TypeAdapter(dict[str, DeclaredValue])
 _NAMES = TypeAdapter(frozenset[str])
 
 
@@ -68,13 +68,13 @@ class _Same:
         return isinstance(other, _Same) and self.schema is other.schema
 
 
-def properties(schema: Schema) -> Mapping[str, Declared]:
+def properties(schema: Schema) -> Mapping[str, DeclaredValue]:
     """Return the declarations in a schema, by name, in its order; read once while steps share the schema."""
     return _read(_Same(schema))
 
 
 @lru_cache(maxsize=64)
-def _read(same: _Same) -> Mapping[str, Declared]:
+def _read(same: _Same) -> Mapping[str, DeclaredValue]:
     return _PROPERTIES.validate_python(same.schema.get("properties", {}))
 
 

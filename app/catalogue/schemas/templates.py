@@ -85,7 +85,7 @@ class DeclaredCriterion(Answer):
     limits: list[DeclaredLimit]
 
 
-class Described(Answer):
+class Description(Answer):
     """The inputs and outputs of a version, with its sources."""
 
     id: str
@@ -107,7 +107,7 @@ class Described(Answer):
     given_limits: Schema = Field({}, description="JSON Schema of the object `limits`, which criteria take")
 
 
-class Template(Described):
+class Template(Description):
     """One version of a template."""
 
     inputs: Schema = Field(description="JSON Schema of the object `inputs`")

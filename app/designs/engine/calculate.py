@@ -245,7 +245,7 @@ def literal(cell: Cell) -> Typed:
     FaultyText
         If it is none.
     """
-    return read(cell.raw, cell.declared.meaning.unit) if cell.declared else read_any(cell.raw)
+    return read(cell.raw, cell.declared.meaning.accepted) if cell.declared else read_any(cell.raw)
 
 
 def _related(result: Calculation, cell: Cell) -> None:
@@ -293,7 +293,7 @@ def _joined(cell: Cell, uses: Mapping[str, Column]) -> Column:
 def _item(cell: Cell, item: Raw, uses: Mapping[str, Column]) -> Column:
     if is_relation(item):
         return related(cell.relations_by_text[str(item).strip()], uses)
-    return Column(read(item, cell.declared.meaning.unit).si if cell.declared else read_any(item).si)
+    return Column(read(item, cell.declared.meaning.accepted).si if cell.declared else read_any(item).si)
 
 
 def _admitted(

@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.columns import Column
-from app.designs.engine.row_design import Levels, RowDesign, Rows, Wanted
+from app.designs.engine.row_design import Levels, RowDesign, Rows, Targets
 from app.designs.engine.steps import Part, StepRows
 from app.designs.network import Block
 from app.reference import Reference
 from templates.core.arrays import Array, Mask
+from templates.core.language.climbing import best_first
 from templates.core.language.levels import Accuracy, accuracy
 
 S = TypeVar("S", bound=np.generic)
@@ -26,7 +27,7 @@ Passes = Callable[[str | None], Iterable[Calculation]]
 
 
 @dataclass(frozen=True)
-class Levelling:
+class LevelChoice:
     """The choice of levels for some rows.
 
     Attributes
@@ -40,7 +41,7 @@ class Levelling:
     design: RowDesign
     rows: Rows
     count: int
-    wanted: Wanted
+    wanted: Targets
 
     def of_tolerances(self, levels: Levels) -> dict[str, str | None]:
         """Return the levels given, and those of steps for which the design has a tolerance and no level."""
@@ -65,7 +66,7 @@ class Levelling:
         if not cls.levels:
             return None
         outputs = self.design.needs(self.wanted).outputs(block)
-        inside = Wanted.of(Reference(block.name, None, output) for output in outputs)
+        inside = Targets.of(Reference(block.name, None, output) for output in outputs)
 
         def passes(level: str | None) -> Iterator[Calculation]:
             pinned = {**levels, block.name: level or levels.get(block.name)}
@@ -95,14 +96,25 @@ class LevelSearch:
     share: float
 
     def level(self) -> str:
-        """Return the cheapest level that serves; the starting one, where that states too few errors."""
+        """Return the cheapest level that serves, else the finest within the budget (`climbing`)."""
         measured = accuracy(self.block.cls)
         for level in self.ladder:
-            if measured is not None and self._met(measured, level) >= self.share:
+            if measured is None:
+                break
+            if self._may_serve(measured, level) and self._met(measured, level) >= self.share:
                 return level
-            if level == self.start and self._stated() < self.share:
-                return level
-        return self.ladder[-1]
+        count = sum(step.count for step in self._started)
+        return next(best_first(self.block.cls, self.ladder, self.start, count))
+
+    def _may_serve(self, measured: Accuracy, level: str) -> bool:
+        """Return whether a level is worth a calculation: a finer one, if it states small enough errors."""
+        finer = level != self.start and self.ladder.index(level) > self._place
+        return not finer or float(np.mean(self._expected(measured, level))) >= self.share
+
+    @cached_property
+    def _place(self) -> int:
+        """Return the place of the starting level on the ladder."""
+        return self.ladder.index(self.start) if self.start in self.ladder else -1
 
     @cached_property
     def _started(self) -> list[StepRows]:
@@ -126,10 +138,6 @@ class LevelSearch:
     def _exists(self) -> dict[str, Mask]:
         """Return for each output the rows in which it has a value at the starting level."""
         return {name: _joined(_has_value(step, name) for step in self._started) for name in self.outputs}
-
-    def _stated(self) -> float:
-        """Return at which share of the rows the starting level states the errors of what has a value."""
-        return self._share(self._started, np.inf)
 
     def _met(self, measured: Accuracy, level: str) -> float:
         """Return at which share of the rows all errors of a level are small enough."""

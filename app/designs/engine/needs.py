@@ -90,7 +90,7 @@ def is_member(graph: Graph, reference: Reference) -> bool:
 
 
 @dataclass(frozen=True)
-class Varying:
+class MovingNodes:
     """The nodes that depend on varied places, each with the node through which it does."""
 
     because: Mapping[Node, Node | None]
@@ -106,7 +106,7 @@ class Varying:
         return nodes[::-1]
 
 
-def varying(graph: Graph, varied: Collection[Reference]) -> Varying:
+def varying(graph: Graph, varied: Collection[Reference]) -> MovingNodes:
     """Return all nodes that follow from varied places."""
     because: dict[Node, Node | None] = {}
     for node in graph.order:
@@ -114,7 +114,7 @@ def varying(graph: Graph, varied: Collection[Reference]) -> Varying:
             because[node] = source
         elif isinstance(node, Cell) and _is_varied(node, varied):
             because[node] = None
-    return Varying(because)
+    return MovingNodes(because)
 
 
 def _is_varied(cell: Cell, varied: Collection[Reference]) -> bool:
@@ -122,7 +122,7 @@ def _is_varied(cell: Cell, varied: Collection[Reference]) -> bool:
     return any(reference in varied for reference in (cell.reference, *cell.uses.values()))
 
 
-def solids_in_the_way(graph: Graph, measures: Iterable[Reference], moving: Varying) -> list[Fault]:
+def solids_in_the_way(graph: Graph, measures: Iterable[Reference], moving: MovingNodes) -> list[Fault]:
     """Return a fault for each measure of a solid that differs from row to row; it names the chain."""
     solids = {reference: graph.blocks[reference.block].solid for reference in sorted(measures, key=str)}
     return [_in_the_way(graph, r, moving.chain(solid)) for r, solid in solids.items() if solid in moving]

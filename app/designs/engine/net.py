@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from app.catalogue.catalogues import Catalogues
 from app.designs.analyses import measured_unit
 from app.designs.document import Document
-from app.designs.engine.levels import Levelling
+from app.designs.engine.levels import LevelChoice
 from app.designs.engine.needs import is_member, solids_in_the_way
 from app.designs.engine.places import Ranks, checked_rows, place_faults, with_places
 from app.designs.engine.refusals import Refusal
-from app.designs.engine.row_design import MOST_ROWS, Levels, RowDesign, Rows, Wanted
+from app.designs.engine.row_design import MOST_ROWS, Levels, RowDesign, Rows, Targets
 from app.designs.engine.table import Table
 from app.designs.engine.verdicts import JudgedColumn
 from app.designs.graph import build_graph, raise_if
@@ -108,7 +108,7 @@ class Net:
         constants = dict(measured or {})
         design = RowDesign(graph, frozenset(varied), constants)
         judged = [subject for name, subject in subjects(graph).items() if name in criteria]
-        due = design.needs(Wanted.of(wanted if wanted is not None else _all_used(graph), judged))
+        due = design.needs(Targets.of(wanted if wanted is not None else _all_used(graph), judged))
         measures = {
             reference for reference in due.waiting | constants.keys() if reference not in design.varied
         }
@@ -155,10 +155,10 @@ class Net:
         raise_if(list(self.design.faults(wanted, levels or {})))
         count, given = self.checked(rows)
         judged = self.subjects(self.criteria() if judge and criteria is None else criteria or ())
-        asked = Wanted.of(wanted, judged.values())
+        asked = Targets.of(wanted, judged.values())
 
         def table(pinned: Levels) -> Table:
-            chosen = Levelling(self.design, given, count, asked).of_tolerances(pinned)
+            chosen = LevelChoice(self.design, given, count, asked).of_tolerances(pinned)
             result = Table.of(count, wanted)
             for start, part in self.design.passes(given, count, asked, chosen, chunk):
                 result.add(start, part, wanted)
@@ -184,7 +184,7 @@ class Net:
         """
         raise_if(list(self.design.faults(wanted, {})))
         count, given = self.checked(rows)
-        choice = Levelling(self.design, given, count, self._wanted(wanted, criteria))
+        choice = LevelChoice(self.design, given, count, self._wanted(wanted, criteria))
         return self.design.settled(lambda starts: choice.within(tolerance, share, starts), {})
 
     def seconds(
@@ -232,10 +232,15 @@ class Net:
         """Return the declared unit of a place, an output or a measure; of a parameter the unit as written."""
         if cell := self.graph.parameters.get(str(reference)):
             typed = None if cell.relations else read_any(cell.raw).unit
-            return typed or f"{self.graph.kinds[str(reference)].base:~C}" or "1"
+            return typed or self.graph.kinds[str(reference)].unit
         raise_if(list(self.design.faults([reference], {})))
         is_inside = is_member(self.graph, reference)
         return self.graph.unit_of(reference) if is_inside else measured_unit(reference)
+
+    def accepted(self, reference: Reference) -> str:
+        """Return the unit by which it is known what may be typed for a name."""
+        is_inside = str(reference) not in self.graph.parameters and is_member(self.graph, reference)
+        return self.graph.accepted(reference) if is_inside else self.unit(reference)
 
     def nominal(self, reference: Reference) -> Value:
         """Return the value [SI] of a name as the document has it.
@@ -243,7 +248,7 @@ class Net:
         NaN where it has none, or waits for a solid.
         """
         raise_if(list(self.design.faults([reference], {})))
-        return self.written.nominal(Wanted.of([reference]), {}).column(reference).value
+        return self.written.nominal(Targets.of([reference]), {}).column(reference).value
 
     def checked(self, rows: Rows, levels: Levels | None = None) -> tuple[int, dict[Reference, Array]]:
         """Return the number of rows, and their columns as arrays.
@@ -269,8 +274,8 @@ class Net:
         raise_if([fault.within("criteria") for fault in unknown_names(unknown, by_name, "criterion")])
         return {name: by_name[name] for name in criteria}
 
-    def _wanted(self, wanted: Collection[Reference], criteria: Collection[str]) -> Wanted:
-        return Wanted.of(wanted, self.subjects(criteria).values())
+    def _wanted(self, wanted: Collection[Reference], criteria: Collection[str]) -> Targets:
+        return Targets.of(wanted, self.subjects(criteria).values())
 
 
 def _all_used(graph: Graph) -> list[Reference]:

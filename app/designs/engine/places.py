@@ -10,7 +10,7 @@ import numpy as np
 from app.designs.analyses import axes_of, is_measured
 from app.designs.document import Document
 from app.designs.engine.calculate import literal
-from app.designs.engine.needs import Varying
+from app.designs.engine.needs import MovingNodes
 from app.designs.engine.relations import rank_of
 from app.designs.network import Block, Cell, Graph
 from app.plain import Raw
@@ -43,7 +43,7 @@ def with_places(document: Document, graph: Graph, varied: Collection[Reference])
 
 def _unit(graph: Graph, reference: Reference) -> str:
     """Return the unit of a parameter that a relation sets."""
-    return f"{graph.kinds[str(reference)].base:~C}" or "1"
+    return graph.kinds[str(reference)].unit
 
 
 def _placeholder(declared: Input) -> Raw:
@@ -100,7 +100,7 @@ class Ranks:
     """Numbers of axes that values have in one row, as far as known before they are calculated."""
 
     graph: Graph
-    moving: Varying
+    moving: MovingNodes
     _ranks: dict[Cell, int] = field(default_factory=dict)
 
     def faults(self, blocks: Collection[str]) -> Iterator[Fault]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from app.designs.engine.calculate import constants, rows
 from app.designs.engine.calculation import Calculation
-from app.designs.engine.needs import Needs, Varying, needs, varying
+from app.designs.engine.needs import MovingNodes, Needs, needs, varying
 from app.designs.engine.steps import LevelMoved
 from app.designs.network import LIMITS, Block, Graph, Subject
 from app.reference import Reference
@@ -37,14 +37,14 @@ FEWEST_TIMED = 64  # rows of a call from which the time of others is estimated
 
 
 @dataclass(frozen=True)
-class Wanted:
+class Targets:
     """The values that the caller wants, by name, and the inputs with which steps are evaluated."""
 
     references: frozenset[Reference]
     inside: frozenset[Reference] = frozenset()
 
     @classmethod
-    def of(cls, references: Iterable[Reference], judged: Iterable[Subject] = ()) -> Wanted:
+    def of(cls, references: Iterable[Reference], judged: Iterable[Subject] = ()) -> Targets:
         """Return values, and those that criteria name."""
         subjects = [subject for subject in judged if subject.block is None or not subject.block.is_model]
         subjects += [other for one in subjects for _, other in one.instead]
@@ -64,11 +64,11 @@ class RowDesign:
     _prepared: dict[object, Calculation] = field(default_factory=dict)
 
     @cached_property
-    def moving(self) -> Varying:
+    def moving(self) -> MovingNodes:
         """Return the values that differ from row to row."""
         return varying(self.graph, self.varied)
 
-    def needs(self, wanted: Wanted) -> Needs:
+    def needs(self, wanted: Targets) -> Needs:
         """Return the cells on which some values depend; kept for the next call."""
         if wanted not in self._needs:
             if len(self._needs) >= MOST_PREPARED:
@@ -78,10 +78,10 @@ class RowDesign:
         return self._needs[wanted]
 
     @cached_property
-    def _needs(self) -> dict[Wanted, Needs]:
+    def _needs(self) -> dict[Targets, Needs]:
         return {}
 
-    def steps(self, wanted: Wanted) -> list[Block]:
+    def steps(self, wanted: Targets) -> list[Block]:
         """Return the steps that are calculated for some values, in order."""
         due = self.needs(wanted).members
         blocks = (node for node in self.graph.order if isinstance(node, Block))
@@ -108,7 +108,7 @@ class RowDesign:
             return None
         return block.cls.inputs.get(reference.member) or block.cls.formulas.get(reference.member)
 
-    def constants(self, wanted: Wanted, levels: Levels) -> Calculation:
+    def constants(self, wanted: Targets, levels: Levels) -> Calculation:
         """Calculate what all rows share; kept for the next call."""
         pinned = self._pinned(wanted, levels)
         key = wanted, pinned
@@ -125,7 +125,7 @@ class RowDesign:
         self,
         given: Rows,
         count: int,
-        wanted: Wanted,
+        wanted: Targets,
         levels: Levels,
         chunk: int = MOST_ROWS,
     ) -> Iterator[tuple[int, Calculation]]:
@@ -146,16 +146,16 @@ class RowDesign:
                 self._keep_pace(wanted, levels, (time.thread_time() - begun) / result.count)
             yield start, result
 
-    def _keep_pace(self, wanted: Wanted, levels: Levels, seconds: float) -> None:
+    def _keep_pace(self, wanted: Targets, levels: Levels, seconds: float) -> None:
         if len(self._paces) >= MOST_PREPARED:
             self._paces.clear()
         self._paces[wanted, self._pinned(wanted, levels)] = seconds
 
-    def pace(self, wanted: Wanted, levels: Levels) -> float | None:
+    def pace(self, wanted: Targets, levels: Levels) -> float | None:
         """Return the processor time of a row in the last call of this kind [s]; None before there was one."""
         return self._paces.get((wanted, self._pinned(wanted, levels)))
 
-    def _pinned(self, wanted: Wanted, levels: Levels) -> frozenset[tuple[str, str | None]]:
+    def _pinned(self, wanted: Targets, levels: Levels) -> frozenset[tuple[str, str | None]]:
         """Return the levels of the steps that are calculated, as far as they are given."""
         due = self.needs(wanted).members
         return frozenset((name, levels.get(name) or self.graph.blocks[name].level) for name in due)
@@ -171,17 +171,17 @@ class RowDesign:
                     ladder = self.graph.blocks[moved.step].cls.levels
                     pinned[moved.step] = max(moved.before, moved.level, key=ladder.index)
 
-    def nominal(self, wanted: Wanted, levels: Levels) -> Calculation:
+    def nominal(self, wanted: Targets, levels: Levels) -> Calculation:
         """Return the design as it was written, of which nothing varies."""
         with np.errstate(all="ignore"):
             return replace(self, varied=frozenset(), _prepared={}).constants(wanted, levels)
 
-    def rows_at_once(self, wanted: Wanted, levels: Levels, chunk: int = MOST_ROWS) -> int:
+    def rows_at_once(self, wanted: Targets, levels: Levels, chunk: int = MOST_ROWS) -> int:
         """Number of rows that one array call takes."""
         values = sum(self.sizes(wanted).values())
         return max(1, min([chunk, MOST_VALUES // max(values, 1), *self._most_points(wanted, levels)]))
 
-    def sizes(self, wanted: Wanted) -> Mapping[str, int]:
+    def sizes(self, wanted: Targets) -> Mapping[str, int]:
         """Number of values that each cell and output has in one row, as the design was written."""
         if wanted not in self._sizes:
             cheapest = {block.name: next(iter(block.cls.levels), None) for block in self.steps(wanted)}
@@ -197,10 +197,10 @@ class RowDesign:
         return {}
 
     @cached_property
-    def _sizes(self) -> dict[Wanted, Mapping[str, int]]:
+    def _sizes(self) -> dict[Targets, Mapping[str, int]]:
         return {}
 
-    def _most_points(self, wanted: Wanted, levels: Levels) -> Iterator[int]:
+    def _most_points(self, wanted: Targets, levels: Levels) -> Iterator[int]:
         """Number of points that the levels of the steps take at once."""
         for block in self.steps(wanted):
             level = levels.get(block.name) or block.level or block.cls.default_level

@@ -330,7 +330,7 @@ def _column(
     return whole.without(step.refused()) if step.refusals else whole
 
 
-class _Kept(NamedTuple):
+class _StepState(NamedTuple):
     evaluation: Evaluation
     values: int  # that its template had computed: it computes further ones when asked, and grows
 
@@ -352,7 +352,7 @@ class Memory:
             The caller does not wait for an expensive step.
         """
         key = (block.cls, block.level, block.tolerance, wanted, fingerprint(raw))
-        kept: _Kept | None = self._cache.get(key)
+        kept: _StepState | None = self._cache.get(key)
         if kept is None:
             return self._keep(key, evaluated_step(block.cls, raw, wanted, block.level, block.tolerance))
         if kept.values != _count(kept.evaluation):
@@ -360,7 +360,7 @@ class Memory:
         return kept.evaluation
 
     def _keep(self, key: Hashable, evaluation: Evaluation) -> Evaluation:
-        self._cache.keep(key, _Kept(evaluation, _count(evaluation)))
+        self._cache.keep(key, _StepState(evaluation, _count(evaluation)))
         return evaluation
 
 

@@ -8,7 +8,7 @@ from app.api.answers import answered
 from app.api.dependencies import TheDecisions, Units
 from app.api.responses import later, patience
 from app.designs.bodies import DecideIn
-from app.designs.decisions import LONGEST_BUDGET, Asked, read_budget
+from app.designs.decisions import LONGEST_BUDGET, DecisionQuestion, read_budget
 from app.designs.routes.designs import Id, Prefer
 from app.designs.schemas.decision import Decision
 from app.http.access import TheClient, needs
@@ -35,5 +35,5 @@ async def decide_criteria(
 ) -> Response:
     """Decide the criteria of the newest revision: finer levels where they are undecided; nothing is saved."""
     wanted = body or DecideIn()
-    asked = Asked(id, wanted.criteria, read_budget(wanted.budget), units=units)
+    asked = DecisionQuestion(id, wanted.criteria, read_budget(wanted.budget), units=units)
     return await answered(decisions, asked, request, client, patience(prefer, LONGEST_BUDGET))

@@ -32,7 +32,7 @@ from app.designs import repository, views
 from app.designs.bodies import LONGEST_NOTE, PATCH, CopyIn, DesignIn
 from app.designs.filters import TEMPLATE, DesignFilter
 from app.designs.labels import key_of, tags_of
-from app.designs.preview import Previewed
+from app.designs.preview import PreviewRequest
 from app.designs.releases import released_of
 from app.designs.schemas.designs import (
     Design,
@@ -47,7 +47,7 @@ from app.designs.schemas.designs import (
     State,
 )
 from app.designs.schemas.labels import MOST_TAGS, Tag
-from app.designs.service import Designs, Saved
+from app.designs.service import Designs, SaveResult
 from app.http.access import TheClient, get_client, needs
 from app.http.pages import Cursor, Limit, page
 from app.http.strict_requests import PlainRoute, StrictRequest, StrictRoute
@@ -77,7 +77,7 @@ def seconds_waited(prefer: str | None) -> float:
 async def answer_saved(
     designs: Designs,
     jobs: Jobs,
-    saved: Saved,
+    saved: SaveResult,
     prefer: str | None,
     proposals: Sequence[Proposal] | None = None,
 ) -> Response:
@@ -202,7 +202,7 @@ async def change_design(
 
 
 async def _saved(
-    request: StrictRequest, prefer: str | None, key: str | None, save: Callable[[Once], Saved]
+    request: StrictRequest, prefer: str | None, key: str | None, save: Callable[[Once], SaveResult]
 ) -> Response:
     """Save a design in a thread that may wait for the pool; return the answer."""
     services, client = services_of(request), await get_client(request)
@@ -238,7 +238,7 @@ async def preview_design(
     prefer: Prefer = None,
 ) -> Response:
     """Preview the effect of a change on outputs and model parameters; nothing is saved."""
-    change = Previewed(id, noted(body)[0], worksheet, units)
+    change = PreviewRequest(id, noted(body)[0], worksheet, units)
     if within is not None:
         return written(await threads.run_within(within, request, previews.at_once, change))
     return await answered(previews, change, request, client, seconds_waited(prefer))

@@ -34,7 +34,7 @@ from app.jobs.service import Jobs
 from app.reports.paper import Press
 from app.schemas.problems import RouteOptions, refusals
 from app.solids.models import File, Models
-from app.solids.repair import Healing
+from app.solids.repair import ArtifactRepair
 from app.solids.routes.models import PATIENCE, send_file
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
@@ -91,7 +91,7 @@ class FileRequest:
     store: Artifacts
     models: Models
     jobs: Jobs
-    healing: Healing
+    healing: ArtifactRepair
     press: Press
     owner: str
     client: str

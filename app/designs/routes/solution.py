@@ -7,7 +7,7 @@ from fastapi import APIRouter, Request, Response
 from app.api.answers import answered
 from app.api.dependencies import TheSolving, Units
 from app.api.responses import LATER, patience
-from app.designs.questions import Asked
+from app.designs.questions import DesignQuestion
 from app.designs.routes.designs import Id, Prefer
 from app.designs.schemas.solution import DesignSolution
 from app.designs.solution import SolveDesignIn
@@ -34,5 +34,5 @@ async def solve_design(
     prefer: Prefer = None,
 ) -> Response:
     """Find every value of one parameter or input that gives a wanted output; nothing is saved."""
-    asked = Asked(id, body.model_dump_json(exclude_unset=True, by_alias=True), units=units)
+    asked = DesignQuestion(id, body.model_dump_json(exclude_unset=True, by_alias=True), units=units)
     return await answered(solving, asked, request, client, patience(prefer, solving.steps.deadline))

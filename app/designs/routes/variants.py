@@ -37,7 +37,7 @@ from app.designs.routes.designs import Id, IfMatch, Number, Prefer
 from app.designs.routes.files import FILES, IfNoneMatch, TheFileRequest
 from app.designs.routes.sheet_types import ANSWERS, BODIES
 from app.designs.schemas.variants import VariantDetail, VariantsOut
-from app.designs.service import Designs, Saved
+from app.designs.service import Designs, SaveResult
 from app.designs.variants import views
 from app.designs.variants.detail import WantedVariant
 from app.designs.variants.files import STEP, Entry, entries, variant_model
@@ -149,13 +149,13 @@ async def replace_variants(
     return await answer_table(designs, jobs, saved, prefer)
 
 
-async def answer_table(designs: Designs, jobs: Jobs, saved: Saved, prefer: str | None) -> Response:
+async def answer_table(designs: Designs, jobs: Jobs, saved: SaveResult, prefer: str | None) -> Response:
     """Return the table as it was saved: 200, or 202 while solids are built."""
     is_done = not saved.is_deferred and await finished(jobs, saved.job, prefer)
     return await run_in_threadpool(_table, designs, saved, is_done)
 
 
-def _table(designs: Designs, saved: Saved, is_done: bool) -> Response:
+def _table(designs: Designs, saved: SaveResult, is_done: bool) -> Response:
     with designs.database.read() as session:
         out = views.variants(session, saved.design, saved.revision, designs.catalogues)
     place = (

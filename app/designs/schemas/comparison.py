@@ -42,7 +42,7 @@ class ComparedValue(Measured):
         return type(self)(**{**rest, **ends})
 
 
-class Compared(Answer):
+class ValueDifference(Answer):
     """A value that is not the same on both sides; null where a side has none."""
 
     name: str = Field(description="as in relations: `film.minimum_film_thickness`")
@@ -87,8 +87,8 @@ class Comparison(Answer):
     parameters: list[TextChange] = Field(description="parameters of the design, as typed")
     versions: list[TextChange] = Field(description="templates and models by step: version, code, level")
     relations: list[TextChange] = Field(description="relations of inputs and model parameters")
-    inputs: list[Compared]
-    outputs: list[Compared]
+    inputs: list[ValueDifference]
+    outputs: list[ValueDifference]
     criteria: list[VerdictChange]
-    model_parameters: list[Compared]
-    measurements: list[Compared] = Field(description="measured on the solids of the two revisions")
+    model_parameters: list[ValueDifference]
+    measurements: list[ValueDifference] = Field(description="measured on the solids of the two revisions")

@@ -10,7 +10,7 @@ from app.schemas.answers import Answer, Quantity
 from app.schemas.criteria import Criterion, Verdict
 
 
-class Tried(Answer):
+class LevelTrial(Answer):
     """A step at one level."""
 
     step: str
@@ -29,8 +29,8 @@ class Decision(Answer):
     verdict: Verdict | None = Field(None, description="over all criteria; absent where there are none")
     asked: list[str] = Field(description="the criteria that were undecided, of those asked for")
     undecided: list[str] = Field(description="those that still are")
-    tried: list[Tried] = Field(description="what was calculated, in order")
-    skipped: list[Tried] = Field(description="levels that were left out, and why")
+    tried: list[LevelTrial] = Field(description="what was calculated, in order")
+    skipped: list[LevelTrial] = Field(description="levels that were left out, and why")
     seconds: float = Field(description="time that all levels took, in s")
     budget: Quantity
     stopped: Literal["decided", "no_finer_level", "budget", "pending"] = Field(

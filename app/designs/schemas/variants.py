@@ -69,7 +69,7 @@ class VariantColumn(Answer):
     nominal: Shown | None = Field(None, description="the design's own value; absent where it has none")
 
 
-class Governing(Answer):
+class GoverningVariant(Answer):
     """The variant that is worst in one criterion, or in all."""
 
     variant: str = Field(description="`base`: the design itself")
@@ -89,6 +89,6 @@ class VariantsOut(Answer):
     columns: list[VariantColumn]
     rows: list[VariantResult]
     base: VariantResult | None = Field(None, description="the design itself, without any override")
-    governing: Governing | None = Field(None, description="the worst of all; absent without criteria")
-    by_criterion: dict[str, Governing] = Field({}, description="the worst variant of each criterion")
+    governing: GoverningVariant | None = Field(None, description="the worst of all; absent without criteria")
+    by_criterion: dict[str, GoverningVariant] = Field({}, description="the worst variant of each criterion")
     problem: Problem | None = Field(None, description="why the regeneration of the revision failed")

@@ -8,7 +8,7 @@ from typing import Literal
 from app.designs import repository
 from app.designs.graph import build_graph, read_document, resolved
 from app.designs.schemas.variants import VariantsOut
-from app.designs.service import Designs, Saved
+from app.designs.service import Designs, SaveResult
 from app.designs.variant_sheets.csv_files import read_csv, write_csv
 from app.designs.variant_sheets.grid import MOST_FAULTS, Grid, cell_of
 from app.designs.variant_sheets.reader import SheetVariants, read_variants
@@ -45,7 +45,7 @@ def read_sheet(content: bytes, kind: Kind) -> Grid:
 
 def save_sheet(
     designs: Designs, id: str, content: bytes, kind: Kind, expected: str | None, once: Once
-) -> Saved:
+) -> SaveResult:
     """Return a new revision whose variants are those of a sheet; a sheet that changes nothing makes none.
 
     Raises

@@ -26,7 +26,7 @@ MOST_ROWS = 4096
 
 
 @dataclass(frozen=True)
-class Asking:
+class StepInputs:
     """The inputs of a step for one variant, as they were read, by name."""
 
     block: Block
@@ -63,7 +63,7 @@ def _form(block: Block, name: str, raw: Raw) -> Hashable:
     return shape if len(shape) == int(is_curve) else None
 
 
-def evaluations(asked: Sequence[Asking]) -> list[Prepared | None]:
+def evaluations(asked: Sequence[StepInputs]) -> list[Prepared | None]:
     """Return the evaluation of each, `DEFERRED` if nobody waits for it.
 
     None where it has to be calculated alone.
@@ -91,7 +91,7 @@ def _chunks(block: Block, places: Sequence[int]) -> Iterator[Sequence[int]]:
         yield places[start : start + size]
 
 
-def _shared(asked: Sequence[Asking]) -> Sequence[Prepared | None]:
+def _shared(asked: Sequence[StepInputs]) -> Sequence[Prepared | None]:
     """Return the rows of one array call; of a call that refuses, those of its halves."""
     if len(asked) < 2:
         return [None] * len(asked)  # alone it is calculated as it always is
@@ -109,12 +109,12 @@ def _shared(asked: Sequence[Asking]) -> Sequence[Prepared | None]:
     return [rows.evaluation(number, one) for number, one in enumerate(asked)]
 
 
-def _stacked(asked: Sequence[Asking]) -> dict[str, Raw]:
+def _stacked(asked: Sequence[StepInputs]) -> dict[str, Raw]:
     """Return inputs for all rows: one value where all have the same, else an array with the row first."""
     return {name: _column(asked, name) for name in asked[0].raw}
 
 
-def _column(asked: Sequence[Asking], name: str) -> Raw:
+def _column(asked: Sequence[StepInputs], name: str) -> Raw:
     first = asked[0].raw[name]
     typed = [raw for one in asked if isinstance(raw := one.raw[name], Typed)]
     if not isinstance(first, Typed) or all(np.array_equal(first.si, other.si) for other in typed):
@@ -131,7 +131,7 @@ class _Rows:
     whole: Evaluation
     count: int
 
-    def evaluation(self, row: int, asked: Asking) -> Evaluation | None:
+    def evaluation(self, row: int, asked: StepInputs) -> Evaluation | None:
         """Return the evaluation of one row; None if it has to be calculated alone, because it is refused."""
         try:
             template = self._template(row, asked)
@@ -141,7 +141,7 @@ class _Rows:
         seconds = self.whole.seconds / self.count
         return Evaluation(template, {}, answers, self.whole.level, errors, [], seconds)
 
-    def _template(self, row: int, asked: Asking) -> Template:
+    def _template(self, row: int, asked: StepInputs) -> Template:
         """Return the template of one variant with what the array call has computed.
 
         What has no value in a row is left out: the template then finds out why.

@@ -67,6 +67,6 @@ def _nominal(cell: Cell | None) -> Shown | None:
 
 def _typed(cell: Cell) -> Typed | None:
     try:
-        return read(cell.raw, cell.declared.meaning.unit) if cell.declared else read_any(cell.raw)
+        return read(cell.raw, cell.declared.meaning.accepted) if cell.declared else read_any(cell.raw)
     except FaultyText:  # an older program took it
         return None

@@ -76,11 +76,11 @@ def _value(calculation: Calculation, place: str, typed_unit: str) -> JsonObject 
         return {"value": typed.value, "unit": typed.unit}
     base = base_unit(calculation.graph, place)
     scale = unit(typed_unit or base)
-    if not compatible(scale.base, unit(base).base):
+    if not compatible(scale, unit(base)):
         scale = unit(base)
     return {"value": np.asarray(scale.from_si(typed.si)).tolist(), "unit": scale.text}
 
 
 def base_unit(graph: Graph, parameter: str) -> str:
     """Return the unit in SI of a parameter that is a relation."""
-    return f"{graph.kinds[parameter].base:~C}" or "1"
+    return graph.kinds[parameter].unit

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from app.designs import repository
-from app.designs.service import Designs, Saved
+from app.designs.service import Designs, SaveResult
 from app.plain import JsonObject, Raw
 from app.storage.idempotency import Once
 
@@ -15,7 +15,7 @@ Table = Mapping[str, Mapping[str, Raw]]
 
 def replace_variants(
     designs: Designs, id: str, table: Table, note: str | None, expected: str | None, once: Once
-) -> Saved:
+) -> SaveResult:
     """Return a new revision whose variants are those of a table; a table that changes nothing makes none.
 
     Raises

@@ -45,7 +45,7 @@ def plain_problem(error: Exception) -> JsonObject:
 
 
 @dataclass(frozen=True)
-class Settling:
+class VariantSolids:
     """One regeneration of variants.
 
     Attributes

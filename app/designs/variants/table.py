@@ -79,7 +79,7 @@ def _other_kind(graph: Graph, variant: str, place: str, value: Raw) -> Fault | N
     if cell is None or kind is None or is_relation(value) or isinstance(value, list):
         return None
     try:
-        read(value, f"{kind.base:~C}" or "1" if cell.relations else read_any(cell.raw).unit)
+        read(value, kind.unit if cell.relations else read_any(cell.raw).unit)
     except FaultyText as error:
         return error.fault(place_name(variant, place))
     return None

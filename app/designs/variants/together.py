@@ -19,7 +19,7 @@ from app.designs.engine.relations import MOST_OPERATIONS
 from app.designs.graph import build_graph, starts
 from app.designs.network import Block, Node
 from app.designs.results import Outcome
-from app.designs.variants.array_calls import Asking, evaluations
+from app.designs.variants.array_calls import StepInputs, evaluations
 from app.designs.variants.outcome import outcome_of, refused, units_of
 from app.designs.variants.table import applied
 from templates.core.errors import Fault, InvalidInputs
@@ -134,7 +134,7 @@ def _share(runs: Sequence[_Run]) -> None:
             run.calculation.prepared[asking[name].block.name] = evaluation
 
 
-def _asking(run: _Run) -> Asking | None:
+def _asking(run: _Run) -> StepInputs | None:
     """Return the inputs of a step for one variant; None while an input waits for a solid, or is faulty."""
     block, calculation = run.at, run.calculation
     assert block is not None, "it waits at a step"
@@ -142,7 +142,7 @@ def _asking(run: _Run) -> Asking | None:
     if not unknown.isdisjoint(block.cells.values()):
         return None
     raw = {name: calculation.typed.get(cell.name, cell.raw) for name, cell in block.cells.items()}
-    return Asking(block, raw, calculation.graph)
+    return StepInputs(block, raw, calculation.graph)
 
 
 def row_arrays(calculation: Calculation) -> Sequence[Fault]:

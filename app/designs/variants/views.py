@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository
 from app.designs.schemas.variants import (
-    Governing,
+    GoverningVariant,
     ModelState,
     VariantModel,
     VariantResult,
@@ -149,19 +149,21 @@ def _chosen(result: JsonObject, outputs: Collection[str]) -> Iterator[tuple[str,
     yield from ((name, stored[name]) for name in outputs if name in stored)
 
 
-def _governing(results: Collection[VariantResult]) -> dict[str, Governing]:
+def _governing(results: Collection[VariantResult]) -> dict[str, GoverningVariant]:
     """Return the worst variant of each criterion; the first of those that are equal."""
-    worst: dict[str, Governing] = {}
+    worst: dict[str, GoverningVariant] = {}
     for result in results:
         for criterion in result.criteria:
             more = {} if criterion.utilisation is None else {"utilisation": criterion.utilisation}
-            one = Governing(variant=result.name, criterion=criterion.name, verdict=criterion.verdict, **more)
+            one = GoverningVariant(
+                variant=result.name, criterion=criterion.name, verdict=criterion.verdict, **more
+            )
             worse = worst.get(criterion.name)
             if worse is None or _rank_of_governing(one) < _rank_of_governing(worse):
                 worst[criterion.name] = one
     return worst
 
 
-def _rank_of_governing(one: Governing) -> tuple[int, float]:
+def _rank_of_governing(one: GoverningVariant) -> tuple[int, float]:
     """Return worst first, as criteria are ordered."""
     return WORST_FIRST.index(one.verdict), -(one.utilisation or 0.0)

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.catalogue.schemas.templates import Described, Schema
+from app.catalogue.schemas.templates import Description, Schema
 from app.imported_models.schemas import ModelOrigin
 from app.schemas.answers import Answer, Quantity, Shown, Triple, Values, Version
 
@@ -58,7 +58,7 @@ class Measurements(Answer):
         None, description="of every part, with its density; builds of an older recipe do not have it"
     )
     trust: str | None = Field(
-        None, description="of a brought model: which checks the solid passed, and which it does not have"
+        None, description="of an imported model: which checks the solid passed, and which it does not have"
     )
     clearances: list[Clearance] | None = Field(
         None, description="of an assembly: between its fixed parts and the other parts, closest boxes first"
@@ -84,7 +84,7 @@ class BuildUse(Answer):
     variant: str | None = Field(None, description="of the design; absent where the design itself uses it")
 
 
-class Stated(Answer):
+class StepStatement(Answer):
     """What a STEP file states beside its shape, and what its build states there."""
 
     kind: str = Field(
@@ -112,7 +112,7 @@ class Verification(Answer):
     intact: bool = Field(
         description="whether the bytes are still those that were written, but for the stamp of a download"
     )
-    statements: list[Stated] = Field(
+    statements: list[StepStatement] = Field(
         [],
         description="what was read in the text of the file: limits, datums, geometric tolerances, "
         "attributes, materials and validation properties; absent where neither file nor build states any",
@@ -130,7 +130,7 @@ class Analysable(Answer):
     default_level: str
 
 
-class CadModel(Described):
+class CadModel(Description):
     """One version of a CAD model."""
 
     parameters: Schema = Field(description="JSON Schema of the object `parameters`")
@@ -138,4 +138,4 @@ class CadModel(Described):
     analyses: dict[str, Analysable] = Field(description="finite-element analyses by kind")
     film_bore: str | None = Field(description="the parameter that is the bore with the oil film")
     picture: str = Field(description="path of a picture of the example")
-    origin: ModelOrigin | None = Field(None, description="of a model that a team brought; absent for others")
+    origin: ModelOrigin | None = Field(None, description="of a model that a team imported; absent for others")

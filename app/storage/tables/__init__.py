@@ -9,7 +9,7 @@ from app.storage.tables.designs import (
     RevisionRow,
     variant_of,
 )
-from app.storage.tables.imported_models import BroughtModelRow
+from app.storage.tables.imported_models import ImportedModelRow
 from app.storage.tables.jobs import CounterRow, EventRow, JobRow
 from app.storage.tables.people import ApiKeyRow, PrincipalRow, SessionRow, StorageRow, UsageRow
 from app.storage.tables.records import AuditRow, IdempotencyRow
@@ -25,7 +25,6 @@ __all__ = [
     "ArtifactRow",
     "AuditRow",
     "Base",
-    "BroughtModelRow",
     "BuildRow",
     "CommentRow",
     "CounterRow",
@@ -33,6 +32,7 @@ __all__ = [
     "DesignTagRow",
     "EventRow",
     "IdempotencyRow",
+    "ImportedModelRow",
     "JobRow",
     "JsonText",
     "NotWritten",

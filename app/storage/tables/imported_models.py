@@ -1,14 +1,14 @@
-"""Models that a team has brought."""
+"""Models that a team has imported."""
 
 from sqlalchemy.orm import Mapped, mapped_column
 
 from app.storage.tables.base import Base
 
 
-class BroughtModelRow(Base):
-    """A version of a brought model: written once, never changed."""
+class ImportedModelRow(Base):
+    """A version of an imported model: written once, never changed."""
 
-    __tablename__ = "brought_model"
+    __tablename__ = "imported_model"
 
     id: Mapped[str] = mapped_column(primary_key=True)
     number: Mapped[int] = mapped_column(primary_key=True)

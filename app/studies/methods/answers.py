@@ -117,7 +117,7 @@ Answer = Callable[[Array], Columns]
 """The results at one level for rows [SI], shape (N, d): a pure function."""
 
 
-class Counted:
+class CountingAnswer:
     """An answer that counts the rows that it was asked for, and adds up their cost [s]."""
 
     def __init__(self, answer: Answer) -> None:

@@ -8,8 +8,8 @@ from typing import Literal
 
 import numpy as np
 
-from app.studies.methods.answers import Answer, Columns, Counted, Problem
-from app.studies.methods.correction import Corrected, Seen, stacked
+from app.studies.methods.answers import Answer, Columns, CountingAnswer, Problem
+from app.studies.methods.correction import CorrectedAnswer, SearchView, stacked
 from app.studies.methods.search import Scan, scales, scan
 from templates.core.arrays import Array
 from templates.core.judging.comparison import Verdict
@@ -75,10 +75,10 @@ class Run:
 
     def __init__(self, problem: Problem, explore: Answer, confirm: Answer, seed: int, within: float) -> None:
         self.problem, self._within = problem, within
-        self.explore, self._confirm = Counted(explore), Counted(confirm)
+        self.explore, self._confirm = CountingAnswer(explore), CountingAnswer(confirm)
         self.scanned: Scan = scan(problem, self.explore, seed)
         self.scales = scales(self.scanned.columns)
-        self.surface = Corrected(problem, self.explore, self.scales)
+        self.surface = CorrectedAnswer(problem, self.explore, self.scales)
         self._floors = TINY * np.nanmedian(np.abs(stacked(self.scanned.columns)), axis=0)
 
     @property
@@ -101,7 +101,7 @@ class Run:
         seen = self.surface.seen(unit, self._coarse)
         return [self._compared(at, seen, fine, row) for row in range(len(unit))], fine
 
-    def _compared(self, at: Array, seen: Seen, fine: Columns, row: int) -> Round:
+    def _compared(self, at: Array, seen: SearchView, fine: Columns, row: int) -> Round:
         promise, confirmed = seen.columns[row], stacked(fine)[row]
         near = np.abs(promise - confirmed) <= np.maximum(self._within * np.abs(confirmed), self._floors)
         one = fine.row(row)
@@ -121,7 +121,7 @@ class Run:
 
         Best is what is nearest to feasible by the coarse level alone, without corrections.
         """
-        raw = Corrected(self.problem, self.explore, self.scales)
+        raw = CorrectedAnswer(self.problem, self.explore, self.scales)
         seen = raw.seen(self.scanned.unit, self.scanned.columns)
         rows = np.flatnonzero(seen.complete)
         rows = rows[np.argsort(seen.violation[rows], kind="stable")[: max(1, len(rows) // 4)]]

@@ -28,7 +28,7 @@ NUGGET = 1e-9
 
 
 @dataclass(frozen=True)
-class Seen:
+class SearchView:
     """A search's view of N rows: objectives to minimise, and how far each criterion is from its limit.
 
     Attributes
@@ -62,7 +62,7 @@ def stacked(columns: Columns) -> Array:
     return np.hstack([columns.objectives, columns.values, columns.limits])
 
 
-class Corrected:
+class CorrectedAnswer:
     """The coarse answer over the unit cube, corrected and guarded by what was confirmed."""
 
     def __init__(self, problem: Problem, answer: Answer, scales: Array) -> None:
@@ -74,11 +74,11 @@ class Corrected:
         self.guards: list[Array] = []
         self.reserve = np.zeros(len(problem.held))
 
-    def __call__(self, unit: Array) -> Seen:
+    def __call__(self, unit: Array) -> SearchView:
         """Return the promises at places of the unit cube, shape (N, d)."""
         return self.seen(unit, self.answer(self.problem.space.at(unit)))
 
-    def seen(self, unit: Array, columns: Columns) -> Seen:
+    def seen(self, unit: Array, columns: Columns) -> SearchView:
         """Return the promises at places where the coarse level has been asked already."""
         weights = self._weights(unit)
         promise = self._promise(stacked(columns), weights)
@@ -86,7 +86,7 @@ class Corrected:
         values, limits = promise[:, count : count + held], promise[:, count + held :]
         margins = self.problem.signs * (values - limits) - self._guard(values, weights)
         margins = margins / self.scales - self.reserve
-        return Seen(self.problem.senses * promise[:, :count], margins, promise)
+        return SearchView(self.problem.senses * promise[:, :count], margins, promise)
 
     def learn(self, unit: Array, coarse: Columns, fine: Columns) -> None:
         """Correct by one more confirmed place, shape (1, d), and guard its bands from now on."""

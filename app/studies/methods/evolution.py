@@ -13,7 +13,7 @@ from typing import Protocol, cast
 
 import numpy as np
 
-from app.studies.methods.correction import Corrected, Seen
+from app.studies.methods.correction import CorrectedAnswer, SearchView
 from app.studies.methods.extras import extra
 from app.studies.methods.stages import Stages
 from templates.core.arrays import Array
@@ -44,7 +44,12 @@ class Algorithm(Protocol):
 
 
 def evolved(
-    surface: Corrected, population: Array, seeds: tuple[int, int], generations: int, stages: Stages, name: str
+    surface: CorrectedAnswer,
+    population: Array,
+    seeds: tuple[int, int],
+    generations: int,
+    stages: Stages,
+    name: str,
 ) -> Array:
     """Return the last population of NSGA-II, as places of the unit cube, shape (P, d).
 
@@ -69,7 +74,9 @@ def evolved(
     return stages.stepped(name, first, following, generations)[0]
 
 
-def _next(surface: Corrected, members: tuple[Array, ...], size: int, seed: int) -> tuple[Array, ...] | None:
+def _next(
+    surface: CorrectedAnswer, members: tuple[Array, ...], size: int, seed: int
+) -> tuple[Array, ...] | None:
     """Return the next generation: places, objectives and constraints; None if no new places come up."""
     kinds = surface.problem
     problem = extra("pymoo.core.problem").Problem(
@@ -100,7 +107,7 @@ def _tell(
     algorithm.tell(infills=members)
 
 
-def _for_pymoo(seen: Seen) -> tuple[Array, Array]:
+def _for_pymoo(seen: SearchView) -> tuple[Array, Array]:
     """Return objectives and constraints, which hold at zero or less.
 
     One more says whether a row has results.

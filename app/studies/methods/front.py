@@ -14,9 +14,9 @@ import numpy as np
 
 from app.studies.methods.answers import Answer, Problem
 from app.studies.methods.confirmation import WITHIN, Round, Run, State, unmet
-from app.studies.methods.correction import Corrected
+from app.studies.methods.correction import CorrectedAnswer
 from app.studies.methods.evolution import evolved
-from app.studies.methods.polish import Scaled, polished
+from app.studies.methods.polish import ScaledProblem, polished
 from app.studies.methods.search import best, middle_and_width
 from app.studies.methods.stages import Forgetful, Journal, Stages
 from templates.core.arrays import Array, Integers, Mask
@@ -139,7 +139,7 @@ def _first(run: Run, count: int) -> Array:
     return run.scanned.unit[rows[order[:count]]]
 
 
-def _chosen(surface: Corrected, population: Array, count: int) -> Array:
+def _chosen(surface: CorrectedAnswer, population: Array, count: int) -> Array:
     """Return places of a population's front to confirm, far from each other.
 
     Without a feasible one the nearest.
@@ -155,14 +155,14 @@ def _chosen(surface: Corrected, population: Array, count: int) -> Array:
     return _polished(surface, unit[front][chosen], objectives[front][chosen])
 
 
-def _polished(surface: Corrected, unit: Array, objectives: Array) -> Array:
+def _polished(surface: CorrectedAnswer, unit: Array, objectives: Array) -> Array:
     """Return each place with its first objective as small as it gets while no other grows.
 
     NSGA-II keeps places in the gaps of its front that are not quite of it.
     """
     middle_width = middle_and_width(objectives)
     ends = [
-        polished(Scaled(surface, *middle_width, most=row[1:]), place)
+        polished(ScaledProblem(surface, *middle_width, most=row[1:]), place)
         for place, row in zip(unit, objectives, strict=True)
     ]
     return np.array([end.unit for end in ends])

@@ -15,7 +15,7 @@ from typing import Literal, TypedDict
 import numpy as np
 from scipy.optimize import minimize
 
-from app.studies.methods.correction import Corrected
+from app.studies.methods.correction import CorrectedAnswer
 from templates.core.arrays import Array, Mask
 
 STEP = 1e-5
@@ -45,14 +45,14 @@ def rank(place: Place) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
-class Scaled:
+class ScaledProblem:
     """The first objective, near one, and the margins of a surface.
 
     `middle` and `width` are those of all objectives, shape (k,). `most` bounds the other objectives, shape
     (k - 1,): so a place of a front gets better in one objective, and worse in none.
     """
 
-    surface: Corrected
+    surface: CorrectedAnswer
     middle: Array
     width: Array
     most: Array | None = None
@@ -78,7 +78,7 @@ class _Stale(Exception):
 class _Tangent:
     """Values and slopes over the free variables around a start; remembers the best place it was asked for."""
 
-    def __init__(self, scaled: Scaled, start: Array, free: Mask) -> None:
+    def __init__(self, scaled: ScaledProblem, start: Array, free: Mask) -> None:
         self._scaled, self._start, self.free = scaled, start, np.flatnonzero(free)
         self._kept: dict[bytes, Linear] = {}
         self.places: list[Place] = []
@@ -98,7 +98,7 @@ class _Tangent:
         return self._kept[key]
 
     def _is_stale(self) -> bool:
-        """Return whether the last places brought nothing: SLSQP chases the noise of solvers for ever."""
+        """Return whether the last places improved nothing: SLSQP chases the noise of solvers for ever."""
         if len(self.places) < STALE:
             return False
         before, after = (min(part, key=rank) for part in (self.places[: 1 - STALE], self.places[1 - STALE :]))
@@ -153,7 +153,7 @@ def _slopes(middle: Array, one: Array, other: Array, a: Array, b: Array) -> Arra
     return np.where(np.isfinite(slopes), slopes, 0.0)
 
 
-def polished(scaled: Scaled, start: Array, accuracy: float = ACCURACY) -> Place:
+def polished(scaled: ScaledProblem, start: Array, accuracy: float = ACCURACY) -> Place:
     """Return the best place on the way of SLSQP from a start, to an accuracy of the scaled objective."""
     tangent = _Tangent(scaled, start, scaled.surface.problem.space.continuous)
     first = tangent(start[tangent.free])
@@ -167,7 +167,7 @@ def _slsqp(tangent: _Tangent, start: Array, held: int, accuracy: float) -> None:
     _minimise(lambda z: tangent(z)[:2], start, [(0.0, 1.0)] * start.size, [limits] if held else [], accuracy)
 
 
-def relaxed(scaled: Scaled, place: Place) -> Place:
+def relaxed(scaled: ScaledProblem, place: Place) -> Place:
     """Return the place of least violation near a place.
 
     The violation t becomes the objective, margins + t >= 0.

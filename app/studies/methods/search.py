@@ -12,9 +12,9 @@ from math import prod
 import numpy as np
 
 from app.studies.methods.answers import Answer, Columns, Problem, all_refused
-from app.studies.methods.correction import Corrected, Seen
+from app.studies.methods.correction import CorrectedAnswer, SearchView
 from app.studies.methods.points import Grid, sobol_sequence
-from app.studies.methods.polish import ROUGH, Place, Scaled, polished, rank, relaxed
+from app.studies.methods.polish import ROUGH, Place, ScaledProblem, polished, rank, relaxed
 from app.studies.methods.space import Space, Values
 from templates.core.arrays import Array, Integers
 
@@ -86,10 +86,10 @@ def _scale(limits: Array, values: Array) -> float:
     return 1.0
 
 
-def best(surface: Corrected, scanned: Scan, starts: tuple[Array, ...] = ()) -> Place:
+def best(surface: CorrectedAnswer, scanned: Scan, starts: tuple[Array, ...] = ()) -> Place:
     """Return the best place that the polish finds from the best of the scan, and from `starts` besides."""
     seen = surface.seen(scanned.unit, scanned.columns)
-    scaled = Scaled(surface, *middle_and_width(seen.objectives[seen.complete]))
+    scaled = ScaledProblem(surface, *middle_and_width(seen.objectives[seen.complete]))
     count = AGAIN if starts else STARTS
     chosen = [*starts, *scanned.unit[_starts(surface.problem.space, scanned.unit, seen, count)]]
     ends = [polished(scaled, start, ROUGH) for start in chosen]
@@ -107,7 +107,7 @@ def middle_and_width(objectives: Array) -> tuple[Array, Array]:
     return middle, np.select([size > 0 for size in sizes], sizes)
 
 
-def _starts(space: Space, unit: Array, seen: Seen, count: int) -> list[int]:
+def _starts(space: Space, unit: Array, seen: SearchView, count: int) -> list[int]:
     """Return rows of the scan to polish.
 
     The best, no two close together or of the same combination of lists.

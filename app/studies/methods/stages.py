@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from app.studies.methods.answers import Counted
+from app.studies.methods.answers import CountingAnswer
 from templates.core.arrays import Array
 
 
@@ -59,7 +59,7 @@ class Forgetful:
 class Stages:
     """The stages of one search, with the count of what it asks of the coarse level."""
 
-    def __init__(self, journal: Journal, counted: Counted) -> None:
+    def __init__(self, journal: Journal, counted: CountingAnswer) -> None:
         self._journal, self._counted = journal, counted
 
     def stepped(

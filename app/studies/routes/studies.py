@@ -43,10 +43,10 @@ from app.storage.tables import StudyRow
 from app.studies import exports, repository, views
 from app.studies.bodies import ChooseIn, StudyIn
 from app.studies.plan import Plan, planned
-from app.studies.row_columns import Stored
+from app.studies.row_columns import StoredRows
 from app.studies.schemas import Study, StudyEstimate, StudyList, StudyRows
 from app.studies.service import ENDED, Draft, Studies
-from app.studies.views import Listing, Wanted, Where
+from app.studies.views import RowList, RowQuery, Where
 from templates.core.arrays import Array
 
 register_id("study", ["estimate"])
@@ -294,12 +294,12 @@ def _whole(studies: Studies, id: str, topic: str) -> Whole:
 
 def _listing(
     studies: Studies, id: str, columns: str | None, where: Where | None, sort: str | None
-) -> Listing:
+) -> RowList:
     with studies.database.read() as session:
         row = repository.get(session, id)
-        stored = Stored(studies.store, repository.chunks(session, id))
+        stored = StoredRows(studies.store, repository.chunks(session, id))
     names = tuple(dict.fromkeys(part.strip() for part in (columns or "").split(",") if part.strip()))
-    return Listing(row, stored, Wanted(names, where, sort))
+    return RowList(row, stored, RowQuery(names, where, sort))
 
 
 def _named(id: str, kind: str) -> str:

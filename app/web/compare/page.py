@@ -21,7 +21,7 @@ _ID = re.compile("[A-Za-z0-9_]{1,64}")
 
 
 @dataclass(frozen=True)
-class Asked:
+class CompareForm:
     """The texts of the form: numbers and a design, empty where nothing was chosen.
 
     `of` is the design whose revisions the second picker offered; a number of another one means nothing.
@@ -45,7 +45,7 @@ def _number(text: str) -> int | None:
     return int(text) if is_number else None
 
 
-async def compare_page(request: Request, services: PageServices, id: str, asked: Asked) -> Response:
+async def compare_page(request: Request, services: PageServices, id: str, asked: CompareForm) -> Response:
     """Show the differences, and the forms to choose two other revisions."""
     design = await services.run(services.designs.show, id)
     other = await _other(services, design, asked.design)

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
-from app.web.compare.page import Asked, compare_page
+from app.web.compare.page import CompareForm, compare_page
 from app.web.shared.paths import Id, Text
 from app.web.shared.services import ThePageServices
 
@@ -24,4 +24,4 @@ async def compared(
     of: Text = "",
 ) -> Response:
     """Two revisions, of this design or of this and another one."""
-    return await compare_page(request, services, id, Asked(revision, number, design, of))
+    return await compare_page(request, services, id, CompareForm(revision, number, design, of))

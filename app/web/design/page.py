@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from app.catalogue.routes.templates import list_templates
 from app.catalogue.schemas.templates import Template, TemplateSummary
-from app.designs.preview import Previewed
+from app.designs.preview import PreviewRequest
 from app.designs.routes.designs import show_measurements
 from app.designs.routes.revisions import list_revisions
 from app.designs.routes.solid_fields import list_solid_fields
@@ -190,7 +190,7 @@ async def _form(request: Request, services: PageServices, design: Design, refusa
         await described_models(services, design),
     )
     has_parameters = bool(design.parameters)  # only with the worksheet a preview has their values
-    change = Previewed(id, {}, worksheet=has_parameters, system=units_of(request))
+    change = PreviewRequest(id, {}, worksheet=has_parameters, system=units_of(request))
     has_values = has_parameters or bool(design.models)  # the page shows nothing else of a preview
     preview = await services.calculate(within, services.previews.at_once, change) if has_values else None
     before = await _before(request, services, design)

@@ -11,7 +11,7 @@ from fastapi import APIRouter, Depends, Request, Response
 from app.catalogue.routes.templates import show_template
 from app.impact.bodies import ImpactIn
 from app.impact.schemas import DesignImpact, Impact
-from app.impact.survey import Asked
+from app.impact.survey import ImpactQuestion
 from app.presentation import numbers
 from app.schemas.answers import Quantity
 from app.web.shared.answers import stored
@@ -105,7 +105,7 @@ async def ask(id: Id, version: Number, request: Request, services: ThePageServic
     asked = {name: typed.get(name, "").strip()[:200] for name in ("name", "tag")}
     try:
         body = services.read(ImpactIn, _body(asked))
-        asked_for = Asked(id, version, body, units_of(request))
+        asked_for = ImpactQuestion(id, version, body, units_of(request))
         _, job = await services.run(services.impacts.answer, asked_for, services.client)
     except Refused as refused:
         if refused.status != ILL_NAMED:

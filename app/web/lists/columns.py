@@ -101,7 +101,7 @@ def _proposed(columns: Sequence[TableColumn], fields: Sequence[TableField]) -> l
 
 def _likeness(column: TableColumn, field: TableField) -> float:
     """Return a likeness from 0, nothing in common or another kind of quantity, to 1, the same name."""
-    if column.unit and not compatible(unit(column.unit).base, unit(field.unit).base):
+    if column.unit and not compatible(unit(column.unit), unit(field.unit)):
         return 0.0
     own, name = _words(column.name), Reference.parse(field.name).own_name
     if api_name(column.name) == name or _plain(column.name) == _plain(re.sub(r"\\[a-z]+", "", field.symbol)):

@@ -1,6 +1,6 @@
 """The page that puts a bought part beside a model of a design: it writes the manifest of the assembly.
 
-The assembly is imported as every brought model is; then the design takes it in place of the model.
+The assembly is imported as every imported model is; then the design takes it in place of the model.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ PATIENCE = 15.0
 GLANCE = 0.1  # [s]
 PLACES = ("x", "y", "z", "turn_x", "turn_y", "turn_z")
 FIELDS = ("component", "source", "design", "part", "datum", *PLACES, "may_overlap", "id")
-_FIXED = "Fixed part "  # how the title of a STEP file begins that was brought
+_FIXED = "Fixed part "  # the title of an imported STEP file begins so
 _VERSION = re.compile(r"/api/v1/models/([a-z0-9_]+)/versions/([0-9]+)")
 _MANIFEST = TypeAdapter(dict[str, JsonValue])
 _STALE = 412
@@ -50,7 +50,7 @@ async def put_beside(request: Request, services: ThePageServices, id: Id, name: 
     typed = {key: text.strip() for key, text in (await fields(request)).items() if key in FIELDS}
     design = await services.run(services.designs.show, id)
     try:
-        version = await _brought(services, typed, await _manifest(services, _model(design, name), typed))
+        version = await _imported(services, typed, await _manifest(services, _model(design, name), typed))
         note = f"{typed.get('component', '')[:40]} beside {name}"
         await services.change(id, str(design.revision), {"models": {name: version}}, note)
     except Refused as refused:
@@ -98,7 +98,7 @@ def _component(typed: Mapping[str, str]) -> dict[str, JsonValue]:
     return entry
 
 
-async def _brought(
+async def _imported(
     services: PageServices, typed: Mapping[str, str], manifest: Mapping[str, JsonValue]
 ) -> dict[str, JsonValue]:
     """Return the version of the model that a manifest becomes, as a design names it.
@@ -150,6 +150,6 @@ async def _form(
 
 
 async def _bought(services: PageServices) -> list[TemplateSummary]:
-    """Return the STEP files that were brought, the newest of each."""
+    """Return the imported STEP files, the newest of each."""
     items = (await services.run(list_models, services.catalogues, limit=500)).items
     return [item for item in items if item.latest and item.title.startswith(_FIXED)]

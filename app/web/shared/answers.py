@@ -10,7 +10,7 @@ from pydantic import TypeAdapter
 from pydantic_core import to_json
 
 from app.api.answers import answer_of
-from app.calculations.bodies import Asked
+from app.calculations.bodies import CalculationRequest
 from app.calculations.operations import OPERATIONS, Question
 from app.http.pace import PiecesResponse
 from app.pool.cost import EXPENSIVE
@@ -21,12 +21,12 @@ from app.workers.pieces import Pieces
 from templates.core.language.template import Template
 
 Kind = TypeVar("Kind")
-Body = TypeVar("Body", bound=Asked)
+Body = TypeVar("Body", bound=CalculationRequest)
 ACCEPTED = 202
 
 
 @dataclass(frozen=True)
-class Answered(Generic[Kind]):
+class AnswerOrJob(Generic[Kind]):
     """An answer, or the id of the job that makes it."""
 
     answer: Kind | None
@@ -50,7 +50,7 @@ async def calculated(
     seconds_needed: Callable[[type[Template], Body], float],
     kind: type[Kind],
     within: float,
-) -> Answered[Kind]:
+) -> AnswerOrJob[Kind]:
     """Return the answer about a template; of an expensive one the job, if it is not there in time [s].
 
     Raises
@@ -61,14 +61,14 @@ async def calculated(
     cls = await services.ask(services.catalogues.tried(asked.template, asked.version))
     if await services.run(seconds_needed, cls, asked.body) <= EXPENSIVE:
         write = OPERATIONS[asked.operation].write["json"]
-        return Answered(_read(kind, await services.run(write, cls, asked.body, asked.units)))
+        return AnswerOrJob(_read(kind, await services.run(write, cls, asked.body, asked.units)))
     body = Pieces.of(to_json(asked.body.model_dump(exclude_unset=True, by_alias=True)))
     question = Question(asked.template, asked.version, asked.operation, body, asked.units, "json")
     kept, job = await services.calculate(within, services.evaluations.answer, question, services.client)
-    return Answered(None if kept is None else _read(kind, kept.joined()), job or "")
+    return AnswerOrJob(None if kept is None else _read(kind, kept.joined()), job or "")
 
 
-async def stored(services: PageServices, job: str, kind: type[Kind]) -> Answered[Kind]:
+async def stored(services: PageServices, job: str, kind: type[Kind]) -> AnswerOrJob[Kind]:
     """Return the answer that a job has made, or the job while it still runs.
 
     Raises
@@ -80,9 +80,9 @@ async def stored(services: PageServices, job: str, kind: type[Kind]) -> Answered
     if response.status_code >= 400:
         raise Refused(Problem.model_validate_json(bytes(response.body)))
     if response.status_code == ACCEPTED:
-        return Answered(None, response.headers["Location"].rpartition("/")[2])
+        return AnswerOrJob(None, response.headers["Location"].rpartition("/")[2])
     assert isinstance(response, PiecesResponse), "an answer is sent as it is kept"
-    return Answered(_read(kind, response.pieces.joined()))
+    return AnswerOrJob(_read(kind, response.pieces.joined()))
 
 
 def _read(kind: type[Kind], content: bytes) -> Kind:

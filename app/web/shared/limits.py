@@ -8,7 +8,7 @@ from dataclasses import replace
 from pydantic import JsonValue
 
 from app.catalogue.routes.library import list_library_tables, show_library_table
-from app.catalogue.schemas.declarations import Declared, properties
+from app.catalogue.schemas.declarations import DeclaredValue, properties
 from app.catalogue.schemas.library import LibraryRow, LibraryTable
 from app.catalogue.schemas.templates import Template
 from app.presentation.input_text import text_of, value_of
@@ -59,7 +59,7 @@ def limit_fields(
     return fields
 
 
-def _field(name: str, control: str, declared: Declared) -> Field:
+def _field(name: str, control: str, declared: DeclaredValue) -> Field:
     """Return an empty field; its hint says what holds while it stays empty."""
     default = declared.default_formula or "not given"
     return Field(
@@ -75,7 +75,7 @@ def _field(name: str, control: str, declared: Declared) -> Field:
 
 
 def _rows(
-    id: str | None, limits: Mapping[str, Declared], tables: Sequence[LibraryTable]
+    id: str | None, limits: Mapping[str, DeclaredValue], tables: Sequence[LibraryTable]
 ) -> Iterator[LibraryRow]:
     """Yield the rows of a table that have a value for a limit which is taken from it."""
     taken = {name for name, limit in limits.items() if id and limit.filled_by == id}

@@ -22,7 +22,7 @@ from app.api.dependencies import expensive_steps, services_of
 from app.api.services import Services
 from app.calculations.errors import InvalidBody
 from app.designs.routes.designs import noted
-from app.designs.service import Saved
+from app.designs.service import SaveResult
 from app.http.access import TheClient
 from app.http.problem_kinds import TABLE
 from app.http.problems import refusal
@@ -132,10 +132,10 @@ class PageServices(Services):
 
     async def save(
         self,
-        change: Callable[Arguments, Saved],
+        change: Callable[Arguments, SaveResult],
         *arguments: Arguments.args,
         **options: Arguments.kwargs,
-    ) -> Saved:
+    ) -> SaveResult:
         """Return what a change has saved; its job is waited for a moment: the page shows how it goes on.
 
         Raises
@@ -148,7 +148,9 @@ class PageServices(Services):
             await self.jobs.wait(saved.job, MOMENT)
         return saved
 
-    async def change(self, id: str, revision: str, patch: Mapping[str, JsonValue], note: str = "") -> Saved:
+    async def change(
+        self, id: str, revision: str, patch: Mapping[str, JsonValue], note: str = ""
+    ) -> SaveResult:
         """Save a merge patch of a design as read at a revision, which is a text as a form names it.
 
         Raises

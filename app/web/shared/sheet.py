@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from app.catalogue.schemas.declarations import Declared, properties, required
+from app.catalogue.schemas.declarations import DeclaredValue, properties, required
 from app.catalogue.schemas.templates import Schema, Template
 from app.presentation import numbers
 from app.presentation.input_text import text_of
@@ -125,7 +125,9 @@ def _name_of_fault(option: str, faults: Mapping[str, str]) -> str:
     return next(names, option)
 
 
-def _field(name: str, declared: Declared, text: str, value: object, error: str | None, needed: bool) -> Field:
+def _field(
+    name: str, declared: DeclaredValue, text: str, value: object, error: str | None, needed: bool
+) -> Field:
     return Field(
         name=name,
         control=name,
@@ -142,7 +144,7 @@ def _field(name: str, declared: Declared, text: str, value: object, error: str |
     )
 
 
-def _hint(declared: Declared) -> str:
+def _hint(declared: DeclaredValue) -> str:
     """Return the hint of a field: what an empty one stands for, or how a value is written."""
     if declared.has_default:
         return numbers.in_line(declared.default)

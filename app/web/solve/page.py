@@ -15,7 +15,7 @@ from app.designs.schemas.solution import DesignRoot, DesignSolution
 from app.designs.solution import SolveDesignIn
 from app.presentation import numbers
 from app.presentation.input_text import value_of
-from app.web.shared.answers import Answered, stored
+from app.web.shared.answers import AnswerOrJob, stored
 from app.web.shared.places import PlaceOption, outputs, related, suggested, times, varied
 from app.web.shared.responses import go, show, units_of
 from app.web.shared.services import PageServices
@@ -39,13 +39,13 @@ class Wider:
 
 
 @dataclass(frozen=True)
-class Asked:
+class SolveForm:
     """The texts of the form; empty where nothing was typed."""
 
     typed: Mapping[str, str]
 
     @classmethod
-    def of(cls, request: Request) -> Asked:
+    def of(cls, request: Request) -> SolveForm:
         """Return the question in the address."""
         return cls({name: request.query_params.get(name, "").strip()[:200] for name in FIELDS})
 
@@ -83,7 +83,7 @@ async def solve_page(request: Request, services: PageServices, id: str) -> Respo
     design = await services.run(services.designs.show, id)
     network = await services.run(services.designs.network, id)
     places = varied(design, network)
-    question, job = _with_bounds(Asked.of(request), places), request.query_params.get("job", "")
+    question, job = _with_bounds(SolveForm.of(request), places), request.query_params.get("job", "")
     reply = Reply[DesignSolution]()
     if question.is_whole:
         reply = await replied(
@@ -111,15 +111,15 @@ async def solve_page(request: Request, services: PageServices, id: str) -> Respo
 
 
 async def _solved(
-    request: Request, services: PageServices, id: str, question: Asked
-) -> Answered[DesignSolution]:
+    request: Request, services: PageServices, id: str, question: SolveForm
+) -> AnswerOrJob[DesignSolution]:
     """Return the solution, or the job that calculates it where the page does not wait so long."""
     body = services.read(SolveDesignIn, question.body())
-    wanted = questions.Asked(
+    wanted = questions.DesignQuestion(
         id, body.model_dump_json(exclude_unset=True, by_alias=True), units=units_of(request)
     )
     answer, job = await services.calculate(PATIENCE, services.solving.answer, wanted, services.client)
-    return Answered(answer, job or "")
+    return AnswerOrJob(answer, job or "")
 
 
 def _drawing(solution: DesignSolution) -> Drawing:
@@ -129,13 +129,13 @@ def _drawing(solution: DesignSolution) -> Drawing:
     return Drawing(solution.unknown, target.name, target.value, solution.curve, roots, solution.jumps)
 
 
-def _with_bounds(asked: Asked, places: list[PlaceOption]) -> Asked:
+def _with_bounds(asked: SolveForm, places: list[PlaceOption]) -> SolveForm:
     """Return half and twice the present value as bounds, where a value was chosen and no bound is given."""
     chosen = next((place for place in places if place.name == asked.typed["unknown"]), None)
     if chosen is None or asked.typed["low"] or asked.typed["high"]:
         return asked
     low, high = suggested(chosen)
-    return Asked({**asked.typed, "low": low, "high": high})
+    return SolveForm({**asked.typed, "low": low, "high": high})
 
 
 def _number(text: str) -> float | str:

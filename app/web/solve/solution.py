@@ -10,7 +10,7 @@ from app.calculations.schemas.evaluations import Jump, Root, TracedCurve
 from app.presentation import numbers
 from app.reference import Reference
 from app.reports.charts import Chart, Series, svg
-from app.web.shared.answers import Answered
+from app.web.shared.answers import AnswerOrJob
 from app.web.shared.services import Refused
 
 PATIENCE = 5.0
@@ -105,7 +105,7 @@ class Reply(Generic[Kind]):
         return self.refusal is not None and (self.refusal.problem.type or "").endswith("/unreachable")
 
 
-async def replied(answer: Awaitable[Answered[Kind]]) -> Reply[Kind]:
+async def replied(answer: Awaitable[AnswerOrJob[Kind]]) -> Reply[Kind]:
     """Return the reply to a question.
 
     Raises

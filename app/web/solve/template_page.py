@@ -13,18 +13,18 @@ from pydantic import JsonValue
 from app.calculations.bodies import SolveIn
 from app.calculations.schemas.evaluations import Solution
 from app.catalogue.routes.templates import show_template
-from app.catalogue.schemas.declarations import Declared, properties
+from app.catalogue.schemas.declarations import DeclaredValue, properties
 from app.catalogue.schemas.templates import Template
 from app.pool.cost import solving_seconds
 from app.presentation.input_text import text_of, value_of
-from app.web.shared.answers import Answered, TemplateQuestion, calculated, stored
+from app.web.shared.answers import AnswerOrJob, TemplateQuestion, calculated, stored
 from app.web.shared.places import PlaceOption, suggested
 from app.web.shared.responses import go, show, units_of
 from app.web.shared.services import PageServices
 from app.web.solve.solution import PATIENCE, Drawing, Reply, ShownRoot, replied
 from app.web.template.page import inputs_of, typed_in
 from templates.core.language import template as language
-from templates.core.units.quantity import read as read_quantity
+from templates.core.units.quantity import read_any, read_beside
 from templates.core.units.units import unit
 
 FIELDS = ("unknown", "low", "high", "output", "value")
@@ -121,7 +121,7 @@ async def template_solve_page(request: Request, services: PageServices, id: str,
     )
 
 
-async def _solved(services: PageServices, template: Template, question: Question) -> Answered[Solution]:
+async def _solved(services: PageServices, template: Template, question: Question) -> AnswerOrJob[Solution]:
     """Return the solution, or the job that calculates it where the page does not wait so long."""
     body = services.read(SolveIn, question.body(template))
     asked = TemplateQuestion(template.id, template.version, "solve", body)
@@ -147,7 +147,7 @@ def _outputs(template: Template) -> Iterator[PlaceOption]:
             yield PlaceOption(name, declared.title, declared.unit or "")
 
 
-def _is_single(declared: Declared) -> bool:
+def _is_single(declared: DeclaredValue) -> bool:
     return declared.unit is not None and not declared.along and not declared.is_list
 
 
@@ -156,7 +156,8 @@ def _drawing(question: Question, solution: Solution) -> Drawing | None:
     curve = solution.curve
     if curve is None or curve.y.unit is None:
         return None
-    typed = read_quantity(value_of(question.typed["value"]), curve.y.unit)
-    wanted = float(np.asarray(unit(curve.y.unit).from_si(typed.si)))
+    scale, raw = unit(curve.y.unit), value_of(question.typed["value"])
+    typed = read_beside(raw, scale.text) if scale.difference else read_any(raw)
+    wanted = float(np.asarray(scale.from_si(typed.si)))
     roots = [*solution.roots, *solution.touching]
     return Drawing(question.typed["unknown"], question.typed["output"], wanted, curve, roots, solution.jumps)

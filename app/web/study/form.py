@@ -9,7 +9,7 @@ from math import inf
 from fastapi import Request, Response
 from pydantic import JsonValue
 
-from app.designs.preview import Previewed
+from app.designs.preview import PreviewRequest
 from app.designs.routes.variants import variants_of
 from app.designs.schemas.designs import Design, RevisionWorksheet
 from app.designs.schemas.network import NetworkName
@@ -35,7 +35,7 @@ ON = "on"
 
 
 @dataclass(frozen=True)
-class Typed:
+class StudyForm:
     """The texts of the form, and its faults."""
 
     fields: Mapping[str, str]
@@ -114,7 +114,7 @@ class Typed:
                 return wanted | ({"build": build} if (build := self.text("build")) else {})
         return {}
 
-    def with_bounds(self, bounds: Mapping[str, tuple[str, str]]) -> Typed:
+    def with_bounds(self, bounds: Mapping[str, tuple[str, str]]) -> StudyForm:
         """Return half and twice the present value as bounds where only a place was chosen."""
         filled = dict(self.fields)
         for line in range(LINES):
@@ -147,7 +147,7 @@ async def study_form(
     request: Request,
     services: PageServices,
     id: str,
-    typed: Typed,
+    typed: StudyForm,
     status: int = 200,
     estimate: StudyEstimate | None = None,
 ) -> Response:
@@ -158,7 +158,7 @@ async def study_form(
     revision = await services.calculate(None, services.reports.worksheet, id, design.revision, "si")
     preview = (
         await services.calculate(
-            inf, services.previews.in_parts, Previewed(id, {}, False, "si"), services.client
+            inf, services.previews.in_parts, PreviewRequest(id, {}, False, "si"), services.client
         )
     )[0]
     places, named = varied(design, network), outputs(network)
@@ -229,6 +229,6 @@ def _words(criterion: str, require: str) -> set[str]:
     return {f"{name.block}.{word}" if name.output else word for word in bare}
 
 
-def again(typed: Mapping[str, str], refused: Refused) -> Typed:
+def again(typed: Mapping[str, str], refused: Refused) -> StudyForm:
     """Return the same texts, with the faults for which they were refused."""
-    return Typed(typed, refused.faults, None if refused.faults else refused.problem.detail)
+    return StudyForm(typed, refused.faults, None if refused.faults else refused.problem.detail)

@@ -10,7 +10,7 @@ from app.web.shared.forms import fields, forms_only
 from app.web.shared.paths import Id
 from app.web.shared.responses import go, show
 from app.web.shared.services import Refused, ThePageServices, tag_of
-from app.web.study.form import Typed, again, study_form
+from app.web.study.form import StudyForm, again, study_form
 from app.web.study.page import study_page
 
 router = APIRouter(include_in_schema=False)
@@ -22,7 +22,7 @@ ILL_NAMED, STALE = 422, 412
 @router.get("/designs/{id}/studies/new")
 async def new_study(id: Id, request: Request, services: ThePageServices) -> Response:
     """The form of a new study."""
-    return await study_form(request, services, id, Typed(dict(request.query_params)))
+    return await study_form(request, services, id, StudyForm(dict(request.query_params)))
 
 
 @router.get("/designs/{id}/studies/estimate")
@@ -50,7 +50,7 @@ async def start(id: Id, request: Request, services: ThePageServices) -> Response
     """A new study, shown at once; where it is refused, the form again with what is wrong."""
     typed = await fields(request)
     try:
-        body = services.read(StudyIn, Typed(typed).body(id))
+        body = services.read(StudyIn, StudyForm(typed).body(id))
         study = await services.ask(begun(request, services.client, services.studies, body, services.once))
     except Refused as refused:
         if refused.status != ILL_NAMED:
@@ -63,9 +63,9 @@ async def start(id: Id, request: Request, services: ThePageServices) -> Response
 async def estimate(id: Id, request: Request, services: ThePageServices, part: bool = False) -> Response:
     """Show the cost of a new study above its form; with `part` alone, for the script of the form."""
     typed = await fields(request)
-    estimated, faulty, status = None, Typed(typed), 200
+    estimated, faulty, status = None, StudyForm(typed), 200
     try:
-        body = services.read(StudyIn, Typed(typed).body(id))
+        body = services.read(StudyIn, StudyForm(typed).body(id))
         estimated = await services.ask(estimate_study(body, services.studies, services.client, request))
     except Refused as refused:
         if refused.status != ILL_NAMED:

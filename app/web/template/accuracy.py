@@ -36,7 +36,7 @@ class _Cost(BaseModel):
     vectorised: float | None = None
 
 
-class _Measured(BaseModel):
+class _MeasuredErrors(BaseModel):
     """The measured errors of one level by output, of every cell of the plane."""
 
     cost: _Cost | None = None
@@ -45,12 +45,12 @@ class _Measured(BaseModel):
 
 def table(measured: Accuracy) -> Table:
     """Return the levels of the answer to `GET …/accuracy`, with the outputs that were measured."""
-    levels = [_level(name, _Measured.model_validate(level)) for name, level in measured.levels.items()]
+    levels = [_level(name, _MeasuredErrors.model_validate(level)) for name, level in measured.levels.items()]
     outputs = list(dict.fromkeys(name for level in levels for name in level.errors))
     return Table(levels, outputs[:SHOWN])
 
 
-def _level(name: str, measured: _Measured) -> Level:
+def _level(name: str, measured: _MeasuredErrors) -> Level:
     cost = measured.cost or _Cost()
     errors = {output: sorted(_numbers(cells)) for output, cells in measured.errors.items()}
     return Level(

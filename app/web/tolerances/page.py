@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from fastapi import Request, Response
 
-from app.designs.questions import Asked
+from app.designs.questions import DesignQuestion
 from app.designs.schemas.designs import Design
 from app.presentation import bars
 from app.schemas.answers import Quantity
@@ -79,7 +79,7 @@ async def _analysis(
         reply = await stored(services, job, ToleranceAnalysis)
         return reply.answer, reply.job or None
     body = ToleranceIn().model_dump_json(exclude_unset=True)
-    asked = Asked(id, body, units=units_of(request))
+    asked = DesignQuestion(id, body, units=units_of(request))
     return await services.calculate(PATIENCE, services.tolerances.answer, asked, services.client)
 
 

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Depends, Request, Response
 
 from app.calculations.schemas.evaluations import Output
 from app.catalogue.routes.templates import show_template
-from app.designs.preview import Previewed
+from app.designs.preview import PreviewRequest
 from app.designs.routes.revisions import show_revision
 from app.designs.schemas.designs import Design, Preview
 from app.presentation import numbers
@@ -20,7 +20,8 @@ from app.web.shared.forms import Patch, fields, forms_only
 from app.web.shared.paths import Id, Text
 from app.web.shared.responses import go, show, units_of
 from app.web.shared.services import PageServices, Refused, ThePageServices
-from templates.core.units.units import compatible, unit
+from templates.core.errors import FaultyText
+from templates.core.units.units import require_same_kind, unit
 
 router = APIRouter(include_in_schema=False)
 forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
@@ -31,7 +32,7 @@ _ID = re.compile(r"[A-Za-z0-9_]{1,64}")
 _VERSION = re.compile(r"[1-9][0-9]{0,5}")
 
 
-class Moved(NamedTuple):
+class ValueChange(NamedTuple):
     """A value that is not the same, as text."""
 
     name: str
@@ -100,7 +101,9 @@ async def _page(
         raise Refused.because(MISSING, f"no step of the design uses {template}")
     preview = None
     try:
-        change = Previewed(id, _patch(design, template, number), worksheet=False, system=units_of(request))
+        change = PreviewRequest(
+            id, _patch(design, template, number), worksheet=False, system=units_of(request)
+        )
         preview = await services.calculate(PATIENCE, services.previews.at_once, change)
     except Refused as wrong:
         if wrong.status != ILL_NAMED:
@@ -130,17 +133,19 @@ async def _page(
     )
 
 
-def _moved(preview: Preview) -> list[Moved]:
+def _moved(preview: Preview) -> list[ValueChange]:
     """Return the outputs of both versions that are not the same."""
     both = {name: (one.old, one.new) for name, one in preview.outputs.items() if one.old and one.new}
-    rows = [Moved(name, _in_unit_of(old, new), numbers.in_line(new)) for name, (old, new) in both.items()]
+    rows = [
+        ValueChange(name, _in_unit_of(old, new), numbers.in_line(new)) for name, (old, new) in both.items()
+    ]
     return [one for one in rows if one.old != one.new]
 
 
-def _of_one_version(preview: Preview) -> list[Moved]:
+def _of_one_version(preview: Preview) -> list[ValueChange]:
     """Return the outputs that only one of the versions has."""
     outputs = preview.outputs.items()
-    rows = [Moved(name, numbers.in_line(one.old), numbers.in_line(one.new)) for name, one in outputs]
+    rows = [ValueChange(name, numbers.in_line(one.old), numbers.in_line(one.new)) for name, one in outputs]
     return [one for one in rows if not (one.old and one.new)]
 
 
@@ -149,16 +154,18 @@ def _in_unit_of(old: Output | AnalysisOutput, new: Output | AnalysisOutput) -> s
     value, given, wanted = old.value, old.unit, new.unit
     if not isinstance(value, float) or not given or not wanted or given == wanted:
         return numbers.in_line(old)
-    if not compatible(unit(given).base, unit(wanted).base):
+    try:
+        scale = require_same_kind(given, wanted)
+    except FaultyText:
         return numbers.in_line(old)
-    return numbers.in_line(Quantity(value=float(unit(wanted).from_si(unit(given).to_si(value))), unit=wanted))
+    return numbers.in_line(Quantity(value=float(unit(wanted).from_si(scale.to_si(value))), unit=wanted))
 
 
-def _parameters(preview: Preview) -> list[Moved]:
+def _parameters(preview: Preview) -> list[ValueChange]:
     """Return the parameters of models that change."""
     changes = preview.model_parameters.items()
     rows = [
-        Moved(n, numbers.in_line(one.old), numbers.in_line(one.new))
+        ValueChange(n, numbers.in_line(one.old), numbers.in_line(one.new))
         for n, one in changes
         if one.status == "ok"
     ]

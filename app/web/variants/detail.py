@@ -14,7 +14,7 @@ from app.designs.variants.detail import WantedVariant
 from app.presentation.criteria import Line, line
 from app.reports.content import Plot
 from app.reports.plots import drawn
-from app.web.shared.answers import Answered, stored
+from app.web.shared.answers import AnswerOrJob, stored
 from app.web.shared.blocks import StepBlock
 from app.web.shared.responses import units_of
 from app.web.shared.services import PageServices, Refused
@@ -62,11 +62,11 @@ async def chosen_variant(
 
 async def _calculated(
     request: Request, services: PageServices, design: Design, name: str
-) -> Answered[VariantDetail]:
+) -> AnswerOrJob[VariantDetail]:
     """Return the variant, or the job that calculates it where the page does not wait so long."""
     wanted = WantedVariant(design.id, name, system=units_of(request))
     answer, job = await services.calculate(PATIENCE, services.variant_details.answer, wanted, services.client)
-    return Answered(answer, job or "")
+    return AnswerOrJob(answer, job or "")
 
 
 def _shown(detail: VariantDetail, steps: list[StepBlock]) -> ChosenVariant:

@@ -23,7 +23,7 @@ PAGE, MOST_PAGES = 500, 10  # worksheets of one answer, and answers that a list 
 
 
 @dataclass(frozen=True)
-class Unsaved:
+class UnsavedText:
     """A text that was not saved, as its form holds it, and why."""
 
     text: str
@@ -70,7 +70,7 @@ async def editor_page(
     request: Request,
     services: PageServices,
     id: str,
-    unsaved: Unsaved | None = None,
+    unsaved: UnsavedText | None = None,
     notice: str = "",
     status: int = 200,
     design: str = "",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from pydantic import JsonValue
 
-from app.designs.preview import Previewed
+from app.designs.preview import PreviewRequest
 from app.designs.routes.designs import list_designs
 from app.designs.schemas.designs import Design, DesignSummary, Preview
 from app.presentation import numbers
@@ -20,7 +20,7 @@ REFUSED = (404, 409, 413, 422, 429)
 
 
 @dataclass(frozen=True)
-class Changed:
+class DraftChange:
     """A value of a design before and with the draft."""
 
     name: str
@@ -29,13 +29,13 @@ class Changed:
 
 
 @dataclass(frozen=True)
-class Tried:
+class DraftTrial:
     """A design with the draft: what changes, or why that cannot be said."""
 
     design: str
     step: str
     is_added: bool
-    changes: list[Changed]
+    changes: list[DraftChange]
     reason: str = ""
 
 
@@ -46,21 +46,21 @@ async def offered(services: PageServices, sheet: Sheet) -> list[DesignSummary]:
     return list({item.id: item for item in (*using.items, *rest.items)}.values())[:OFFERED]
 
 
-async def tried_in(services: PageServices, id: str, sheet: Sheet, checked: SheetCheck) -> Tried:
+async def tried_in(services: PageServices, id: str, sheet: Sheet, checked: SheetCheck) -> DraftTrial:
     """Return the draft in place of the version that a design uses; as one more step, where it uses none."""
     name, is_added, step = sheet.id, True, dict[str, JsonValue]()
     try:
         design = await services.run(services.designs.show, id)
         name, is_added = _place(design, sheet)
         step = _step(sheet, checked, is_added=is_added)
-        change = Previewed(id, {"steps": {name: step}}, worksheet=False, system="si")
+        change = PreviewRequest(id, {"steps": {name: step}}, worksheet=False, system="si")
         preview, _ = await services.calculate(PATIENCE, services.previews.in_parts, change, services.client)
     except Refused as refused:
         if refused.status not in REFUSED:
             raise
         reason = "; ".join(refused.faults.values()) or refused.problem.detail
-        return Tried(id, name, is_added, [], reason)
-    return Tried(design.name, name, is_added, list(_changes(preview)))
+        return DraftTrial(id, name, is_added, [], reason)
+    return DraftTrial(design.name, name, is_added, list(_changes(preview)))
 
 
 def _place(design: Design, sheet: Sheet) -> tuple[str, bool]:
@@ -87,10 +87,10 @@ def _step(sheet: Sheet, checked: SheetCheck, *, is_added: bool) -> dict[str, Jso
     return {"template": sheet.id, "version": sheet.version, "inputs": {**example}}
 
 
-def _changes(preview: Preview) -> Iterator[Changed]:
+def _changes(preview: Preview) -> Iterator[DraftChange]:
     """Yield outputs and model parameters that differ."""
     sides: dict[str, tuple[object, object]] = {n: (c.old, c.new) for n, c in preview.outputs.items()}
     sides |= {name: (change.old, change.new) for name, change in preview.model_parameters.items()}
     for name, (old, new) in sides.items():
         if (before := numbers.in_line(old) or "–") != (after := numbers.in_line(new) or "–"):
-            yield Changed(name, before, after)
+            yield DraftChange(name, before, after)

@@ -14,7 +14,7 @@ from app.web.shared.forms import fields, forms_only
 from app.web.shared.paths import Id, Text
 from app.web.shared.responses import go
 from app.web.shared.services import PageServices, Refused, ThePageServices
-from app.web.worksheet.page import Unsaved, editor_page, list_page, start_page
+from app.web.worksheet.page import UnsavedText, editor_page, list_page, start_page
 from app.worksheets.bodies import ReviewIn, SheetIn, SheetPatch, WithdrawIn
 from templates.examples.listing import examples
 
@@ -108,12 +108,12 @@ async def save(id: Id, request: Request, services: ThePageServices) -> Response:
     return go(f"/worksheets/{id}")
 
 
-def _unsaved(text: str, refused: Refused) -> Unsaved:
+def _unsaved(text: str, refused: Refused) -> UnsavedText:
     if refused.status == STALE:
         notice = "Somebody else saved this worksheet meanwhile. Your text is kept; theirs stands beside it."
-        return Unsaved(text, notice, STALE, is_conflict=True)
+        return UnsavedText(text, notice, STALE, is_conflict=True)
     said = "; ".join(refused.faults.values()) or refused.problem.detail
-    return Unsaved(text, f"Nothing was saved: {said}", refused.status)
+    return UnsavedText(text, f"Nothing was saved: {said}", refused.status)
 
 
 @forms.post("/worksheets/{id}/test")

@@ -21,7 +21,7 @@ from app.settings import Settings
 from app.workers.base import Lane
 from app.workers.errors import WorkerError
 from app.workers.local import Batch, LocalProcesses
-from app.workers.messages import Outcome, Raised, Returned, pack
+from app.workers.messages import ErrorMessage, Outcome, ResultMessage, pack
 from app.workers.remote.label import label, program
 from app.workers.remote.network import configure, security
 from app.workers.remote.wire import Order, check_size
@@ -110,9 +110,9 @@ class Machine(Worker):
         reporter = self._reporter(key, topic) if order.is_heard else None
         try:
             outcome = self._isolated.outcome(order, reporter, unwanted)
-            check_size(outcome.value if isinstance(outcome, Returned) else outcome.error)
+            check_size(outcome.value if isinstance(outcome, ResultMessage) else outcome.error)
         except WorkerError as error:
-            return Raised(pack(error))
+            return ErrorMessage(pack(error))
         finally:
             del self._running[key]
         return outcome

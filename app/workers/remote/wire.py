@@ -14,7 +14,7 @@ from distributed.scheduler import TaskState
 
 from app.workers.base import Lane
 from app.workers.errors import RemoteError
-from app.workers.messages import Outcome, Packed, Request
+from app.workers.messages import Outcome, PackedMessage, Request
 
 MOST_BYTES = 2**30
 """Of a request or a result; both are held in memory on both sides."""
@@ -73,7 +73,7 @@ def _of_others(tasks: Iterable[TaskState], label: str, own: str) -> int:
     return sum(label in (task.resource_restrictions or ()) and own not in str(task.key) for task in tasks)
 
 
-def check_size(packed: Packed) -> None:
+def check_size(packed: PackedMessage) -> None:
     """Refuse what is too large to be sent.
 
     Raises

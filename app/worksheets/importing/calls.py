@@ -8,7 +8,7 @@ from dataclasses import replace
 from app.worksheets.importing import functions
 from app.worksheets.importing.errors import Unnamed, Untranslatable
 from app.worksheets.importing.names import key_of
-from app.worksheets.importing.scope import Choice, Failed, Function, Range, Scope, Value, Written
+from app.worksheets.importing.scope import Choice, FailedName, Function, Range, Scope, Value, Written
 from app.worksheets.importing.terms import ATOM, LOOSE, PRODUCT, SUM, Term, binary, called, number, reduced
 from app.worksheets.importing.trees import Node
 from app.worksheets.importing.writer import MOST_INLINED, Writer
@@ -24,7 +24,7 @@ class Calls(Writer):
         match meant:
             case Function():
                 return self._own(meant, arguments)
-            case Failed(region):
+            case FailedName(region):
                 raise Unnamed(key, region)
             case Value() | Range() | Written() | Choice():
                 raise Untranslatable("call of something that is not a function", "write a product with *")

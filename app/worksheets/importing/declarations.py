@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import lru_cache
 
 import lark
 
 from app.worksheets.importing.errors import Untranslatable
-from app.worksheets.importing.quantities import Scaled
+from app.worksheets.importing.quantities import ScaledNumber
 from templates.core.errors import FaultyText
+from templates.core.units.conformity import misfit
 from templates.core.units.expressions import GRAMMAR, Sort, checked
-from templates.core.units.operations import Kind, Name
+from templates.core.units.nodes import kind_of
+from templates.core.units.operations import Name
 from templates.core.units.sorts import Part
-from templates.core.units.units import compatible, registry, unit
+from templates.core.units.units import dimension_of, registry, unit
 
 Call = Callable[[list[Part]], Part]
 
 _USUAL = ("1", "mm", "m**2", "m**3", "s", "kg", "kN", "MPa", "kN*m", "kg/m**3", "m/s", "m/s**2", "W", "K",
-          "J", "Pa*s", "m**2/s", "kN/m", "m**4", "rad/s", "1/s", "N/m**3", "A", "V",
+          "J", "Pa*s", "m**2/s", "kN/m", "m**4", "rad/s", "Hz", "1/s", "N/m**3", "A", "V",
           "ohm")  # fmt: skip
 """Units in which results are declared, where the sheet asks for none."""
 _SHORT = {"meter": "m", "kilogram": "kg", "second": "s", "kelvin": "K", "ampere": "A", "mole": "mol",
@@ -83,7 +85,7 @@ class Declarations:
             if len(arguments) != count:
                 raise FaultyText("unknown_function", f"{name} takes {count} values")
             axis = next((sort.axis for _, sort in arguments if sort.axis), "")
-            return Name(name), Sort(result.kind, result.weight, axis=axis)
+            return Name(name), replace(result, axis=axis)
 
         return call
 
@@ -101,13 +103,13 @@ def _remedy(code: str) -> str:
 
 def sort_of(text: str, axis: str = "") -> Sort:
     """Return the sort of a value that is declared in a unit."""
-    return Sort(Kind(unit(text).base), 0.0, axis=axis)
+    return Sort(kind_of(text), axis=axis)
 
 
 def fits(text: str, sort: Sort) -> bool:
     """Return whether a value can be declared in a unit."""
     try:
-        return compatible(unit(text).base, sort.kind.base) and not unit(text).absolute
+        return misfit(sort.kind, unit(text), text) is None and not unit(text).absolute
     except FaultyText:
         return False
 
@@ -124,11 +126,12 @@ def unit_for(sort: Sort, wanted: Sequence[str]) -> str:
     """
     if sort.kind.base == registry.Unit("radian"):
         return next((text for text in wanted if fits(text, sort) and text != "1"), "rad")
-    unit = next((text for text in (*wanted, *_USUAL) if fits(text, sort)), None)
-    if unit:
-        return unit
+    usual = (text for text in _USUAL if dimension_of(unit(text)) == dimension_of(sort.kind))
+    declared = next((text for text in (*wanted, *usual) if fits(text, sort)), None)
+    if declared:
+        return declared
     powers = tuple(
         (_SHORT.get(name, name), Fraction(str(power)).limit_denominator(100))
         for name, power in registry.Quantity(1.0, sort.kind.base).unit_items()
     )
-    return Scaled(1.0, powers).unit
+    return ScaledNumber(1.0, powers).unit

@@ -11,7 +11,7 @@ from app.worksheets.importing.names import key_of, legal, look
 from app.worksheets.importing.outcome import Outcome, one_line
 from app.worksheets.importing.quantities import scaled, unit_named
 from app.worksheets.importing.regions import Original
-from app.worksheets.importing.scope import Failed, Function, Scope, Value, Written
+from app.worksheets.importing.scope import FailedName, Function, Scope, Value, Written
 from app.worksheets.importing.statements import without_result
 from app.worksheets.importing.terms import Term
 from app.worksheets.importing.trees import Node
@@ -53,7 +53,7 @@ class Definitions(ListDefinitions):
         """Note that the names which a region defines have no meaning."""
         if math.tag in ("define", "globalDefine") and math.parts:
             for key in _defined(math.parts[0]):
-                self.scope[key] = Failed(number)
+                self.scope[key] = FailedName(number)
 
     def in_block(self, region: Original) -> list[Outcome]:
         """Return the regions of the same solve block."""

@@ -17,7 +17,7 @@ from app.worksheets.importing.errors import Unnamed, Untranslatable
 from app.worksheets.importing.lists import Lists
 from app.worksheets.importing.names import key_of, look
 from app.worksheets.importing.quantities import CONSTANTS, unit_named
-from app.worksheets.importing.scope import Choice, Failed, Meant, Range, Value, Written
+from app.worksheets.importing.scope import Choice, FailedName, Meant, Range, Value, Written
 from app.worksheets.importing.terms import POWER, Term, number
 from app.worksheets.importing.trees import Node
 
@@ -132,7 +132,7 @@ def _meant(key: str, meant: Meant) -> Term:
             return meant.term()
         case Written(expression):
             return expression
-        case Failed(region):
+        case FailedName(region):
             raise Unnamed(key, region)
         case Choice():
             raise Untranslatable("text", "test the choice, as in law is walther")

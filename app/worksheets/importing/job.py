@@ -17,7 +17,7 @@ LONGEST_TITLE = 100
 
 
 @dataclass(frozen=True)
-class Imported:
+class ImportResult:
     """The text of the worksheet, and the record of the import."""
 
     text: str
@@ -35,7 +35,7 @@ def read_sheet(content: bytes) -> OriginalSheet:
     return read_prime(content) if is_package(content) else read_legacy(content)
 
 
-def imported(content: bytes, title: str) -> Imported:
+def imported(content: bytes, title: str) -> ImportResult:
     """Return a file as a worksheet, each of its regions accounted for.
 
     Raises
@@ -46,7 +46,7 @@ def imported(content: bytes, title: str) -> Imported:
     sheet = read_sheet(content)
     outcomes = translated(sheet)
     text = verified(_title(outcomes, title), outcomes)
-    return Imported(text, recorded(sheet, outcomes, text))
+    return ImportResult(text, recorded(sheet, outcomes, text))
 
 
 def _title(outcomes: list[Outcome], other: str) -> str:

@@ -9,7 +9,7 @@ from app.worksheets.importing.errors import Unnamed, Untranslatable
 from app.worksheets.importing.expressions import Expressions
 from app.worksheets.importing.names import Names, key_of
 from app.worksheets.importing.outcome import Outcome
-from app.worksheets.importing.scope import Choice, Failed, Range, Value
+from app.worksheets.importing.scope import Choice, FailedName, Range, Value
 from app.worksheets.importing.statements import RESERVED, Statements, items_in, without_result
 from app.worksheets.importing.terms import LOOSE, Term, listed, number
 from app.worksheets.importing.trees import Node
@@ -54,7 +54,7 @@ class ListDefinitions(Statements):
         if len(target.parts) != 3 or target.parts[1].tag != "id" or target.parts[2].tag != "id":
             raise Untranslatable("single items defined one by one", "write the list with all its items")
         key, along = key_of(target.parts[1]), self.scope.get(key_of(target.parts[2]))
-        if isinstance(along, Failed):
+        if isinstance(along, FailedName):
             raise Unnamed(key_of(target.parts[2]), along.region)
         if not isinstance(along, Range):
             raise Untranslatable("single items defined one by one", "write the list with all its items")
@@ -75,7 +75,7 @@ class ListDefinitions(Statements):
         """Another value for one item of a list that is there, which makes another list."""
         key = key_of(target.parts[1])
         whole = self.scope.get(key)
-        if isinstance(whole, Failed):
+        if isinstance(whole, FailedName):
             raise Unnamed(key, whole.region)
         at = Expressions(self, self.scope).term(target.parts[2]).number
         if not isinstance(whole, Value) or whole.axis is None or at is None or whole.axis.length > 100:

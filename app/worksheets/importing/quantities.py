@@ -43,24 +43,24 @@ BEYOND = 1e307
 
 
 @dataclass(frozen=True)
-class Scaled:
+class ScaledNumber:
     """A number times powers of units."""
 
     number: float = 1.0
     powers: tuple[tuple[str, Fraction], ...] = ()
 
-    def times(self, other: Scaled, power: int = 1) -> Scaled:
+    def times(self, other: ScaledNumber, power: int = 1) -> ScaledNumber:
         """Return the product with a power of another."""
         powers = dict(self.powers)
         for name, exponent in other.powers:
             powers[name] = powers.get(name, Fraction(0)) + exponent * power
         kept = tuple((name, exponent) for name, exponent in powers.items() if exponent)
-        return Scaled(self.number * float(other.number) ** power, kept)
+        return ScaledNumber(self.number * float(other.number) ** power, kept)
 
-    def raised(self, power: Fraction) -> Scaled:
+    def raised(self, power: Fraction) -> ScaledNumber:
         """Return a power of the quantity."""
         powers = tuple((name, exponent * power) for name, exponent in self.powers)
-        return Scaled(float(self.number) ** float(power), powers)
+        return ScaledNumber(float(self.number) ** float(power), powers)
 
     @property
     def unit(self) -> str:
@@ -97,19 +97,19 @@ def _factor(name: str, power: int) -> str:
     return name if power == 1 else f"{name}**{power}"
 
 
-def unit_named(name: str) -> Scaled | None:
+def unit_named(name: str) -> ScaledNumber | None:
     """Return Mathcad's unit of this name in ours; None if there is none."""
     if name == "g":
-        return Scaled(9.80665, (("m", Fraction(1)), ("s", Fraction(-2))))
+        return ScaledNumber(9.80665, (("m", Fraction(1)), ("s", Fraction(-2))))
     size, ours = _SIZES.get(name, (1.0, _OURS.get(name, name)))
     try:
         scale = unit(ours)
     except FaultyText:
         return None
-    return None if scale.absolute else Scaled(size, ((ours, Fraction(1)),))
+    return None if scale.absolute else ScaledNumber(size, ((ours, Fraction(1)),))
 
 
-def scaled(node: Node, is_unit: bool = False) -> Scaled | None:
+def scaled(node: Node, is_unit: bool = False) -> ScaledNumber | None:
     """Return a tree of numbers and units alone, as one quantity; None where anything else is in it.
 
     `is_unit` says that plain names are units, as where Mathcad asks for the unit of a result.
@@ -119,7 +119,7 @@ def scaled(node: Node, is_unit: bool = False) -> Scaled | None:
         case "real":
             return _number(node.text)
         case "placeholder":
-            return Scaled() if is_unit else None
+            return ScaledNumber() if is_unit else None
         case "id" if is_unit or node.attributes.get("labels") == "UNIT":
             return unit_named(key_of(node))
         case "parens" if len(parts) == 1:
@@ -127,13 +127,13 @@ def scaled(node: Node, is_unit: bool = False) -> Scaled | None:
         case "apply" if len(parts) == 2 and parts[0].tag in ("neg", "percent"):
             inner = scaled(parts[1], is_unit)
             sign = -1.0 if parts[0].tag == "neg" else 0.01
-            return None if inner is None else inner.times(Scaled(sign))
+            return None if inner is None else inner.times(ScaledNumber(sign))
         case "apply" if len(parts) == 3 and parts[0].tag in ("mult", "scale", "div", "pow"):
             return _combined(parts[0].tag, scaled(parts[1], is_unit), scaled(parts[2], is_unit))
     return None
 
 
-def _combined(sign: str, left: Scaled | None, right: Scaled | None) -> Scaled | None:
+def _combined(sign: str, left: ScaledNumber | None, right: ScaledNumber | None) -> ScaledNumber | None:
     if left is None or right is None:
         return None
     try:
@@ -148,12 +148,12 @@ def _combined(sign: str, left: Scaled | None, right: Scaled | None) -> Scaled | 
     return combined if isinstance(combined.number, float) and math.isfinite(combined.number) else None
 
 
-def _number(text: str) -> Scaled | None:
+def _number(text: str) -> ScaledNumber | None:
     try:
         value = float(text)
     except ValueError:
         return None
-    return Scaled(value) if math.isfinite(value) and len(text) < 50 else None
+    return ScaledNumber(value) if math.isfinite(value) and len(text) < 50 else None
 
 
 @dataclass(frozen=True)
@@ -177,7 +177,7 @@ def result_of(cached: Node, asked: Node | None, carries_units: bool) -> Result |
     carries_units
         Whether the result names its whole unit; else it is a multiple of what is asked for.
     """
-    wanted = scaled(asked, is_unit=True) if asked is not None and not carries_units else Scaled()
+    wanted = scaled(asked, is_unit=True) if asked is not None and not carries_units else ScaledNumber()
     if wanted is None or not cached.parts:
         return None
     try:
@@ -193,7 +193,7 @@ def result_of(cached: Node, asked: Node | None, carries_units: bool) -> Result |
     return Result(numbers, is_list, label, shown.si)
 
 
-def _values(node: Node, scale: Scaled) -> Iterator[tuple[float, Scaled]]:
+def _values(node: Node, scale: ScaledNumber) -> Iterator[tuple[float, ScaledNumber]]:
     match node.tag:
         case "real":
             yield float(node.text), scale
@@ -213,8 +213,8 @@ def _size(node: Node, name: str) -> int:
     return int(text) if text.isdigit() and len(text) < 7 else 0
 
 
-def _monomial(node: Node) -> Scaled:
-    product = Scaled()
+def _monomial(node: Node) -> ScaledNumber:
+    product = ScaledNumber()
     for part in node.parts:
         named = unit_named(part.attributes.get("unit", ""))
         if named is None:

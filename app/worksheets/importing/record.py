@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import TypedDict, cast
 
 from app.storage.tables import WorksheetVersionRow as Row
-from app.worksheets.errors import Unresolved
+from app.worksheets.errors import UnresolvedRegions
 from app.worksheets.importing.outcome import UNRESOLVED, Outcome, State
 from app.worksheets.importing.regions import MATHEMATICAL, OriginalSheet
 
@@ -123,7 +123,7 @@ def require_resolved(row: Row) -> None:
     """
     record = record_of(row)
     if record is not None and (open_regions := unresolved(record, row.text)):
-        raise Unresolved([_reason(region) for region in open_regions])
+        raise UnresolvedRegions([_reason(region) for region in open_regions])
 
 
 def _reason(region: RegionRecord) -> str:

@@ -69,11 +69,11 @@ class Function:
 
 
 @dataclass(frozen=True)
-class Failed:
+class FailedName:
     """A name whose region was not translated."""
 
     region: str
 
 
-Meant = Value | Range | Choice | Written | Function | Failed
+Meant = Value | Range | Choice | Written | Function | FailedName
 Scope = dict[str, Meant]

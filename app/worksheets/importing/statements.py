@@ -10,7 +10,7 @@ from app.worksheets.importing.errors import Untranslatable
 from app.worksheets.importing.expressions import Expressions
 from app.worksheets.importing.names import Names, key_of, look, symbol
 from app.worksheets.importing.outcome import Outcome
-from app.worksheets.importing.quantities import Scaled, is_infinite, result_of, scaled
+from app.worksheets.importing.quantities import ScaledNumber, is_infinite, result_of, scaled
 from app.worksheets.importing.regions import OriginalSheet
 from app.worksheets.importing.scope import Function, Scope, Value, Written
 from app.worksheets.importing.terms import Axis, Term, number
@@ -167,7 +167,7 @@ class Statements:
         self._words.add(words.casefold())
         return words
 
-    def asked(self, value: Node, literal: Scaled | None = None) -> list[str]:
+    def asked(self, value: Node, literal: ScaledNumber | None = None) -> list[str]:
         """Return units to declare a value in: that which the region asks for, that in which it is typed."""
         asked = value.first("unitOverride") if value.tag == "eval" else None
         scales = [scaled(asked.parts[0], is_unit=True)] if asked is not None and asked.parts else []

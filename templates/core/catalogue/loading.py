@@ -21,7 +21,7 @@ OUTSIDE = "_outside"
 WORKSHEETS = "worksheets"
 """The package that classes made from worksheets name; there is no such package."""
 
-BROUGHT = "brought"
+IMPORTED = "imported"
 """The package that classes of models name which a team has brought; there is no such package either."""
 
 _CONTENT, _DIGEST = "__content__", "__digest__"  # attributes of such a module
@@ -89,7 +89,7 @@ def is_outside(cls: type) -> bool:
 
     A team's file, worksheet or model.
     """
-    return cls.__module__.partition(".")[0] in (OUTSIDE, WORKSHEETS, BROUGHT)
+    return cls.__module__.partition(".")[0] in (OUTSIDE, WORKSHEETS, IMPORTED)
 
 
 def failing_line(error: BaseException, path: Path) -> int | None:

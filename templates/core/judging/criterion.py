@@ -9,14 +9,23 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from typing import Any, Literal
 
 from templates.core.errors import FaultyText, excerpt, unknown_name
-from templates.core.units.operations import Kind
+from templates.core.units.conditions import COMPARISONS
+from templates.core.units.nodes import Kind, kind_of
 from templates.core.units.relation import Relation, parse
-from templates.core.units.units import Unit, compatible, registry, require_same_kind, unit
+from templates.core.units.rules import as_compared, in_words, shared
+from templates.core.units.units import (
+    Unit,
+    compatible,
+    difference_in,
+    registry,
+    require_same_kind,
+    unit,
+)
 
 Sign = Literal[">=", "<="]
 
@@ -37,6 +46,12 @@ class Described:
 
     unit: str
     words: str
+    kind: Kind | None = None  # where its unit alone does not say it
+
+    @property
+    def measured(self) -> Kind:
+        """Return the kind of the value."""
+        return self.kind or kind_of(self.unit)
 
 
 @dataclass(frozen=True)
@@ -131,7 +146,7 @@ class Criterion:
     @cached_property
     def is_temperature(self) -> bool:
         """Return whether temperatures are compared, whose ratios mean nothing."""
-        return bool(self.scale.base == registry.kelvin)
+        return bool(self.scale.base == registry.kelvin) and not self.scale.difference
 
     @cached_property
     def subject(self) -> str | None:
@@ -173,15 +188,18 @@ def read_criterion(name: str, raw: Any, meanings: Mapping[str, Described]) -> Cr
             raise FaultyText("unknown_name", unknown_name(used_name, names, "name").detail)
     if unused := [limit.name for limit in limits if limit.name not in used]:
         raise FaultyText("unused_limit", f"the limit {unused[0]} does not occur in `require`")
-    kind = _shared_kind(value, limit_side, {n: Kind(unit(names[n].unit).base) for n in used}, names)
+    kinds = {n: names[n].measured for n in used}
+    value, limit_side = _as_compared(sign, value, limit_side, kinds)
+    kind = _shared_kind(sign, value, limit_side, kinds)
+    limits = tuple(replace(limit, unit=_in_kind(limit.unit, kind)) for limit in limits)
     return Criterion(
         name=name,
-        require=parts["require"].strip(),
+        require=f"{value.text} {sign} {limit_side.text}",
         sign=sign,
         value=value,
         limit=limit_side,
         names=used,
-        unit=_shown_unit(kind, [names[n].unit for n in used]),
+        unit=_shown_unit(kind, [names[n] for n in used]),
         words=parts.get("words") or _in_words(value, sign, limit_side, names),
         limits=limits,
         source=parts.get("source"),
@@ -272,24 +290,47 @@ def _ordered(text: str, names: frozenset[str]) -> tuple[str, ...]:
     return tuple(sorted(names, key=text.find))
 
 
-def _shared_kind(
-    value: Relation, limit: Relation, kinds: Mapping[str, Kind], names: Mapping[str, Described]
-) -> Kind:
-    """Return the kind of unit of both sides."""
+def _as_compared(
+    sign: Sign, value: Relation, limit: Relation, kinds: Mapping[str, Kind]
+) -> tuple[Relation, Relation]:
+    """Return both sides; a number in degC beside a difference of temperatures is one.
+
+    Raises
+    ------
+    FaultyText
+        With code `unit_mismatch`, beside a value in K that may be either.
+    """
     one, other = value.kind(kinds), limit.kind(kinds)
-    if not compatible(one.base, other.base):
-        what = f"{one.base:~P}" or "a pure number", f"{other.base:~P}" or "a pure number"
-        raise FaultyText("unit_mismatch", f"{value.text} gives {what[0]}, but {limit.text} gives {what[1]}")
-    differences = [unit(names[n].unit).difference for side in (value, limit) for n in side.names]
-    if any(differences) and (one.absolute or other.absolute):
-        raise FaultyText("unit_mismatch", "a difference of temperatures is compared with a temperature")
-    return one
+    meant = as_compared(sign, other, value.tree, limit.tree), as_compared(sign, one, limit.tree, value.tree)
+    return parse(meant[0]) if meant[0] else value, parse(meant[1]) if meant[1] else limit
 
 
-def _shown_unit(kind: Kind, declared: list[str]) -> str:
+def _shared_kind(sign: Sign, value: Relation, limit: Relation, kinds: Mapping[str, Kind]) -> Kind:
+    """Return the kind of both sides."""
+    one, other = value.kind(kinds), limit.kind(kinds)
+    if not compatible(one, other):
+        raise FaultyText(
+            "unit_mismatch",
+            f"{value.text} gives {in_words(one)}, but {limit.text} gives {in_words(other)}",
+        )
+    nodes = value.tree, limit.tree
+    COMPARISONS[sign].kind(COMPARISONS[sign], [one, other], nodes)
+    return shared(sign, one, other, nodes)
+
+
+def _in_kind(name: str, kind: Kind) -> str:
+    """Return the unit of a limit in K that is compared with a difference of temperatures."""
+    return difference_in(name) if kind.is_difference and not unit(name).difference else name
+
+
+def _shown_unit(kind: Kind, declared: list[Described]) -> str:
     """Return the unit of the first name that measures what the sides do, else the SI base unit."""
-    fitting = (name for name in declared if compatible(unit(name).base, kind.base))
-    return next(fitting, None) or f"{kind.base:~C}" or "1"
+    fitting = (one.unit for one in declared if _is_alike(one.measured, kind))
+    return next(fitting, None) or kind.unit
+
+
+def _is_alike(one: Kind, kind: Kind) -> bool:
+    return compatible(one, kind) and (not kind.is_difference or one.is_difference)
 
 
 def _in_words(value: Relation, sign: Sign, limit: Relation, names: Mapping[str, Described]) -> str:

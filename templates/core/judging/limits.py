@@ -13,7 +13,7 @@ from typing import Any
 
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_name, unknown_names
 from templates.core.judging.criterion import Criterion, Limit
-from templates.core.units.quantity import read
+from templates.core.units.quantity import read_beside
 from templates.core.units.units import Value
 
 
@@ -91,7 +91,7 @@ def read_limits(criteria: Iterable[Criterion], raw: Mapping[str, Any]) -> dict[s
 
 
 def _by_hand(declared: Limit, raw: Any) -> GivenLimit:
-    typed = read(raw, declared.unit)
+    typed = read_beside(raw, declared.unit)
     if typed.tolerance is not None:
         raise FaultyText("tolerance", "a limit is exact; give it without a tolerance")
     return GivenLimit(typed.si)
@@ -109,7 +109,10 @@ def _by_row(name: str, raw: Any, declared: Mapping[str, Limit]) -> dict[str, Giv
     except KeyError:
         raise FaultyText("unknown_name", unknown_name(raw, list(library.rows()), "row").detail) from None
     wanted = {n: limit for n, limit in declared.items() if limit.library == name and n in row}
-    return {n: GivenLimit(read(row[n].quantity, limit.unit).si, row[n].source) for n, limit in wanted.items()}
+    return {
+        n: GivenLimit(read_beside(row[n].quantity, limit.unit).si, row[n].source)
+        for n, limit in wanted.items()
+    }
 
 
 def fault_of(error: FaultyText, name: str) -> Fault:

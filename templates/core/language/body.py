@@ -21,6 +21,7 @@ class Body(ABC):
     line: int
     name = ""  # the attribute that it calculates
     inputs: tuple[str, ...] = ()  # those that it is about, if it is a rule
+    remark = ""  # what its user should know of how it is read
     has_numbers = True  # whether it is written once more with numbers in the place of attributes
 
     @abstractmethod

@@ -61,6 +61,7 @@ class Calculation:
     _result_names: ClassVar[frozenset[str]] = frozenset()
     _curves: ClassVar[frozenset[str]] = frozenset()  # names of formulas that are profiles
     _remarks: ClassVar[tuple[Requirement, ...]] = ()  # the rules that refuse nothing
+    _readings: ClassVar[tuple[tuple[Declaration, str], ...]] = ()  # formulas that may be read otherwise
     ledger: Ledger
 
     def __init__(self, values: Mapping[str, Any], ledger: Ledger | None = None) -> None:

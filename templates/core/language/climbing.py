@@ -3,8 +3,8 @@
 One level serves all points of a request: a level that changes from point to point makes steps in a curve, and
 false optima. `per_point` takes the cheapest at each point instead.
 
-An error that is not stated is no reason to climb, because nobody knows whether a finer level would be nearer
-to anything: such a point stays at the level at which the template starts.
+Where no level is known to be within the tolerance, the finest level answers whose stated cost is within the
+budget: whoever gives a tolerance wants the best that is to be had, not the cheapest.
 """
 
 from __future__ import annotations
@@ -22,6 +22,9 @@ from templates.core.language.levels import Accuracy, accuracy, at_level
 from templates.core.language.spec import Profile, Text
 from templates.core.language.template import Template
 
+BUDGET = 10.0
+"""Stated cost of a level [s] up to which it answers without a known error."""
+
 
 @dataclass(frozen=True)
 class Rung:
@@ -36,8 +39,8 @@ def climb(
 ) -> Iterator[Rung]:
     """Yield the levels that answer a request with a tolerance; one, unless each point is to have its own.
 
-    It is the cheapest level whose errors are within the tolerance for all outputs, else the finest; and the
-    starting level where that states no error for an output. What has no value needs no error.
+    It is the cheapest level whose errors are within the tolerance for all outputs, else the finest within
+    the budget. What has no value needs no error.
     """
     names = [name for name in outputs if not isinstance(template.formulas[name], Text)]
     search = _Search(template, names, tolerance, accuracy(type(template)))
@@ -48,14 +51,40 @@ def climb(
 
 
 def reachable(cls: type[Template], ladder: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the levels that a tolerance may choose.
+    """Return the levels that a tolerance may choose: those that state an error, or are within the budget."""
+    if cls.default_level not in ladder:
+        return ladder
+    start = ladder.index(cls.default_level)
+    finer = (level for level in ladder[start + 1 :] if states_any(cls, level) or is_affordable(cls, level, 1))
+    return (*ladder[: start + 1], *finer)
 
-    None beyond the default one, if that states no error at all.
+
+def states_any(cls: type[Template], level: str) -> bool:
+    """Return whether a level states any error."""
+    measured = accuracy(cls)
+    return measured is not None and measured.states_any(level)
+
+
+def is_affordable(cls: type[Template], level: str, points: int) -> bool:
+    """Return whether a level takes so many points at once, at a stated cost within the budget.
+
+    Without a stated cost it does if it states an error.
     """
     measured = accuracy(cls)
-    if cls.default_level not in ladder or (measured and measured.states_any(cls.default_level)):
-        return ladder
-    return ladder[: ladder.index(cls.default_level) + 1]
+    if measured is None or points > cls.most_points.get(level, points):
+        return False
+    cost = measured.content.get("levels", {}).get(level, {}).get("cost")
+    if not cost:
+        return measured.states_any(level)
+    single = float(cost["single"])
+    return single + (points - 1) * float(cost.get("vectorised", single)) <= BUDGET
+
+
+def best_first(cls: type[Template], ladder: tuple[str, ...], start: str, points: int) -> Iterator[str]:
+    """Yield the levels from the finest within the budget down to the starting one, which needs no budget."""
+    finer = ladder[ladder.index(start) + 1 :] if start in ladder else ()
+    yield from (level for level in reversed(finer) if is_affordable(cls, level, points))
+    yield start
 
 
 def has_value(template: Template, output: str) -> Any:
@@ -95,34 +124,53 @@ class _Search:
 
     def common(self) -> str:
         """Return the one level that serves all points."""
-        for level in self.ladder:
-            rung = self.at(level)
-            if self._met(rung, None).all() or (level == self.start and not self._stated(rung).all()):
+        for level in self._promising:
+            if self._met(self.at(level), None).all():
                 return level
-        return self.ladder[-1]
+        return self.best(int(np.prod(self.template.shape_of_points())))
+
+    def best(self, points: int) -> str:
+        """Return the finest level within the budget that answers."""
+        levels = best_first(type(self.template), self.ladder, self.start, points)
+        return next((level for level in levels if self._answers(level)), self.start)
+
+    @property
+    def _promising(self) -> Iterator[str]:
+        """Yield the levels that may be known to serve: up to the starting one, and finer ones with errors."""
+        cls, start = type(self.template), self.start
+        last = self.ladder.index(start) if start in self.ladder else 0
+        for i, level in enumerate(self.ladder):
+            if i <= last or states_any(cls, level):
+                yield level
+
+    def _answers(self, level: str) -> bool:
+        """Return whether a level does not refuse these inputs."""
+        try:
+            rung = self.at(level)
+            for name in self.names:
+                has_value(rung, name)
+        except InvalidInputs:
+            return False
+        return True
 
     def by_point(self) -> Iterator[Rung]:
         """Yield the levels, each with the points at which it is the cheapest that serves."""
         left = np.ones(self.template.shape_of_points(), dtype=bool)
-        for level in self.ladder:
+        for level in self._promising:
             rung = self.at(level) if left.all() else at_level(self.template, level, left)
-            chosen = left.copy()
-            if level != self.ladder[-1]:
-                chosen[left] = self._stays(rung, left)
-            if chosen.all():
-                yield Rung(rung, None)
-            elif chosen.any():
-                yield Rung(rung if (chosen == left).all() else self.template.at(level, chosen), chosen)
+            chosen, met = left.copy(), self._met(rung, left)
+            chosen[left] = met[left] if met.shape == left.shape else met
+            if chosen.any():
+                yield Rung(rung if (chosen == left).all() else self.template.at(level, chosen), _part(chosen))
             left = left & ~chosen
             if not left.any():
                 return
+        yield Rung(self._best_of(left), _part(left))
 
-    def _stays(self, rung: Template, left: Mask) -> Mask:
-        """Mask of the points left that a level serves."""
-        stays = self._met(rung, left)
-        if rung.level == self.start:
-            stays = stays | ~self._stated(rung)
-        return stays[left] if stays.shape == left.shape else stays
+    def _best_of(self, left: Mask) -> Template:
+        """Return the template at the best level for the points left."""
+        best = self.best(int(left.sum()))
+        return self.at(best) if left.all() else at_level(self.template, best, left)
 
     def _met(self, rung: Template, where: Mask | None) -> Mask:
         """Return at which points all errors are within the tolerance; at none if the level refuses."""
@@ -151,15 +199,7 @@ class _Search:
             return np.ones((), dtype=bool)
         return there if where is None or where.all() else there[where]
 
-    def _stated(self, rung: Template) -> Mask:
-        """Return at which points every output that has a value has an error."""
-        stated = np.ones((), dtype=bool)
-        if self.measured is None:
-            return ~stated
-        errors = self.measured.of(rung, self.names)
-        for name in self.names:
-            try:
-                stated = stated & (np.isfinite(errors[name]) | ~np.asarray(has_value(rung, name)))
-            except InvalidInputs:
-                return np.zeros((), dtype=bool)
-        return stated
+
+def _part(chosen: Mask) -> Mask | None:
+    """Return the points chosen; None if these are all."""
+    return None if chosen.all() else chosen

@@ -11,10 +11,11 @@ warning that names the limit.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any, TypeVar, Unpack
 
 from templates.core.arrays import Array, Truth
-from templates.core.language.meaning import Bounds, Keywords, meaning
+from templates.core.language.meaning import Bounds, Keywords, Meaning, meaning
 from templates.core.language.spec import (
     Choice,
     Curve,
@@ -40,6 +41,12 @@ T = TypeVar("T")
 F = TypeVar("F", bound=Callable[..., Any])
 
 
+def _meaning(unit_text: str, words: str, **keywords: Unpack[Keywords]) -> Meaning:
+    """Return the meaning of a number; in a template K is a temperature, and a difference is in delta_degC."""
+    meant = meaning(unit_text, words, **keywords)
+    return replace(meant, read_as="degC") if unit_text == "K" else meant
+
+
 def given(
     unit: str,
     words: str,
@@ -56,13 +63,13 @@ def given(
     is optional too, but one of several ways to say something: its formulas deal with the NaN themselves.
     Of a `single` one arrays are refused: all points share its value.
     """
-    meant = meaning(unit, words, **keywords)
+    meant = _meaning(unit, words, **keywords)
     return Given(meant, default, optional=optional, alternative=alternative, single=single)
 
 
 def table(unit: str, words: str, *columns: str, most: int = 12, **keywords: Unpack[Keywords]) -> Any:
     """Declare an optional input that is a list of at most so many rows; every column is in `unit`."""
-    return Table(meaning(unit, words, **keywords), columns, most)
+    return Table(_meaning(unit, words, **keywords), columns, most)
 
 
 def limits(
@@ -83,28 +90,28 @@ def curve(
     `along` names another axis: `inertias`. Optional ones that are missing are NaN, as those of `given`.
     """
     return Curve(
-        meaning(unit, words, **keywords), default,
+        _meaning(unit, words, **keywords), default,
         constant=constant, along=along, optional=optional, alternative=alternative,
     )  # fmt: skip
 
 
 def choice(*options: str, words: str, default: str | None = None, name: str | None = None) -> Any:
     """Declare an input that is one of the named options."""
-    return Choice(meaning("1", words, name=name), options, default)
+    return Choice(_meaning("1", words, name=name), options, default)
 
 
 def formula(
     unit: str, words: str, *, latex: str | None = None, **keywords: Unpack[Keywords]
 ) -> Callable[[Callable[[T], Any]], Formula[T]]:
     """Declare an output in `unit`; `latex` by hand only where the code is opaque."""
-    return lambda function: Formula(function, meaning(unit, words, **keywords), latex)
+    return lambda function: Formula(function, _meaning(unit, words, **keywords), latex)
 
 
 def derived(
     unit: str, words: str, *, shown: bool = False, **keywords: Unpack[Keywords]
 ) -> Callable[[Callable[[T], Any]], Derived[T]]:
     """Declare an optional input that defaults to this formula of others; `shown`: it is an output too."""
-    return lambda function: Derived(function, meaning(unit, words, **keywords), shown=shown)
+    return lambda function: Derived(function, _meaning(unit, words, **keywords), shown=shown)
 
 
 def profile(
@@ -117,12 +124,12 @@ def profile(
     **keywords: Unpack[Keywords],
 ) -> Callable[[Callable[[T], Any]], Profile[T]]:
     """Declare an output that is an array along its last axis, or axes, at the places given by `along`."""
-    return lambda function: Profile(function, meaning(unit, words, **keywords), latex, along, axes)
+    return lambda function: Profile(function, _meaning(unit, words, **keywords), latex, along, axes)
 
 
 def text(words: str, **keywords: Unpack[Keywords]) -> Callable[[Callable[[T], Any]], Text[T]]:
     """Declare an output in words, without a unit."""
-    return lambda function: Text(function, meaning("1", words, **keywords), None)
+    return lambda function: Text(function, _meaning("1", words, **keywords), None)
 
 
 def shared(function: Callable[[Any], T]) -> Shared[T]:

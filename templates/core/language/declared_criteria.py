@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from templates.core.errors import FaultyText
@@ -43,10 +44,13 @@ def _check_defaults(criterion: Criterion, inputs: Mapping[str, Input]) -> None:
 
 
 def meanings_of(inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]) -> dict[str, Described]:
-    """Return the unit and words of the names that a criterion may use: neither words nor tables."""
+    """Return what the names that a criterion may use measure: neither words nor tables.
+
+    Who writes a template knows that a speed is in rad/s: of its criteria no two readings are reported.
+    """
     declared = {**inputs, **formulas}
     return {
-        name: Described(one.meaning.unit, one.meaning.words)
+        name: Described(one.meaning.unit, one.meaning.words, replace(one.meaning.kind, turned=frozenset()))
         for name, one in declared.items()
         if not isinstance(one, (Choice, Table, Text))
     }

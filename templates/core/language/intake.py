@@ -48,7 +48,7 @@ def _read_one(declared: Input, raw: Any) -> Typed | str:
         if isinstance(option, str) and option in declared.options:
             return option
         raise FaultyText("not_an_option", f"{excerpt(raw)} is not one of {', '.join(declared.options)}")
-    return read(raw, declared.meaning.unit)
+    return read(raw, declared.meaning.accepted)
 
 
 def _example(declared: Input) -> str:
@@ -358,10 +358,13 @@ def _violated_points(self: Calculation, rule: Requirement, holds: NDArray[np.boo
 
 
 def remarks(self: Calculation) -> Iterator[Notice]:
-    """Yield a warning for every rule that refuses nothing, where it does not hold."""
+    """Yield a warning for every rule that refuses nothing, where it does not hold, and for every remark."""
     for rule in self._remarks:
         if not np.all(rule.function(self)):
             yield from (Notice(rule.warning, name, f"{rule.sentence}; {rule.remedy}") for name in rule.names)
+    for declared, remark in self._readings:
+        if declared.attribute in vars(self) and declared.name not in self.ledger.typed:
+            yield Notice("turns", declared.name, remark)
 
 
 def _shown(self: Calculation, declared: Declaration) -> str:

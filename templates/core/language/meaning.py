@@ -12,6 +12,7 @@ from typing import Any, TypedDict
 
 import numpy as np
 
+from templates.core.units.nodes import Kind, kind_of
 from templates.core.units.units import Unit, unit
 
 _RELATIONS = (("gt", ">"), ("ge", "≥"), ("lt", "<"), ("le", "≤"))
@@ -73,6 +74,7 @@ class Meaning:
     outside. `also` are other names under which it is known. `assumes` are attributes of the template whose
     published range bounds this formula too, though it does not use them. `absent` says why a result may be
     NaN without being a fault. `per_level` narrows domain and published range at single levels of fidelity.
+    `read_as` is degC for a temperature that is declared in K, which else may be a difference as well.
     """
 
     words: str
@@ -88,6 +90,7 @@ class Meaning:
     assumes: tuple[str, ...] = ()
     absent: str | None = None
     per_level: Mapping[str, tuple[Bounds, Bounds]] = field(default_factory=dict, hash=False)
+    read_as: str | None = None
 
     def at(self, level: str) -> Meaning:
         """Return the meaning of the number at a level of fidelity, which may have limits of its own."""
@@ -122,6 +125,16 @@ class Meaning:
     def scale(self) -> Unit:
         """Return the declared unit, reduced to SI."""
         return unit(self.unit)
+
+    @cached_property
+    def accepted(self) -> str:
+        """Return the unit by which it is known what may be typed: of a temperature in K, degC."""
+        return self.read_as or self.unit
+
+    @cached_property
+    def kind(self) -> Kind:
+        """Return the kind of the value in relations."""
+        return kind_of(self.accepted, self.name)
 
     @cached_property
     def domain_si(self) -> Bounds | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from templates.core.language.intake import is_single
 from templates.core.language.request import read_options
 from templates.core.language.spec import Choice, Curve, Formula, Input, Profile, Table, Text
 from templates.core.language.template import Template
-from templates.core.units.quantity import Typed, read
+from templates.core.units.quantity import Typed, read, read_beside
 from templates.core.units.units import Value
 
 
@@ -48,7 +48,7 @@ def read_question(
         elif isinstance(formula, (Profile, Text)):
             faults.append(Fault(f"target.{name}", "not_a_number", "the target must be a single value"))
         else:
-            wanted = _scalar(value, formula.meaning.unit, f"target.{name}", faults)
+            wanted = _scalar(read_beside, value, formula.meaning.accepted, f"target.{name}", faults)
     faults += _faulty_inputs(cls, raw, unknown, declared, ends)
     if faults or declared is None or formula is None:
         raise InvalidInputs(faults)
@@ -79,15 +79,17 @@ def _ends(declared: Input, bounds: Sequence[Any], faults: list[Fault]) -> tuple[
     if len(bounds) != 2:
         faults.append(Fault("bounds", "two_values", "give the lowest and the highest value to try"))
         return 0.0, 1.0
-    low, high = (_scalar(end, declared.meaning.unit, "bounds", faults) for end in bounds)
+    low, high = (_scalar(read, end, declared.meaning.accepted, "bounds", faults) for end in bounds)
     if low >= high:
         faults.append(Fault("bounds", "not_ascending", "the first bound must be below the second"))
     return low, high
 
 
-def _scalar(raw: Any, unit: str, name: str, faults: list[Fault]) -> float:
+def _scalar(
+    read_as: Callable[[Any, str], Typed], raw: Any, unit: str, name: str, faults: list[Fault]
+) -> float:
     try:
-        typed = read(raw, unit)
+        typed = read_as(raw, unit)
         if np.ndim(typed.si):
             raise FaultyText("not_a_number", "give a single value here, not an array")
         return float(typed.si)

@@ -11,7 +11,7 @@ from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name
 from templates.core.judging.limits import GivenLimit, read_limits
 from templates.core.language.levels import at_level
 from templates.core.language.template import Template
-from templates.core.units.quantity import Unit, require_same_kind
+from templates.core.units.quantity import Unit, beside, require_same_kind
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,8 @@ def _units(cls: type[Template], units: Mapping[str, str], faults: list[Fault]) -
         if name not in cls.formulas:
             continue
         try:
-            shown[name] = require_same_kind(text, cls.formulas[name].meaning.unit)
+            accepted = cls.formulas[name].meaning.accepted
+            shown[name] = require_same_kind(beside(text, accepted), accepted)
         except FaultyText as error:
             faults.append(error.fault(f"units.{name}"))
     return shown

@@ -62,6 +62,12 @@ __all__ = [
     "shared", "table", "text", "units",
 ]  # fmt: skip
 
+
+def _remark_of(declared: Declaration) -> str:
+    """Return how a formula of a worksheet may be read otherwise than it is; empty if it can not."""
+    return str(getattr(getattr(declared, "function", None), "remark", ""))
+
+
 VERSIONED = re.compile(r"(?:^|.*\.)([a-z][a-z0-9_]*)_v([1-9][0-9]*)$")
 
 
@@ -85,6 +91,7 @@ class Template(Calculation):
         cls._curves = frozenset(name for name, v in cls.formulas.items() if isinstance(v, Profile))
         cls.requirements = tuple(v for v in everything.values() if isinstance(v, Requirement))
         cls._remarks = tuple(rule for rule in cls.requirements if rule.warning)
+        cls._readings = tuple((v, remark) for v in declared.values() if (remark := _remark_of(v)))
         cls.intermediates = {name: v for name, v in everything.items() if isinstance(v, Shared)}
         cls.declared_criteria = declared_criteria(cls.__name__, cls.criteria, cls.inputs, cls.formulas)
 

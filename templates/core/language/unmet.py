@@ -52,4 +52,5 @@ def _unstated(names: list[str], level: Any) -> Iterator[Notice]:
 
 
 def _beyond(name: str, error: float) -> str:
-    return f"{name} may be off by {error:.2g} at the finest level, which is more than the tolerance"
+    beyond = f"{name} may be off by {error:.2g}, which is more than the tolerance"
+    return f"{beyond}; no level within the budget is known to be nearer"

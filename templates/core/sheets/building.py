@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import lark
@@ -31,9 +32,12 @@ from templates.core.sheets.functions import function_of
 from templates.core.sheets.grammar import Parsed, declared_by, name_of, parsed
 from templates.core.sheets.linear import MOST_UNKNOWNS, LinearBody, system_of
 from templates.core.sheets.lines import Chunk
-from templates.core.sheets.names import Names, sort_of
+from templates.core.sheets.names import FUEL, Names, sort_of
 from templates.core.sheets.solving import SolveBody, equation_of
+from templates.core.units.conformity import declared_kind, turns_remark
+from templates.core.units.nodes import EITHER, Constant, Kind, kind_of
 from templates.core.units.sorts import Sort
+from templates.core.units.units import compatible, difference_in
 
 _ORDER = (
     ("function", "curve"),
@@ -59,6 +63,39 @@ class Builder:
             for statement in self.built.statements:
                 if statement.kind in kinds and self._goes_on(statement):
                     self._try(getattr(self, f"_{statement.kind}"), statement)
+            if "function" in kinds:
+                self._find_kinds()
+
+    def _find_kinds(self) -> None:
+        """Find which names in K are temperatures and which differences, by their formulas, in any order."""
+        in_kelvin = [
+            s for s in self.built.statements if s.kind in ("formula", "given") and self._in_kelvin(s)
+        ]
+        fuel, self.names.fuel = self.names.fuel, FUEL
+        for _ in in_kelvin:  # each round finds one at least, if any
+            found = [statement for statement in in_kelvin if self._finds_kind(statement)]
+            if not found:
+                break
+        self.names.fuel = fuel
+
+    def _in_kelvin(self, statement: Parsed) -> bool:
+        if statement.kind not in ("formula", "given") or statement.parts[3] is None:
+            return False
+        sort = self.names.sorts.get(str(statement.parts[0]))
+        return sort is not None and sort.kind.temperatures == EITHER
+
+    def _finds_kind(self, statement: Parsed) -> bool:
+        """Return whether the formula of a name in K says more of its kind than was known."""
+        name = str(statement.parts[0])
+        try:
+            node, got = self.reader.part(statement, statement.parts[3])
+        except (Refusal, FollowsFromFault):
+            return False
+        own = self.names.sorts[name]
+        if isinstance(node, Constant) or not compatible(got.kind, own.kind):
+            return False
+        self.names.sorts[name] = replace(own, kind=declared_kind(got.kind, own.kind))
+        return self.names.sorts[name].kind != own.kind
 
     def _goes_on(self, statement: Parsed) -> bool:
         """Return whether to go on with a statement: one fault of it is enough, or a worksheet too large."""
@@ -107,8 +144,7 @@ class Builder:
     def _sort(self, statement: Parsed, name: lark.Token, unit_text: lark.Token, axis: str) -> Sort:
         text = self.reader.declared_unit(statement, unit_text)
         self.names.units.setdefault(str(name), text)
-        wanted = sort_of(text)
-        return Sort(wanted.kind, wanted.weight, axis=axis)
+        return replace(sort_of(text, str(name)), axis=axis)
 
     def _check_new(self, statement: Parsed, at: lark.Token, name: str) -> None:
         try:
@@ -174,9 +210,10 @@ class Builder:
         meant = self._meant(statement, self.reader.declared_unit(statement, unit_text), words, clauses)
         node, default = None, None
         if tree is not None:
-            node = self._node(statement, str(name), meant, str(axis or ""), tree)
+            node, kind = self._node(statement, str(name), meant, str(axis or ""), tree)
             body = TreeBody(node, statement.chunk.line, str(name))
             if body.uses and axis is None:
+                body.remark = turns_remark(kind, meant.scale, statement.text_of(tree))
                 self._make(statement, str(name), Derived(body, meant), node)
                 return
             default = self.reader.number(statement, node, tree, meant.unit, f"the default of {name}")
@@ -186,15 +223,16 @@ class Builder:
     def _formula(self, statement: Parsed) -> None:
         name, unit_text, axis, tree, words, clauses = statement.parts
         meant = self._meant(statement, self.reader.declared_unit(statement, unit_text), words, clauses)
-        node = self._node(statement, str(name), meant, str(axis or ""), tree)
+        node, kind = self._node(statement, str(name), meant, str(axis or ""), tree)
         body = TreeBody(node, statement.chunk.line, str(name))
+        body.remark = turns_remark(kind, meant.scale, statement.text_of(tree))
         declaration = Formula(body, meant) if axis is None else Profile(body, meant, None, str(axis), 1)
         self._make(statement, str(name), declaration, node)
 
     def _solve(self, statement: Parsed) -> None:
         name, unit_text, low, high, tree, words, clauses = statement.parts
         meant = self._meant(statement, self.reader.declared_unit(statement, unit_text), words, clauses)
-        bounds = tuple(self._node(statement, f"a bound of {name}", meant, "", end) for end in (low, high))
+        bounds = tuple(self._node(statement, f"a bound of {name}", meant, "", end)[0] for end in (low, high))
         equation = equation_of(statement, self.reader, tree, str(name))
         lists = frozenset(n for n, sort in self.names.sorts.items() if sort.axis)
         body = SolveBody(str(name), equation, bounds, statement.chunk.line, meant.words, lists)
@@ -256,10 +294,12 @@ class Builder:
             raise statement.refuse("no_truth", "this is a quantity, not a condition", tree, remedy)
         return node, bool(sort.axis)
 
-    def _node(self, statement: Parsed, name: str, meant: Meaning, axis: str, tree: lark.Tree[Any]) -> Any:
-        """Return the tree of a value that is a list over an axis exactly where that is declared."""
+    def _node(
+        self, statement: Parsed, name: str, meant: Meaning, axis: str, tree: lark.Tree[Any]
+    ) -> tuple[Any, Kind]:
+        """Return the tree and kind of a value that is a list over an axis exactly where that is declared."""
         part = self.reader.part(statement, tree)
-        return self.reader.fitting(statement, part, meant.unit, name, tree, axis)
+        return self.reader.fitting(statement, part, meant.unit, name, tree, axis), part[1].kind
 
     def _meant(self, statement: Parsed, unit_text: str, words: lark.Token, clauses: Any) -> Meaning:
         """Return the meaning of a declaration whose API name is no other's; its example is noted."""
@@ -272,7 +312,16 @@ class Builder:
             raise statement.refuse("name", message, words, "use other words")
         if said.example is not None and statement.kind == "given":
             self.built.example[meant.name] = said.example
-        return meant
+        return self._in_kind(statement, meant)
+
+    def _in_kind(self, statement: Parsed, meant: Meaning) -> Meaning:
+        """Return what is declared in K by the kind of its formula: a difference, or a temperature."""
+        sort = self.names.sorts[str(statement.parts[0])] if statement.kind in ("formula", "given") else None
+        if sort is None or sort.kind == kind_of(meant.unit) or sort.kind.unit not in ("degC", "delta_degC"):
+            return meant
+        if sort.kind.is_difference:
+            return replace(meant, unit=difference_in(meant.unit))
+        return replace(meant, read_as="degC")
 
     def _make(self, statement: Parsed, name: str, declaration: Declaration, node: Any) -> None:
         self.built.parts[name] = declaration

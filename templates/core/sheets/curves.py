@@ -11,14 +11,14 @@ import numpy as np
 
 from templates.core.errors import FaultyText
 from templates.core.sheets.clauses import Said
-from templates.core.sheets.expressions import Reader, is_temperature, no_temperature
+from templates.core.sheets.expressions import Reader
+from templates.core.sheets.functions import taken
 from templates.core.sheets.grammar import Parsed
-from templates.core.sheets.names import Call, sort_of
+from templates.core.sheets.names import Call
 from templates.core.sheets.partial import Partial
-from templates.core.units.operations import Kind
-from templates.core.units.rules import in_words
+from templates.core.units.nodes import kind_of
 from templates.core.units.sorts import Part, applied
-from templates.core.units.units import compatible, unit
+from templates.core.units.units import unit
 
 
 def curve_of(
@@ -55,7 +55,7 @@ def _operation(
     return Partial(
         name,
         lambda at: np.interp(at, along, values, left=beyond, right=beyond),
-        lambda operation, kinds, nodes: Kind(sort_of(units[1]).kind.base),
+        lambda operation, kinds, nodes: kind_of(units[1]),
         1,
         is_missing=lambda at: np.logical_or(np.less(at, low), np.greater(at, high)),
         reason=f"{name} is known from {ends[0]}{shown} to {ends[1]}{shown} only",
@@ -63,18 +63,12 @@ def _operation(
 
 
 def _called(name: str, units: tuple[str, str], operation: Partial) -> Call:
-    wanted, given = sort_of(units[0]), sort_of(units[1])
-
     def call(arguments: list[Part]) -> Part:
         if len(arguments) != 1:
             raise FaultyText("unknown_function", f"{name} takes one value in {units[0]}")
-        ((given_node, got),) = arguments
-        if not compatible(got.kind.base, wanted.kind.base):
-            raise FaultyText("unit_mismatch", f"{name} takes a value in {units[0]}, not {in_words(got.kind)}")
-        if wanted.weight and not is_temperature(given_node, got):
-            raise FaultyText("unit_mismatch", no_temperature(f"the value that {name} takes"))
-        node, sort = applied(replace(operation, is_of_items=bool(got.axis)), arguments)
-        return node, replace(sort, weight=given.weight)
+        ((_, got),) = arguments
+        taken(f"the value of {name}", units[0], arguments[0], f"{name} takes a value in {units[0]}")
+        return applied(replace(operation, is_of_items=bool(got.axis)), arguments)
 
     return call
 

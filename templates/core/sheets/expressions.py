@@ -12,11 +12,12 @@ from templates.core.sheets.body import TreeBody
 from templates.core.sheets.grammar import Parsed
 from templates.core.sheets.names import Names, sort_of
 from templates.core.sheets.remedies import declared_in, remedy_at
+from templates.core.units.conformity import misfit
 from templates.core.units.expressions import FaultyPlace, checked
 from templates.core.units.operations import Constant
-from templates.core.units.rules import in_words, is_number
+from templates.core.units.rules import is_number
 from templates.core.units.sorts import Part, Sort
-from templates.core.units.units import compatible, unit
+from templates.core.units.units import unit
 
 
 class Reader:
@@ -63,20 +64,17 @@ class Reader:
             With code `unit_mismatch`, `axis_mismatch` or `no_truth`.
         """
         tree, got = part
-        wanted = sort_of(unit_text)
         if got.truth:
             message = f"{name} is a quantity, but this is a condition"
             raise statement.refuse("no_truth", message, at, "write if … then … else …")
-        if not compatible(got.kind.base, wanted.kind.base):
-            message = f"{name} is declared in {unit_text}, but this gives {in_words(got.kind)}"
+        if mismatch := misfit(got.kind, unit(unit_text), statement.text_of(at)):
+            why, remedy = mismatch
             is_declared = str(statement.parts[0]).rstrip("(") == name
-            remedy = declared_in(name, got.kind.base) if is_declared else _given_in(unit_text)
+            remedy = remedy or (declared_in(name, got.kind) if is_declared else _given_in(unit_text))
+            message = f"{name} is declared in {unit_text}, but {why}"
             raise statement.refuse("unit_mismatch", message, at, remedy)
         if axis is not None:
             self._along(statement, got, axis, name, at)
-        if unit(unit_text).absolute and not is_temperature(tree, got):
-            message = f"{name} is a difference of temperatures, or no plain one"
-            raise statement.refuse("unit_mismatch", message, at, "declare it in K")
         return tree
 
     def _along(self, statement: Parsed, got: Sort, axis: str, name: str, at: Any) -> None:
@@ -174,18 +172,3 @@ def _given_in(unit_text: str) -> str:
 def _along_of(axis: str) -> str:
     """Return the advice to declare what runs over an axis, or over none."""
     return f"declare it over {axis}" if axis else "leave out over and the name behind it"
-
-
-def no_temperature(parameter: str) -> str:
-    """Return why a value that is not a temperature does not fit a parameter in degC, and what would."""
-    return (
-        f"{parameter} is a temperature, and this is a difference of temperatures, or no plain one; "
-        "give a temperature, or declare the parameter in K"
-    )
-
-
-def is_temperature(node: Any, got: Sort) -> bool:
-    """Return whether a tree gives one temperature: not a difference, and no sum of several."""
-    if isinstance(node, Constant) and " " in node.text:
-        return not unit(node.text.partition(" ")[2]).difference
-    return abs((got.weight or 0.0) - 1) < 1e-9

@@ -8,14 +8,16 @@ from typing import Any
 import lark
 
 from templates.core.errors import FaultyText
-from templates.core.sheets.expressions import Reader, is_temperature, no_temperature
+from templates.core.sheets.expressions import Reader
 from templates.core.sheets.grammar import Parsed
 from templates.core.sheets.names import Names, sort_of
+from templates.core.units.conformity import declared_kind, misfit
 from templates.core.units.expressions import FaultyPlace, checked
+from templates.core.units.nodes import Kind, kind_of
 from templates.core.units.operations import Name
 from templates.core.units.rules import in_words
 from templates.core.units.sorts import Part, Sort
-from templates.core.units.units import compatible
+from templates.core.units.units import compatible, unit
 
 
 @dataclass(frozen=True)
@@ -25,6 +27,7 @@ class Function:
     name: str
     unit: str
     parameters: tuple[tuple[str, Sort], ...]
+    units: tuple[str, ...]  # of the parameters
     takes: str
     tree: lark.Tree[Any]
     names: Names
@@ -41,25 +44,46 @@ class Function:
         if len(arguments) != len(self.parameters):
             detail = f"{self.name} takes {self.takes}, not {len(arguments)} values"
             raise FaultyText("unknown_function", detail)
-        for (node, got), (own, wanted) in zip(arguments, self.parameters, strict=True):
-            if got.truth or not compatible(got.kind.base, wanted.kind.base):
-                given = "a condition" if got.truth else in_words(got.kind)
-                raise FaultyText("unit_mismatch", f"{self.name} takes {self.takes}, not {given}")
-            if wanted.weight and not is_temperature(node, got):
-                raise FaultyText("unit_mismatch", no_temperature(f"{own} of {self.name}"))
+        parameters = {}
+        for (node, got), (own, wanted), unit_text in zip(arguments, self.parameters, self.units, strict=True):
+            kind = taken(f"{own} of {self.name}", unit_text, (node, got), f"{self.name} takes {self.takes}")
             if wanted.axis and not got.axis:
                 raise FaultyText("axis_mismatch", f"{self.name} takes {self.takes}, not a single value")
-        names = (name for name, _ in self.parameters)
-        return self._written_out(dict(zip(names, arguments, strict=True)))
+            parameters[own] = node, replace(got, kind=kind)
+        return self._written_out(parameters)
 
     def _written_out(self, parameters: dict[str, Part]) -> Part:
         before, self.names.parameters = self.names.parameters, parameters
         try:
-            return checked(self.tree, self.names)
+            node, sort = checked(self.tree, self.names)
         except FaultyPlace as error:
             raise FaultyText(error.code, str(error)) from None  # its place is that of the call
         finally:
             self.names.parameters = before
+        if sort.kind.turned:  # whoever calls it is told
+            return node, sort
+        return node, replace(sort, kind=declared_kind(sort.kind, kind_of(self.unit)))
+
+
+def taken(parameter: str, unit_text: str, part: Part, takes: str) -> Kind:
+    """Return the kind that an argument has in the place of a parameter.
+
+    Raises
+    ------
+    FaultyText
+        With code `unit_mismatch`, if it does not fit the unit in which the parameter is declared.
+    """
+    node, got = part
+    scale, wanted = unit(unit_text), kind_of(unit_text, parameter)
+    if got.truth:
+        raise FaultyText("unit_mismatch", f"{takes}, not a condition")
+    if not compatible(got.kind, wanted):
+        raise FaultyText("unit_mismatch", f"{takes}, not {in_words(got.kind)}")
+    if mismatch := misfit(got.kind, scale, getattr(node, "text", "") or "x"):
+        why = f"{parameter} is declared in {unit_text}, and {mismatch[0]}"
+        remedy = "give a temperature, or declare the parameter in K" if scale.absolute else mismatch[1]
+        raise FaultyText("unit_mismatch", f"{why}; {remedy}")
+    return declared_kind(got.kind, wanted)
 
 
 def function_of(statement: Parsed, reader: Reader) -> Function:
@@ -72,12 +96,13 @@ def function_of(statement: Parsed, reader: Reader) -> Function:
     """
     called, *parameters, unit_text, tree = statement.parts
     name, unit_name = str(called)[:-1], reader.declared_unit(statement, unit_text)
-    sorts = {}
+    sorts, units = {}, []
     for parameter in parameters:
         own, text, axis = parameter.children
         if str(own) in sorts:
             raise statement.refuse("name", f"{own} stands twice", own, "name the parameters differently")
-        sorts[str(own)] = replace(sort_of(reader.declared_unit(statement, text)), axis=str(axis or ""))
+        units.append(reader.declared_unit(statement, text))
+        sorts[str(own)] = replace(sort_of(units[-1], str(own)), axis=str(axis or ""))
     takes = ", ".join(map(_taken, parameters))
     names, before = reader.names, reader.names.parameters
     names.parameters = {own: (Name(own), sort) for own, sort in sorts.items()}
@@ -85,7 +110,7 @@ def function_of(statement: Parsed, reader: Reader) -> Function:
         node = reader.fitting(statement, reader.part(statement, tree), unit_name, name, tree)
     finally:
         names.parameters = before
-    return Function(name, unit_name, tuple(sorts.items()), takes, tree, names, node)
+    return Function(name, unit_name, tuple(sorts.items()), tuple(units), takes, tree, names, node)
 
 
 def _taken(parameter: lark.Tree[Any]) -> str:

@@ -9,9 +9,9 @@ from templates.core.errors import FaultyText, unknown_name
 from templates.core.language.template import Template
 from templates.core.sheets.faults import FollowsFromFault
 from templates.core.units.lists import OVER_LISTS
-from templates.core.units.operations import CONSTANTS, FUNCTIONS, Kind, Name
+from templates.core.units.nodes import kind_of
+from templates.core.units.operations import CONSTANTS, FUNCTIONS, Name
 from templates.core.units.sorts import Part, Sort
-from templates.core.units.units import unit
 
 FUEL = 10_000
 """Operations of a worksheet, its functions written out."""
@@ -113,13 +113,12 @@ class Names:
             raise FaultyText("name", f"{name} has a meaning of its own")
 
 
-def sort_of(text: str) -> Sort:
-    """Return the sort of a value that is declared in a unit.
+def sort_of(text: str, name: str | None = None) -> Sort:
+    """Return the sort of a value that is declared in a unit, under a name.
 
     Raises
     ------
     FaultyText
         With code `unknown_unit`.
     """
-    scale = unit(text)
-    return Sort(Kind(scale.base), float(scale.absolute))
+    return Sort(kind_of(text, name))

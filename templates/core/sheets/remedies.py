@@ -5,18 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 import lark
-import pint
 
 from templates.core.sheets.names import Names
-from templates.core.units.operations import FUNCTIONS
+from templates.core.units.operations import FUNCTIONS, Kind
 from templates.core.units.rules import in_words
-from templates.core.units.units import compatible, unit
+from templates.core.units.units import base_text, dimension_of, registry, unit
 
 MOST_NAMES = 4
 _COMMON = (
     "1", "mm", "mm**2", "mm**3", "s", "m/s", "m/s**2", "kg", "kg/m**3", "kg*m**2", "N", "MPa", "N*m", "N/mm",
-    "W", "K", "mPa*s", "mm**2/s", "rpm", "Hz", "W/(m*K)", "J/(kg*K)", "W/(m**2*K)", "N/mm**3", "N*s/m",
-    "mm**4", "1/m", "1/K", "A", "V", "m**3/s", "kg/s",
+    "W", "K", "mPa*s", "mm**2/s", "rad/s", "Hz", "1/s", "W/(m*K)", "J/(kg*K)", "W/(m**2*K)", "N/mm**3",
+    "N*s/m", "mm**4", "1/m", "1/K", "A", "V", "m**3/s", "kg/s",
 )  # fmt: skip
 _EQUAL = frozenset({"add", "subtract", "compare", "if", "list"})
 _EQUAL_CALLS = frozenset({"min", "max", "atan2"})
@@ -64,14 +63,17 @@ def remedy_at(code: str, tree: lark.Tree[Any], meta: Any, names: Names) -> str:
     return special.get(str(at.data), _GENERAL.get(code, ""))
 
 
-def declared_in(name: str, base: pint.Unit) -> str:
+def declared_in(name: str, kind: Kind) -> str:
     """Return the advice to declare a name in a unit that fits what its formula gives."""
-    return f"declare {name} in {common_unit(base)}, or correct the formula"
+    return f"declare {name} in {common_unit(kind)}, or correct the formula"
 
 
-def common_unit(base: pint.Unit) -> str:
-    """Return a unit that engineers write for a base unit, such as MPa for a pressure."""
-    return next((text for text in _COMMON if compatible(unit(text).base, base)), f"{base:~C}")
+def common_unit(kind: Kind) -> str:
+    """Return a unit that engineers write for a kind of value, such as MPa for a pressure."""
+    if kind.base == registry.kelvin:
+        return kind.unit
+    alike = (text for text in _COMMON if dimension_of(unit(text)) == dimension_of(kind))
+    return next(alike, base_text(kind))
 
 
 def _equal(at: lark.Tree[Any], names: Names) -> str:

@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
+from dataclasses import replace
 from functools import reduce
 from typing import Any
 
 import numpy as np
 
 from templates.core.errors import FaultyText
+from templates.core.units.conformity import turns_remark
 from templates.core.units.nodes import Kind, Operation
-from templates.core.units.rules import in_words, same
-from templates.core.units.units import Value, compatible
+from templates.core.units.rules import as_compared, same
+from templates.core.units.units import Value, base_text, radians, unit
 
 _TRUE, _FALSE, _UNKNOWN = np.float64(1.0), np.float64(0.0), np.float64(np.nan)
 
@@ -52,7 +54,14 @@ def _chosen(condition: Value, one: Value, other: Value) -> Value:
 
 
 def _compared_kind(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -> Kind:
+    for place, other in ((0, 1), (1, 0)):
+        if meant := as_compared(operation.sign, kinds[other], arguments[place], arguments[other]):
+            detail = f"{operation.sign} compares a difference of temperatures with {arguments[place].text}"
+            raise FaultyText("unit_mismatch", f"{detail}; write {meant}")
     same(operation, kinds, arguments)
+    for own, beside in ((kinds[0], kinds[1]), (kinds[1], kinds[0])):
+        if own.turned and not radians(beside.base):
+            raise FaultyText("unit_mismatch", turns_remark(own, unit(base_text(beside)), ""))
     return Kind()
 
 
@@ -60,12 +69,8 @@ def _condition(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> K
     return Kind()
 
 
-def _either(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    one, other = kinds[1:]
-    if not compatible(one.base, other.base):
-        what = f"{in_words(one)} and {in_words(other)}"
-        raise FaultyText("unit_mismatch", f"then and else need equal units, not {what}")
-    return Kind(one.base, one.absolute or other.absolute)
+def _either(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> Kind:
+    return same(replace(operation, sign="then and else"), kinds[1:], nodes[1:])
 
 
 COMPARISONS = {

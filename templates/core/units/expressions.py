@@ -8,6 +8,7 @@ the name: a parameter of a function becomes the expression with which the functi
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from importlib.resources import files
 from typing import Any, Protocol
 
@@ -17,6 +18,7 @@ import numpy as np
 from templates.core.errors import FaultyText, excerpt, unknown_name
 from templates.core.units.conditions import COMPARISONS, IF, IS, LOGIC
 from templates.core.units.lists import ITEM, LIST, OVER_LISTS
+from templates.core.units.nodes import kind_of
 from templates.core.units.operations import (
     CONSTANTS,
     FUNCTIONS,
@@ -29,8 +31,9 @@ from templates.core.units.operations import (
     Operation,
     Word,
 )
+from templates.core.units.rules import as_compared
 from templates.core.units.sorts import Part, Sort, applied
-from templates.core.units.units import Unit, unit
+from templates.core.units.units import Unit, is_rate, unit
 from templates.core.units.walking import nodes_of
 
 __all__ = ["GRAMMAR", "FaultyPlace", "Scope", "Sort", "applied", "built", "checked", "height"]
@@ -44,6 +47,7 @@ MAX_TWICE = 1000
 RESERVED = frozenset({"if", "then", "else", "and", "or", "not", "is"})
 """Words of the grammar; only `if` and `not` may not stand for names in front of a value."""
 
+_COMPARED = frozenset(COMPARISONS.values())
 _OPERATIONS = {**OPERATORS, **LOGIC, "if": IF, "list": LIST}
 
 
@@ -143,10 +147,11 @@ class _Builder:
         return list(map(self.part, trees))
 
     def constant(self, text: str) -> Part:
-        return constant(text), Sort()
+        one = constant(text)
+        return one, Sort(one.kind)
 
     def constant_or_name(self, text: str) -> Part:
-        return (CONSTANTS[text], Sort()) if text in CONSTANTS else self.name(text)
+        return (CONSTANTS[text], Sort(CONSTANTS[text].kind)) if text in CONSTANTS else self.name(text)
 
     def name(self, text: str) -> Part:
         return Name(text), Sort()
@@ -216,11 +221,6 @@ class _Checked(_Builder):
         except FaultyText as error:
             raise FaultyPlace(error, tree.meta) from None
 
-    def constant(self, text: str) -> Part:
-        one = constant(text)
-        kind = Kind(one.kind.base)
-        return Constant(one.value, kind, text), Sort(kind, float(one.kind.absolute))
-
     def name(self, text: str) -> Part:
         return self.scope.name(text)
 
@@ -237,7 +237,15 @@ class _Checked(_Builder):
         return super().call(called, arguments) if own is None else own(arguments)
 
     def apply(self, operation: Operation, parts: Sequence[Part]) -> Part:
-        return applied(operation, parts)
+        return applied(operation, self.compared_alike(operation, *parts) if operation in _COMPARED else parts)
+
+    def compared_alike(self, operation: Operation, one: Part, other: Part) -> list[Part]:
+        """Return both sides of a comparison; a number in degC beside a difference of temperatures is one."""
+        meant = [
+            as_compared(operation.sign, beside[1].kind, side[0], beside[0])
+            for side, beside in ((one, other), (other, one))
+        ]
+        return [self.constant(text) if text else side for text, side in zip(meant, (one, other), strict=True)]
 
 
 def check_word(name: str, word: str, options: Sequence[str]) -> None:
@@ -273,8 +281,13 @@ def constant(text: str) -> Constant:
         With code `unknown_unit` or `not_finite`.
     """
     number, _, name = text.partition(" ")
-    scale = _unit(name or "1")
-    return Constant(_finite(float(scale.to_si(float(number)))), Kind(scale.base, scale.absolute), text)
+    scale, value = _unit(name or "1"), float(number)
+    kind = replace(kind_of(scale.text, text), literal=scale.absolute)
+    if not name and value and value % 2 == 0:
+        kind = replace(kind, twos=frozenset((1,)))
+    elif scale.turns and kind.turned == {text} and not is_rate(scale.base):  # 1 turn is 2*pi rad, as written
+        kind = replace(kind, pi=1, twos=frozenset((1,)), turned=frozenset())
+    return Constant(_finite(float(scale.to_si(value))), kind, text)
 
 
 def _unit(name: str) -> Unit:

@@ -25,7 +25,7 @@ def check_index(item: Item, kinds: Mapping[str, Kind]) -> None:
     if "." in item.index:
         hint = "an index is a whole number or a parameter of the design"
         raise FaultyText("index", f"{item.text}: {hint}, such as bearing")
-    if kinds[item.index] != Kind(ONE):
+    if kinds[item.index].base != ONE:
         given = f"{kinds[item.index].base:~P}"
         raise FaultyText("index", f"{item.text}: {item.index} is in {given}; an index is a pure number")
 

@@ -5,12 +5,13 @@ A list is the last axis of an array; the axes before it are those of points.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from templates.core.errors import FaultyText
-from templates.core.units.nodes import Kind, Operation
+from templates.core.units.nodes import DIFFERENCE, ONE, Kind, Operation
 from templates.core.units.rules import in_words, keep, relative, same
 from templates.core.units.units import Value
 
@@ -36,7 +37,8 @@ def _count(values: Value) -> Value:
 
 def _summed(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
     relative(operation, kinds)
-    return kinds[0]
+    counts = kinds[0].temperatures
+    return replace(kinds[0], temperatures=DIFFERENCE if counts and 0.0 in counts else None)
 
 
 def _counted(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
@@ -44,7 +46,7 @@ def _counted(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kin
 
 
 def _indexed(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    if kinds[1] != Kind():
+    if kinds[1].base != ONE:
         raise FaultyText("index", f"an index is a pure number, not {in_words(kinds[1])}")
     return kinds[0]
 

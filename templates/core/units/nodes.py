@@ -8,17 +8,88 @@ from typing import Any
 
 import pint
 
-from templates.core.units.units import registry
+from templates.core.units.units import Unit, base_text, radians, registry, unit
 
 ONE = registry.Unit("")
+Temperatures = frozenset[float] | None
+DIFFERENCE, TEMPERATURE, EITHER = frozenset((0.0,)), frozenset((1.0,)), frozenset((0.0, 1.0))
 
 
 @dataclass(frozen=True)
 class Kind:
-    """The kind of a value: SI base units; `absolute` for a temperature such as 20 degC."""
+    """The kind of a value.
+
+    Attributes
+    ----------
+    base
+        Its unit in SI.
+    cycles
+        The power of the hertz: of a rate in Hz one, in 1/s and rad/s none.
+    temperatures
+        How many temperatures it may add up: a temperature one, a difference of two none, a value in K either,
+        `T_1 + T_2` two. None: it cannot be said.
+    literal
+        Whether it is a number typed in degC or degF, which may be meant as either.
+    turned
+        The names and numbers in it that were given in turns, while its unit holds their angle.
+    pi, twos
+        The written factors of a product: the power of pi, and whether an even number stands above (1) or
+        below the line (-1). A written 2*pi makes rad/s of Hz.
+    """
 
     base: pint.Unit = ONE
-    absolute: bool = False
+    cycles: float = 0.0
+    temperatures: Temperatures = DIFFERENCE
+    literal: bool = False
+    turned: frozenset[str] = frozenset()
+    pi: int = field(default=0, compare=False)
+    twos: frozenset[int] = field(default=frozenset(), compare=False)
+
+    @property
+    def is_difference(self) -> bool:
+        """Return whether it is a difference of temperatures and nothing else."""
+        return self._is_kelvin and self.temperatures == DIFFERENCE
+
+    @property
+    def unit(self) -> str:
+        """Return the unit in which a value of this kind is shown, by which its kind is known again."""
+        if not self._is_kelvin or self.temperatures is None:
+            return base_text(self)
+        if 0.0 in self.temperatures:
+            return "K" if 1.0 in self.temperatures else "delta_degC"
+        return "degC" if 1.0 in self.temperatures else "K"
+
+    @property
+    def _is_kelvin(self) -> bool:
+        return bool(self.base == registry.kelvin)
+
+
+def kind_of(text: str, name: str | None = None) -> Kind:
+    """Return the kind of a value that is given or declared in a unit.
+
+    Parameters
+    ----------
+    text
+        The unit.
+    name
+        That of the value; where it is given in turns, a report names it.
+
+    Raises
+    ------
+    FaultyText
+        With code `unknown_unit`.
+    """
+    return _kind_in(unit(text), name or text)
+
+
+def _kind_in(scale: Unit, name: str) -> Kind:
+    either = scale.base == registry.kelvin and not scale.difference
+    return Kind(
+        scale.base,
+        scale.cycles,
+        TEMPERATURE if scale.absolute else EITHER if either else DIFFERENCE,
+        turned=frozenset((name,)) if scale.turns and radians(scale.base) else frozenset(),
+    )
 
 
 @dataclass(frozen=True)

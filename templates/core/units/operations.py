@@ -55,4 +55,4 @@ FUNCTIONS = {
         Operation("ceil", np.ceil, whole, 1),
     )
 }
-CONSTANTS = {"pi": Constant(np.pi, Kind())}
+CONSTANTS = {"pi": Constant(np.pi, Kind(pi=1))}

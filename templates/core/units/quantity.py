@@ -29,14 +29,24 @@ from templates.core.units.tolerance import (
     split,
     stated,
 )
-from templates.core.units.units import Unit, Value, compatible, registry, require_same_kind, unit
+from templates.core.units.units import (
+    Unit,
+    Value,
+    beside,
+    compatible,
+    difference_of,
+    registry,
+    require_same_kind,
+    unit,
+)
 
 __all__ = [
-    "Tolerance", "Typed", "Unit", "Value", "compatible", "read", "read_any", "registry", "require_same_kind",
-    "unit",
+    "Tolerance", "Typed", "Unit", "Value", "beside", "compatible", "read", "read_any", "read_beside",
+    "registry", "require_same_kind", "unit",
 ]  # fmt: skip
 
 _PATTERN = re.compile(rf"([+-]?{NUMBER})\s*(.*)", re.DOTALL)  # of a text without blanks at its ends
+_ABSOLUTE = re.compile(r"(?<![\w°])(?:degC|degF|°C|°F|celsius|fahrenheit|degree_?[CF]\w*)(?!\w)")
 _DEEPEST = 4  # axes of an array
 
 
@@ -80,6 +90,34 @@ def read(raw: Any, declared: str) -> Typed:
         case int() | float():
             return _read_bare(raw, declared)
     raise _no_quantity(raw, declared)
+
+
+def read_beside(raw: Any, declared: str) -> Typed:
+    """Read a limit or a target, which takes the kind of what it belongs to.
+
+    Beside a difference of temperatures `30 degC` is one of 30 K.
+
+    Raises
+    ------
+    FaultyText
+        With a code and a remedy.
+    """
+    if not unit(declared).difference:
+        return read(raw, declared)
+    return read([_beside(item) for item in raw] if isinstance(raw, list) else _beside(raw), declared)
+
+
+def _beside(raw: Any) -> Any:
+    match raw:
+        case str() if parts := _parted(raw):
+            return f"{parts[0]} {_ABSOLUTE.sub(_as_difference, parts[1])}"
+        case {"unit": str() as name} if _ABSOLUTE.fullmatch(name):
+            return {**raw, "unit": difference_of(name)}
+    return raw
+
+
+def _as_difference(match: re.Match[str]) -> str:
+    return difference_of(match[0])
 
 
 def read_any(raw: Any) -> Typed:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from templates.core.errors import FaultyText
-from templates.core.units.units import unit
+from templates.core.units.units import base_text, difference_of, unit
 
 _PART = re.compile(r"([*·/]?)(?:\(([^)]*)\)|([^*·/()]+))")
 
@@ -17,16 +17,11 @@ def quotient(over: str, under: str) -> str:
 
     In base units of SI, where the names of both are too long together.
     """
-    text = _quotient(difference(over), difference(under))
+    text = _quotient(difference_of(over), difference_of(under))
     try:
         return unit(text).text
     except FaultyText:
-        return _quotient(f"{unit(over).base:~C}" or "1", f"{unit(under).base:~C}" or "1")
-
-
-def difference(name: str) -> str:
-    """Return the unit of a change: of temperatures in a scale of their own, kelvin or its like."""
-    return f"delta_{name}" if unit(name).absolute else name
+        return _quotient(base_text(unit(over)), base_text(unit(under)))
 
 
 def _quotient(over: str, under: str) -> str:

@@ -2,50 +2,181 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cache, reduce
+from itertools import product as pairs_of
 from typing import Any
 
 from templates.core.errors import FaultyText
-from templates.core.units.nodes import Apply, Constant, Kind, Operation
-from templates.core.units.units import compatible, registry
+from templates.core.units.nodes import DIFFERENCE, EITHER, Apply, Constant, Kind, Operation, Temperatures
+from templates.core.units.units import (
+    base_text,
+    compatible,
+    difference_of,
+    is_rate,
+    radians,
+    registry,
+    unit,
+)
 
 RADIAN = registry.Unit("radian")
 MAX_EXPONENT, MAX_UNIT_POWER = 12, 1000
+_MOST_COUNTS = 64  # numbers of temperatures that a value may add up
 
 
-def same(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
+def same(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> Kind:
     """Return all in units of one kind."""
-    for other in kinds[1:]:
-        if not compatible(kinds[0].base, other.base):
-            what = f"{in_words(kinds[0])} and {in_words(other)}"
-            raise FaultyText("unit_mismatch", f"{operation.sign} needs equal units, not {what}")
-    return Kind(kinds[0].base, any(kind.absolute for kind in kinds))
+    return reduce(lambda one, other: shared(operation.sign, one, other, nodes), kinds)
 
 
-def relative(operation: Operation, kinds: list[Kind]) -> None:
-    """Refuse temperatures in degC or degF, which have a zero of their own."""
-    if any(kind.absolute for kind in kinds):
-        hint = "write it in K, and differences in delta_degC"
-        raise FaultyText(
-            "unit_mismatch", f"{operation.sign} cannot take a temperature in degC or degF; {hint}"
-        )
+def shared(sign: str, one: Kind, other: Kind, nodes: tuple[Any, ...]) -> Kind:
+    """Return the kind that two values share."""
+    counted = _joined(sign, one, other)
+    if one.temperatures is None or other.temperatures is None:
+        return _kind(counted, None, is_literal=one.literal or other.literal)
+    if not (both := one.temperatures & other.temperatures):
+        text = next(map(literal, filter(literal, nodes)), "")
+        remedy = f"; write {as_difference(text)} for a difference" if text else ""
+        what = "a temperature and a difference of temperatures"
+        raise FaultyText("unit_mismatch", f"{sign} needs values of one kind, not {what}{remedy}")
+    return _kind(counted, both, is_literal=one.literal or other.literal)
 
 
-def summed(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -> Kind:
-    """Return a sum or a difference."""
-    relative(operation, kinds)
-    return same(operation, kinds, arguments)
+def _joined(sign: str, one: Kind, other: Kind) -> Kind:
+    """Return the base units that two values share; 1/s beside rad/s or Hz is that."""
+    if not compatible(one, other):
+        what = f"{in_words(one)} and {in_words(other)}"
+        raise FaultyText("unit_mismatch", f"{sign} needs equal units, not {what}")
+    counts = [kind for kind in (one, other) if radians(kind.base) or kind.cycles]
+    turned = one.turned | other.turned
+    if is_rate(one.base) and turned and len(counts) == 1:
+        what = f"{in_words(one)} and {in_words(other)}"
+        detail = f"{sign} needs equal units, not {what}: {' and '.join(sorted(turned))} counts turns"
+        raise FaultyText("unit_mismatch", f"{detail}; multiply 1/s by 1 turn or by 1 rad, as in 1 turn / t")
+    first = counts[0] if counts else one
+    return Kind(first.base, first.cycles, turned=turned)
 
 
-def product(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    """Return a product or a quotient."""
-    relative(operation, kinds)
-    return Kind(reduce(lambda a, b: a / b if operation.sign == "/" else a * b, (k.base for k in kinds)))
+def _kind(
+    of: Kind, temperatures: Temperatures, *, is_literal: bool = False, pi: int = 0, twos: Iterable[int] = ()
+) -> Kind:
+    """Return a kind; what has no temperature in its unit adds up none, what has no angle counts no turns."""
+    is_kelvin = of.base == registry.kelvin
+    few = temperatures is None or len(temperatures) <= _MOST_COUNTS
+    return Kind(
+        of.base,
+        of.cycles,
+        (temperatures if few else None) if is_kelvin else DIFFERENCE,
+        literal=is_literal and bool(is_kelvin),
+        turned=of.turned if radians(of.base) else frozenset(),
+        pi=pi,
+        twos=frozenset(twos),
+    )
+
+
+def relative(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...] = ()) -> None:
+    """Refuse temperatures typed in degC or degF: they may be meant as differences."""
+    if any(kind.literal for kind in kinds):
+        texts = [text for node in nodes if (text := literal(node))]
+        what = texts[0] if texts else "a temperature in degC or degF"
+        hint = f"; write {meanings_of(texts[0])}" if texts else "; write it in K, differences in delta_degC"
+        message = f"{operation.sign} cannot take {what}, which may be a temperature or a difference"
+        raise FaultyText("unit_mismatch", message + hint)
+
+
+def literal(node: Any) -> str:
+    """Return a number typed in degC or degF, as typed."""
+    return node.text if isinstance(node, Constant) and node.kind.literal else ""
+
+
+def meanings_of(text: str) -> str:
+    """Return both meanings of a number typed in degC or degF."""
+    number, _, name = text.partition(" ")
+    return (
+        f"{unit(name).to_si(float(number)):.9g} K for a temperature, {as_difference(text)} for a difference"
+    )
+
+
+def as_difference(text: str) -> str:
+    """Return a number typed in degC or degF as a difference: `30 delta_degC`."""
+    number, _, name = text.partition(" ")
+    return f"{number} {difference_of(name)}"
+
+
+def as_compared(sign: str, other: Kind, node: Any, beside: Any) -> str:
+    """Return a number typed in degC or degF as it is meant in a comparison; empty where it stands as typed.
+
+    It takes the kind of the other side: beside a difference it is one.
+
+    Raises
+    ------
+    FaultyText
+        With code `unit_mismatch`, beside a value in K that may be either.
+    """
+    if not (text := literal(node)):
+        return ""
+    if other.base == registry.kelvin and other.temperatures == EITHER and not isinstance(beside, Constant):
+        detail = f"{sign} compares {text} with a value in K that may be a temperature or a difference"
+        raise FaultyText("unit_mismatch", f"{detail}; write {meanings_of(text)}")
+    return as_difference(text) if other.is_difference else ""
+
+
+def summed(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> Kind:
+    """Return a sum, a difference, or a value with the other sign."""
+    if len(kinds) == 1:
+        (kind,) = kinds
+        counts = None if kind.temperatures is None else frozenset(-n for n in kind.temperatures)
+        return _kind(kind, counts, is_literal=kind.literal, pi=kind.pi, twos=kind.twos)
+    one, other = kinds
+    counted = _joined(operation.sign, one, other)
+    if one.temperatures is None or other.temperatures is None:
+        return _kind(counted, None, is_literal=one.literal or other.literal)
+    sign = 1 if operation.sign == "+" else -1
+    counts = frozenset(n + sign * m for n, m in pairs_of(one.temperatures, other.temperatures))
+    has_literal = one.literal or other.literal
+    if has_literal and not counts & {0.0, 1.0}:
+        text = next((literal(node) for node in reversed(nodes) if literal(node)), "")
+        detail = f"{operation.sign} {text or 'a temperature in degC or degF'} gives no temperature"
+        remedy = f"write {as_difference(text)}" if text else "write differences in delta_degC"
+        raise FaultyText("unit_mismatch", f"{detail}; {remedy} for a difference")
+    return _kind(counted, counts, is_literal=has_literal and 0.0 not in counts)
+
+
+def product(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> Kind:
+    """Return a product or a quotient; a written 2*pi makes an angle of a cycle, or takes it away."""
+    relative(operation, kinds, nodes)
+    one, other = kinds
+    sign = -1 if operation.sign == "/" else 1
+    base = one.base / other.base if sign < 0 else one.base * other.base
+    cycles, pi = one.cycles + sign * other.cycles, one.pi + sign * other.pi
+    twos = one.twos | {sign * place for place in other.twos}
+    if cycles > 0 and pi > 0 and 1 in twos:
+        base = base if radians(base) else base * RADIAN
+        cycles, pi, twos = cycles - 1, pi - 1, twos - {1}
+    elif radians(base) > 0 and pi < 0 and -1 in twos:
+        base, pi, twos = base / RADIAN, pi + 1, twos - {-1}
+    whole = Kind(registry.Unit(base), cycles, turned=one.turned | other.turned)
+    return _kind(whole, _scaled(operation.sign, nodes, one, other), pi=pi, twos=twos)
+
+
+def _scaled(sign: str, nodes: tuple[Any, ...], one: Kind, other: Kind) -> Temperatures:
+    """Return the temperatures that a product or quotient adds up; of others than plain numbers, none."""
+    factor, divided = plain_number(nodes[1]), plain_number(nodes[0])
+    if factor is not None and one.base == registry.kelvin:
+        if one.temperatures is None or (sign == "/" and not factor):
+            return None
+        return frozenset(n * factor if sign == "*" else n / factor for n in one.temperatures)
+    if sign == "*" and divided is not None and other.base == registry.kelvin:
+        return None if other.temperatures is None else frozenset(n * divided for n in other.temperatures)
+    operands = [kind.temperatures for kind in (one, other) if kind.base == registry.kelvin]
+    if not operands:
+        return EITHER  # of heat and heat capacity, a difference; of pressure and density, a temperature
+    return DIFFERENCE if all(counts and 0.0 in counts for counts in operands) else None
 
 
 def power(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -> Kind:
     """Return a power; of a quantity with a unit its exponent is known beforehand."""
-    relative(operation, kinds)
+    relative(operation, kinds, arguments)
     base, exponent = kinds
     if not is_number(exponent):
         raise FaultyText("unit_mismatch", f"an exponent is a pure number, not {in_words(exponent)}")
@@ -61,7 +192,12 @@ def power(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -
     degrees: list[Any] = list(registry.get_dimensionality(base.base).values())
     if any(abs(degree * plain) > MAX_UNIT_POWER for degree in degrees):
         raise FaultyText("unit_mismatch", f"a unit to a power beyond {MAX_UNIT_POWER} has no meaning")
-    return Kind(registry.Unit(base.base**plain))
+    return _raised(base, plain)
+
+
+def _raised(kind: Kind, exponent: float) -> Kind:
+    base = registry.Unit(kind.base**exponent)
+    return _kind(Kind(base, kind.cycles * exponent, turned=kind.turned), None)
 
 
 def plain_number(node: Any) -> float | None:
@@ -78,10 +214,10 @@ def plain_number(node: Any) -> float | None:
     return None
 
 
-def root(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
+def root(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -> Kind:
     """Return a square root."""
-    relative(operation, kinds)
-    return Kind(registry.Unit(kinds[0].base ** 0.5))
+    relative(operation, kinds, arguments)
+    return _raised(kinds[0], 0.5)
 
 
 def keep(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
@@ -106,7 +242,7 @@ def angle(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -
 
 def whole(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
     """A quantity has no whole part of its own: 3.7 mm are 0.0037 m."""
-    if kinds[0] != Kind():
+    if kinds[0].base != Kind().base:
         hint = f"divide by a unit, as in {operation.sign}(d / 1 mm)"
         raise FaultyText(
             "unit_mismatch", f"{operation.sign} takes a pure number, not {in_words(kinds[0])}; {hint}"
@@ -121,6 +257,8 @@ def is_number(kind: Kind) -> bool:
 
 def in_words(kind: Kind) -> str:
     """Return a kind in words: by the unit that has a name, `N` for `kg·m/s²`."""
+    if is_rate(kind.base) and kind.cycles:
+        return base_text(kind)
     named = (name for name, base in _named().items() if base == kind.base)
     return next(named, f"{kind.base:~P}") or "a pure number"
 

@@ -10,8 +10,6 @@ from templates.core.errors import FaultyText
 from templates.core.units.conditions import COMPARISONS, IF, IS, LOGIC
 from templates.core.units.lists import ITEM, LIST, OVER_LISTS, TRAILING
 from templates.core.units.nodes import Apply, Constant, Kind, Operation, Word
-from templates.core.units.rules import plain_number
-from templates.core.units.units import registry
 
 MAX_NODES, MAX_NODES_DEEP = 10_000, 200
 PURE = Kind()
@@ -25,8 +23,6 @@ class Sort:
     ----------
     kind
         What it is measured in.
-    weight
-        How many temperatures it adds up: `(T_1 + T_2)/2` one, `T_1 - T_2` none. None: it cannot be said.
     truth
         Whether it is a condition, which is not a quantity.
     axis
@@ -38,7 +34,6 @@ class Sort:
     """
 
     kind: Kind = PURE
-    weight: float | None = 0.0
     truth: bool = False
     axis: str = ""
     words: tuple[str, ...] = ()
@@ -84,7 +79,7 @@ def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> So
         detail = f"an expression has at most {MAX_NODES} operations, its functions written out"
         raise FaultyText("too_large", detail)
     kind = operation.kind(operation, [sort.kind for sort in sorts], nodes)
-    return Sort(kind, _weight(operation, kind, parts), truth, axis, depth=depth, size=size)
+    return Sort(kind, truth, axis, depth=depth, size=size)
 
 
 def _truth(operation: Operation, sorts: list[Sort]) -> bool:
@@ -146,33 +141,3 @@ def literal_axis(count: int) -> str:
 
 def _widened(node: Any, sort: Sort) -> Any:
     return node if isinstance(node, (Constant, Word)) or sort.words else Apply(TRAILING, (node,))
-
-
-def _weight(operation: Operation, kind: Kind, parts: Sequence[Part]) -> float | None:
-    """Return the number of temperatures that a result adds up; None where that cannot be said."""
-    if kind.base != registry.kelvin:
-        return 0.0
-    sign, nodes, weights = operation.sign, [node for node, _ in parts], [sort.weight for _, sort in parts]
-    match sign, weights:
-        case "+" | "-", [float(one), float(other)]:
-            return one + other if sign == "+" else one - other
-        case "-", [float(one)]:
-            return -one
-        case "*" | "/", [one, other]:
-            return _scaled(sign, nodes, one, other)
-        case "sum", [0.0]:
-            return 0.0
-        case "abs" | "mean" | "item" | "if" | "min" | "max" | "list", _:
-            among = weights[1:] if operation is IF else weights[:1] if operation is ITEM else weights
-            return among[0] if len(set(among)) == 1 else None
-    return None
-
-
-def _scaled(sign: str, nodes: list[Any], one: float | None, other: float | None) -> float | None:
-    """Return the weight of a product or quotient with a plain number; of nothing else but of differences."""
-    factor, divided = plain_number(nodes[1]), plain_number(nodes[0])
-    if factor is not None and one is not None:
-        return one * factor if sign == "*" else one / factor if factor else None
-    if sign == "*" and divided is not None and other is not None:
-        return divided * other
-    return 0.0 if one == other == 0.0 else None

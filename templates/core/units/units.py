@@ -3,8 +3,11 @@
 The registry reads units only; no Pint object reaches a formula's hot path.
 A unit text is untrusted: its grammar is checked before Pint sees it (`m**9**9**9` would hang Pint).
 
-Angular speed is kept in rad/s. The radian counts as a dimension of its own where a rate is meant,
-so that `50 1/s` or `50 Hz` is refused as a speed instead of being wrong by 2π.
+Two kinds of quantity share a dimension, and the unit says which is meant:
+
+- A temperature (degC, degF) and a difference of temperatures (delta_degC, delta_degF); K may be either.
+- An angular speed (rad/s, rpm, rev/s), kept in rad/s, and a frequency in Hz: cycles per second. 1/s may be
+  either, but not where turns are counted.
 """
 
 from __future__ import annotations
@@ -14,7 +17,7 @@ import re
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import flexcache
 import flexparser
@@ -55,6 +58,9 @@ class Unit:
     offset: float
     base: pint.Unit
     difference: bool  # of two temperatures
+    cycles: float = 0.0  # the power of the hertz
+    turns: bool = False  # counts revolutions: rpm, rev/s, turn
+    plain_angle: bool = True  # of angles: counts radians by name, as rad/s does and rpm and deg/s do not
 
     @property
     def absolute(self) -> bool:
@@ -71,6 +77,7 @@ class Unit:
         return shifted if self.factor == 1 else shifted / self.factor
 
 
+_CYCLE = registry.Unit("Hz") * registry.Unit("s")
 MOST_REMEMBERED = 20_000
 
 
@@ -106,8 +113,18 @@ def unit(text: str) -> Unit:
         raise FaultyText("unknown_unit", f"{text!r} is not a known unit; {_hint(text)}") from None
     if not (0 < factor < math.inf and math.isclose(two, 2 * factor + zero, rel_tol=1e-9)):
         raise FaultyText("unknown_unit", f"{text!r} has no fixed size (a logarithmic unit?)")
-    difference = text.startswith("delta_") and base == registry.kelvin
-    return Unit(text, factor, zero, registry.Unit(base), difference)
+    powers: dict[str, Any] = dict(registry.Quantity(1.0, named).unit_items())
+    names = {str(name): float(power) for name, power in powers.items()}
+    return Unit(
+        text,
+        factor,
+        zero,
+        registry.Unit(base),
+        difference=text.startswith("delta_") and base == registry.kelvin,
+        cycles=sum(power for name, power in names.items() if name.endswith("hertz")),
+        turns=any("turn" in name or "revolutions_per" in name for name in names),
+        plain_angle=any(name.endswith("radian") for name in names),
+    )
 
 
 def _hint(text: str) -> str:
@@ -116,26 +133,59 @@ def _hint(text: str) -> str:
     return "units are case-sensitive: mm, kN, MPa, mPa*s, rpm, degC"
 
 
-def compatible(one: pint.Unit, other: pint.Unit) -> bool:
-    """Return whether two base units mean the same kind of quantity; a rate in rad/s is none in 1/s."""
-    dimensions = registry.get_dimensionality(one)
-    if dimensions != registry.get_dimensionality(other):
-        return False
-    is_rate = dict(dimensions).keys() == {"[time]"}
-    return not is_rate or _radians(one) == _radians(other)
+class Measured(Protocol):
+    """What a unit or a value measures: its base units in SI, and the power of the hertz among them."""
+
+    @property
+    def base(self) -> pint.Unit:
+        """Return the base units."""
+
+    @property
+    def cycles(self) -> float:
+        """Return the power of the hertz."""
 
 
-def dimension_of(base: pint.Unit) -> str:
-    """Return a text that is equal for base units that are compatible."""
-    dimensions = dict(registry.get_dimensionality(base))
-    radians = _radians(base) if dimensions.keys() == {"[time]"} else 0.0
-    powers = sorted([*dimensions.items(), *([("rad", radians)] if radians else [])])
-    return " ".join(f"{name.strip('[]')}^{power:g}" for name, power in powers) or "1"
+def base_text(measured: Measured) -> str:
+    """Return the SI unit of a quantity as `unit` reads it: `kg/m/s**2`, `1`, `Hz`."""
+    cycles = measured.cycles if is_rate(measured.base) else 0.0
+    return f"{registry.Unit(measured.base * _CYCLE**cycles) if cycles else measured.base:~C}" or "1"
 
 
-def _radians(base: pint.Unit) -> float:
+def is_rate(base: pint.Unit) -> bool:
+    """Return whether base units are a power of time, beside angles."""
+    return dict(registry.get_dimensionality(base)).keys() == {"[time]"}
+
+
+def radians(base: pint.Unit) -> float:
+    """Return the power of the radian in base units."""
     exponents: dict[str, Any] = dict(registry.Quantity(1.0, base).unit_items())
     return float(exponents.get("radian", 0))
+
+
+def compatible(one: Measured, other: Measured) -> bool:
+    """Return whether one value can be compared with the other.
+
+    A rate in rad/s and one in Hz can not; 1/s may be either.
+    """
+    if registry.get_dimensionality(one.base) != registry.get_dimensionality(other.base):
+        return False
+    if not is_rate(one.base):
+        return True
+    counted = _counted(one), _counted(other)
+    return counted[0] == counted[1] or (0.0, 0.0) in counted
+
+
+def _counted(measured: Measured) -> tuple[float, float]:
+    """Return the powers of the radian and of the hertz, by which rates differ."""
+    return radians(measured.base), measured.cycles
+
+
+def dimension_of(measured: Measured) -> str:
+    """Return a text that is equal for units of one dimension; rad/s, Hz and 1/s are three."""
+    dimensions = dict(registry.get_dimensionality(measured.base))
+    counted = zip(("rad", "cycle"), _counted(measured) if is_rate(measured.base) else (), strict=False)
+    powers = sorted([*dimensions.items(), *((name, power) for name, power in counted if power)])
+    return " ".join(f"{name.strip('[]')}^{power:g}" for name, power in powers) or "1"
 
 
 @lru_cache(maxsize=4096)
@@ -148,18 +198,43 @@ def require_same_kind(typed: str, declared: str) -> Unit:
         If it measures something else, is ambiguous as a speed, or mixes a temperature with a difference.
     """
     got, want = unit(typed), unit(declared)
-    if compatible(got.base, want.base) and not _mixes_difference(got, want) and not _counts_angle(got, want):
+    if compatible(got, want) and not _mixes_difference(got, want) and not _miscounts(got, want):
         return got
     raise FaultyText(*_why_not(got, want))
 
 
+def difference_of(name: str) -> str:
+    """Return the unit of a difference of two temperatures in a unit: `delta_degC` of `degC`."""
+    return difference_in(name) if unit(name).absolute else name
+
+
+def difference_in(name: str) -> str:
+    """Return the unit of a difference that is declared in K or its like; the unit itself if there is none."""
+    return {1.0: "delta_degC", unit("degF").factor: "delta_degF"}.get(unit(name).factor, name)
+
+
+def beside(typed: str, declared: str) -> str:
+    """Return the unit of a limit, a target or a shown value, which takes the kind of what it belongs to.
+
+    Beside a difference of temperatures degC is delta_degC.
+    """
+    return difference_of(typed) if unit(declared).difference else typed
+
+
 def _mixes_difference(got: Unit, want: Unit) -> bool:
-    return (got.difference and not want.difference) or (got.absolute and want.difference)
+    if got.absolute:
+        return want.base == registry.kelvin and not want.absolute
+    return got.difference and want.absolute
 
 
-def _counts_angle(got: Unit, want: Unit) -> bool:
-    """Return whether a pure number would be wrong by 2π: 1e6 cycles are an angle to Pint."""
-    return want.text == "1" and _radians(got.base) != 0
+def _miscounts(got: Unit, want: Unit) -> bool:
+    """Return whether a typed number might be wrong by 2π: angle where none is declared, or none in turns."""
+    counted, wanted = _counted(got), _counted(want)
+    if want.text == "1":  # 1e6 cycles are an angle to Pint
+        return counted[0] != 0
+    if not is_rate(got.base) or counted == wanted:
+        return False
+    return counted[0] != 0 or (wanted[0] != 0 and not want.plain_angle)
 
 
 def _why_not(got: Unit, want: Unit) -> tuple[str, str]:
@@ -167,12 +242,26 @@ def _why_not(got: Unit, want: Unit) -> tuple[str, str]:
         message = f"{got.text} measures {_measured(got)}; here {_measured(want)} is wanted: {_remedy(want)}"
         return "wrong_unit", message + _meant(got, want)
     if _mixes_difference(got, want):
-        expected = "a difference of temperatures" if want.difference else "a temperature, not a difference,"
-        return "wrong_unit", f"{got.text} does not fit: here {expected} is wanted; {_remedy(want)}"
-    if _radians(want.base):
+        return "wrong_unit", _of_other_kind(got, want)
+    if radians(want.base):
         message = f"{got.text} is ambiguous for a speed (turns or radians?): write rpm or rad/s"
         return "ambiguous_unit", message
+    if want.cycles:
+        return "ambiguous_unit", f"{got.text} counts angle, and Hz cycles; {_remedy(want)}"
     return "ambiguous_unit", f"{got.text} counts angle; {_remedy(want)}, without rad or turn"
+
+
+def _of_other_kind(got: Unit, want: Unit) -> str:
+    """Return a sentence on a temperature in place of a difference, and the other way round."""
+    if want.absolute:
+        return f"{got.text} does not fit: here a temperature, not a difference, is wanted; {_remedy(want)}"
+    other = difference_of(got.text)
+    if want.difference:
+        return (
+            f"{got.text} does not fit: here a difference of temperatures is wanted; give it in {other} or K"
+        )
+    meanings = f"write a temperature in {want.text}, a difference in {other}"
+    return f"{got.text} is ambiguous beside {want.text}; {meanings}"
 
 
 def _remedy(want: Unit) -> str:
@@ -202,9 +291,9 @@ _KINDS = {
 def _measured(scale: Unit) -> str:
     """Return the quantity that a unit measures, in words where there are usual ones."""
     dimensions = registry.get_dimensionality(scale.base)
-    if _radians(scale.base) and not dimensions:
+    if radians(scale.base) and not dimensions:
         return "an angle"
-    if _radians(scale.base) and dict(dimensions) == {"[time]": -1}:
+    if radians(scale.base) and dict(dimensions) == {"[time]": -1}:
         return "an angular speed"
     same = (words for words, si in _KINDS.items() if registry.get_dimensionality(unit(si).base) == dimensions)
     return next(same, str(dimensions))

@@ -10,7 +10,7 @@ from bare_shells import BUSH
 from patience import patient
 from serving import API
 
-from app.team.processes import Tied, free_port
+from app.team.processes import ChildProgram, free_port
 
 BUILD = f"{API}/models/plain_bearing/versions/1/build"
 BUILT = {"parameters": {**BUSH, "inner_diameter": "46.75 mm"}}
@@ -52,7 +52,7 @@ def test_the_embedded_service_asks_for_no_extra_and_does_its_work(tmp_path, requ
     (packages / "sitecustomize.py").write_text(ABSENT)
     environment = {"PYTHONPATH": f"{packages}:{request.config.rootpath}", "ASKED_FOR": str(asked)}
     command = [sys.executable, "-m", "app", "serve", "--port", str(port), "--data", str(tmp_path / "data")]
-    server = Tied("the service", command, tmp_path / "log", environment=environment)
+    server = ChildProgram("the service", command, tmp_path / "log", environment=environment)
     try:
         with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=patient(120), trust_env=False) as http:
             server.until(lambda: ready(http), patient(120))

@@ -97,7 +97,7 @@ def test_a_process_with_threads_forks_none():
 def test_what_is_forked_waits_as_long_as_it_may():
     if not (pid := os.fork()):
         os.execv(sys.executable, [sys.executable, "-c", "import time; time.sleep(60)"])
-    process: processes.Process = prefork.Forked(pid)
+    process: processes.Process = prefork.ForkedProcess(pid)
     assert process.poll() is None
     with pytest.raises(subprocess.TimeoutExpired):
         process.wait(0.01)

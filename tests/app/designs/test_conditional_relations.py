@@ -124,7 +124,7 @@ class TestConditions:
     def test_property_temperatures_stay_strict(self):
         raw = bearing({"warm": "= if width > 1 mm then 20 degC else 30 degC", "warmer": "= 2 * 20 degC"})
         assert faults_of(raw)["warmer"][0] == "unit_mismatch"
-        raw["parameters"]["warmer"] = "= (if width > 1 mm then 20 degC else 30 degC) + 5 K"
+        raw["parameters"]["warmer"] = "= (if width > 1 mm then 20 degC else 30 degC) + 5 degC"
         assert faults_of(raw)["warmer"][0] == "unit_mismatch"
         raw["parameters"]["warmer"] = "= warm + 5 K"
         assert calculated(raw).value(ref("warmer")) == 298.15

@@ -9,7 +9,7 @@ from sqlalchemy import event, text
 
 from app.designs import repository
 from app.designs.filters import DesignFilter
-from app.designs.repository import Written
+from app.designs.repository import StoredRevision
 from app.designs.results import ModelState
 from app.storage.errors import DatabaseDamaged
 
@@ -28,7 +28,7 @@ def save(database, name, *templates, state="current", models=()):
     states = [
         ModelState(f"model{n}", id, version, {}, {}, (), None) for n, (id, version) in enumerate(models)
     ]
-    written = Written(document(name, *templates), None, states, state, None)
+    written = StoredRevision(document(name, *templates), None, states, state, None)
     return database.write(lambda session: repository.create(session, name, written))[0]
 
 
@@ -74,7 +74,7 @@ def test_it_selects(shelf, wanted, names):
 def test_the_newest_revision_counts(shelf):
     with shelf.read() as session:
         id = next(row.id for row in repository.designs(session, 9, None) if row.name == "empty")
-    written = Written(
+    written = StoredRevision(
         document("full", ("flywheel", 1)),
         None,
         [ModelState("m", "crankshaft", 1, {}, {}, (), None)],
@@ -86,7 +86,7 @@ def test_the_newest_revision_counts(shelf):
     assert selected(shelf, template="flywheel") == ["full", "100 % Größe"]
     shelf.write(
         lambda session: repository.append(
-            session, id, 2, Written(document("bare"), None, [], "current", None)
+            session, id, 2, StoredRevision(document("bare"), None, [], "current", None)
         )
     )
     assert selected(shelf, template="crankshaft") == selected(shelf, name="full") == []
@@ -96,7 +96,7 @@ def test_a_template_is_not_a_word_that_a_user_typed(database):
     """Neither a name nor a value that looks like a step is taken for one."""
     typed = {**document('"template":"oil_film"'), "parameters": {"template": "oil_film"}}
     typed["steps"] = {"s": {"template": "flywheel", "version": 1, "inputs": {"template": "oil_film"}}}
-    written = Written(typed, None, [], "current", None)
+    written = StoredRevision(typed, None, [], "current", None)
     database.write(lambda session: repository.create(session, typed["name"], written))
     assert selected(database, template="oil_film") == []
     assert len(selected(database, template="flywheel")) == 1

@@ -3,7 +3,7 @@
 import pytest
 
 from app.designs import repository
-from app.designs.repository import Written
+from app.designs.repository import StoredRevision
 from app.designs.results import ModelState
 from app.designs.views import good_model
 from app.storage.errors import NotFound
@@ -15,7 +15,7 @@ def block(name, build):
 
 
 def written(*models):
-    return Written({"name": "pair"}, None, models, "current", None)
+    return StoredRevision({"name": "pair"}, None, models, "current", None)
 
 
 @pytest.fixture

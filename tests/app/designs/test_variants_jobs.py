@@ -12,7 +12,7 @@ from serving import API, ServerProcess, created, folder_of_models, moody, patche
 from sleeping import folder_of_sleeper
 
 from app.designs import repository
-from app.designs.repository import Written
+from app.designs.repository import StoredRevision
 from app.designs.results import ModelState
 from app.retention import rows
 from app.settings import Settings
@@ -156,7 +156,7 @@ def test_solids_of_variants_are_kept(database):
             solids.add_build(session, key, "moody", 1, {}, {}, "recipe 3")
         model = ModelState("a.model", "moody", 1, {}, {}, (), "used")
         document = {"name": "x", "models": {"model": {}}}
-        repository.create(session, "x", Written(document, None, [model], "current", None))
+        repository.create(session, "x", StoredRevision(document, None, [model], "current", None))
 
     database.write(unit)
     with database.read() as session:

@@ -46,9 +46,9 @@ def test_no_stated_error_answers_at_the_default_level(http):
 
 def test_one_level_serves_all_points_unless_each_is_to_have_its_own(http):
     inputs = {**OilFilm.example, "radial_load": {"value": [0.1, 5, 25], "unit": "kN"}}
-    assert evaluated(http, STATIC, inputs, tolerance=0.05)["level"] == "fit"
+    assert evaluated(http, STATIC, inputs, tolerance=0.05)["level"] == "map"
     separate = evaluated(http, STATIC, inputs, tolerance=0.05, per_point=True)
-    assert separate["level"] == ["short_bearing", "fit", "fit"]
+    assert separate["level"] == ["short_bearing", "map", "map"]
     assert max(separate["error"][FILM]) <= 0.05
     wrong = http.post(f"{STATIC}/evaluate", json={"inputs": inputs, "per_point": "yes"})
     assert wrong.status_code == 422

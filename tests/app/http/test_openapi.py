@@ -139,7 +139,7 @@ def test_every_get_with_examples_answers(http, operations, example):
     for name, operation in operations.items():
         method, path = name.split(" ")
         if path.endswith(("/origin", "/original")):
-            continue  # of brought models alone: tests/app/imported_models/test_fixed_parts.py
+            continue  # of imported models alone: tests/app/imported_models/test_fixed_parts.py
         if method == "GET" and path.startswith((f"{API}/templates", f"{API}/models")):
             inputs = OIL_FILM if path.endswith("/evaluate.csv") else {}
             answer = http.get(filled(path, operation, example), params=inputs, headers={"Prefer": "wait=60"})

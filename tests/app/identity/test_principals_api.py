@@ -5,7 +5,7 @@ from bare_shells import BUSH
 
 from app.client import Client, Problem
 from app.identity.limits import LimitReached, Limits
-from app.identity.usage import Used, check, note, used
+from app.identity.usage import PrincipalUsage, check, note, used
 
 
 def test_everybody_learns_who_they_are(team):
@@ -116,19 +116,19 @@ def test_usage_adds_up(database):
 
     database.write(unit)
     with database.read() as session:
-        assert used(session, "someone") == Used(0, 1, 2.5, 7)
-        assert used(session, "local") == Used(0, 0, 0.0, 0)
+        assert used(session, "someone") == PrincipalUsage(0, 1, 2.5, 7)
+        assert used(session, "local") == PrincipalUsage(0, 0, 0.0, 0)
 
 
 def test_the_limit_of_calculation_ends_at_midnight():
     with pytest.raises(LimitReached, match="11 s of 10 s") as caught:
-        check(Limits(60, 2, 10, 5), Used(0, 0, 11.0, 0), "Ada")
+        check(Limits(60, 2, 10, 5), PrincipalUsage(0, 0, 11.0, 0), "Ada")
     assert int(caught.value.headers["Retry-After"]) > 0
 
 
 def test_storage_does_not_come_back_so_no_time_is_named():
     with pytest.raises(LimitReached, match="2 MiB of 2 MiB of storage, which neither") as caught:
-        check(Limits(60, 2, 10, 5), Used(0, 0, 0, 2**21), "Ada")
+        check(Limits(60, 2, 10, 5), PrincipalUsage(0, 0, 0, 2**21), "Ada")
     assert caught.value.headers == {}
 
 

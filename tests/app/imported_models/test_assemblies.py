@@ -212,7 +212,7 @@ def test_fixed_parts_alone_are_an_assembly(http, bolt):
 @pytest.mark.parametrize(
     ("component", "said"),
     [
-        ({"model": "no_such"}, "there is no model no_such that was brought as a file"),
+        ({"model": "no_such"}, "there is no model no_such that was imported as a file"),
         ({"model": "m8_bolt", "may_overlap": ["cap\x1b"]}, "may_overlap.0: String should match pattern"),
         ({"model": "m8_bolt", "version": 99}, "it has versions 1"),
         ({"design": "nobodys"}, "there is no design 'nobodys'"),
@@ -284,7 +284,7 @@ def test_its_package_is_kept_and_a_lost_one_is_named(http, served, assembly):
     cls = services.catalogues.models.get("bolted_bearing", 1)
     with services.database.read() as session:
         assert cls.imported.file in referenced_files(session)
-    assert any(table == "brought_model" for table, _, _ in SENT)
+    assert any(table == "imported_model" for table, _, _ in SENT)
 
     class Lost:
         def read(self, sha):

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from app.imported_models.descriptions import described_freecad
-from app.imported_models.freecad_process import Answered
+from app.imported_models.freecad_process import FreeCadAnswer
 from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded
 from cad.imported_models import Drawn
@@ -29,7 +29,7 @@ class SlowWarm:
         time.sleep(min(self.takes, seconds))
         if self.takes > seconds:
             raise DeadlineExceeded(seconds)
-        return Answered({"parameters": LENGTHS, "program": "FreeCAD 1"}, Drawn())
+        return FreeCadAnswer({"parameters": LENGTHS, "program": "FreeCAD 1"}, Drawn())
 
 
 class Context:

@@ -5,7 +5,7 @@ import sqlite3
 
 import pytest
 
-from app.maintenance.rows import Named, named_files
+from app.maintenance.rows import NamedFile, named_files
 
 
 @pytest.fixture
@@ -21,7 +21,10 @@ def rows():
 def test_a_job_names_its_question_and_its_answer(rows, kind):
     job = ("7", kind, json.dumps({"body": "aa"}), "/api/v1/evaluations/7?sha256=bb")
     rows.execute("INSERT INTO job VALUES (?, ?, ?, ?)", job)
-    assert list(named_files(rows)) == [Named("aa", None, "7", "body"), Named("bb", None, "7", "answer")]
+    assert list(named_files(rows)) == [
+        NamedFile("aa", None, "7", "body"),
+        NamedFile("bb", None, "7", "answer"),
+    ]
 
 
 def test_a_job_without_a_question_names_none(rows):

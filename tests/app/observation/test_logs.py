@@ -15,7 +15,7 @@ from prometheus_client.parser import text_string_to_metric_families
 from serving import API, PATIENCE, ServerProcess, created, moody, until
 
 from app.cli.main import main
-from app.http.request_log import Observed
+from app.http.request_log import RequestLog
 from app.observation import logs, metrics
 from app.observation.metrics import REGISTRY
 
@@ -221,7 +221,7 @@ def test_who_left_is_counted_apart(caplog):
     scope = {"type": "http", "method": "POST", "path": "/left", "headers": [], "client": ("127.0.0.1", 1)}
     before = REGISTRY.get_sample_value("crankwright_requests_total", LEFT) or 0
     with caplog.at_level("INFO", "app.http.request_log"):
-        asyncio.run(Observed(app)(scope, receive, send))
+        asyncio.run(RequestLog(app)(scope, receive, send))
     assert sent[0]["status"] == 409
     assert caplog.records[-1].status == 499
     assert REGISTRY.get_sample_value("crankwright_requests_total", LEFT) == before + 1

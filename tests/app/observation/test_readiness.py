@@ -12,7 +12,7 @@ from patience import patient, until
 from serving import problem, serving
 from sqlalchemy import event
 
-from app.observation.readiness import Processes, Readiness, Space, Writing
+from app.observation.readiness import Processes, Readiness, Space, WriterProbe
 from app.settings import Settings
 from app.workers.inline import Inline
 from app.workers.local import LocalProcesses
@@ -22,13 +22,13 @@ class TestWriting:
     def test_a_write_that_works(self, database):
         commits = []
         event.listen(database._writer.engine, "commit", commits.append)
-        assert asyncio.run(Writing(database)()) is None
+        assert asyncio.run(WriterProbe(database)()) is None
         assert len(commits) == 1
 
     def test_a_writer_that_hangs(self, database):
         gate = threading.Event()
         hanging = database.submit(lambda session: gate.wait(30))
-        writing = Writing(database, patience=0.05)
+        writing = WriterProbe(database, patience=0.05)
 
         async def twice():
             return [await writing(), await writing()]
@@ -46,7 +46,7 @@ class TestWriting:
         def full(connection):
             raise OSError("disk is full")
 
-        assert "could not be committed" in asyncio.run(Writing(database)())
+        assert "could not be committed" in asyncio.run(WriterProbe(database)())
 
 
 class TestSpace:

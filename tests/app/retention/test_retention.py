@@ -7,7 +7,7 @@ from serving import API, created, moody, revision, settled
 from sqlalchemy import delete, func, select, update
 
 from app.designs import repository as designs
-from app.designs.repository import Written
+from app.designs.repository import StoredRevision
 from app.designs.results import ModelState
 from app.jobs import repository as jobs
 from app.jobs.events import events_above, note_event
@@ -77,7 +77,7 @@ def build(database, key, bytes_, store):
 def use(database, key):
     """A design that uses a build."""
     model = ModelState("model", "moody", 1, {}, {}, (), key)
-    written = Written({"name": "design"}, None, [model], "current", None)
+    written = StoredRevision({"name": "design"}, None, [model], "current", None)
     database.write(lambda session: designs.create(session, "design", written))
 
 

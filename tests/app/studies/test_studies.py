@@ -156,7 +156,7 @@ def test_the_best_row_is_confirmed_and_meets_what_is_held(http, film):
 def test_a_front_among_rows_has_its_promise_and_what_is_true_of_it(http, film):
     study = done(
         http, film, method="sample", points=64, vary=CLEARANCE, minimise=[LOSS], maximise=[THICKNESS],
-        hold=["thick_enough"], explore={"tolerance": 0.2}, confirm={"tolerance": 0.001},
+        hold=["thick_enough"], explore={"tolerance": 0.2}, confirm={"tolerance": 1e-6},
     )  # fmt: skip
     front, (trade,) = study["result"]["front"], study["result"]["trade"]
     assert trade["level"] == study["levels"]

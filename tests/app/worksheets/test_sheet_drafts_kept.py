@@ -14,6 +14,6 @@ def test_drafts_do_not_stay_among_the_loaded_templates(monkeypatch):
     monkeypatch.setattr(publication.repository, "version", lambda session, id, number: next(rows))
     server = SimpleNamespace(database=SimpleNamespace(read=nullcontext))
     before = loaded.cache_info().currsize
-    drafts = {publication.Published.draft(server, "duty", 1) for _ in range(3)}
+    drafts = {publication.WorksheetPublication.draft(server, "duty", 1) for _ in range(3)}
     assert len(drafts) == 3
     assert loaded.cache_info().currsize == before

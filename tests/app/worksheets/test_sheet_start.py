@@ -16,7 +16,7 @@ from app.cli.main import main
 from app.settings import Settings
 from app.storage.database import Database
 from app.storage.folder import DataFolder
-from app.worksheets.publication import Published
+from app.worksheets.publication import WorksheetPublication
 from cad.catalogue import models as find_models
 from templates.core.errors import QuarantinedTemplate
 
@@ -180,7 +180,7 @@ def test_releases_that_wait_to_be_read_calculate_nothing_until_then(tmp_path):
             released(http, id=id)
     database = Database(DataFolder(data).database_url)
     catalogues = Catalogues(find_templates(()), find_models())
-    published = Published(database, catalogues, is_shared=False, at_once=0)
+    published = WorksheetPublication(database, catalogues, is_shared=False, at_once=0)
     assert catalogues.templates.get("first", 1).sheet is not None
     with pytest.raises(QuarantinedTemplate, match="is being read again"):
         catalogues.templates.get("second", 1)

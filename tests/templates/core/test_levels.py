@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from templates import get
 from templates.core.catalogue.golden import record
 from templates.core.errors import InvalidInputs
 from templates.core.language import levels
@@ -256,3 +257,63 @@ class TestOptional:
     def test_property_golden_record_is_json(self):
         cases = json.loads(json.dumps(record(Ladder), allow_nan=False))["cases"]
         assert cases[0]["outputs"]["side"] is None
+
+
+class Frugal(Ladder):
+    """It starts at its rough level."""
+
+    default_level = "rough"
+    most_points = {}
+
+
+class TestBudget:
+    """Where no level is known to meet the tolerance, the finest within the budget answers."""
+
+    @staticmethod
+    def state(monkeypatch, cost, fine=np.nan):
+        """State errors of level rough, and of level fine a cost and perhaps an error."""
+        errors = {"rough": {"size": np.full((2, 2), 0.1)}, "fine": {"size": np.full((2, 2), fine)}}
+        content = {"levels": {"rough": {"cost": {"single": 1e-3}}, "fine": {"cost": cost}}}
+        grid = np.array([0.0, 10.0, 100.0])
+        monkeypatch.setitem(levels._cache, Frugal, Accuracy(("x", "b"), (grid, 2 * grid), errors, content))
+
+    @staticmethod
+    def answer(tolerance=0.01, per_point=False, **raw):
+        raw = {**Frugal.example, **raw}
+        return evaluate(Frugal, raw, outputs=["size"], tolerance=tolerance, per_point=per_point)
+
+    @pytest.mark.parametrize("per_point", [False, True])
+    def test_a_finer_level_of_unknown_error_answers_within_the_budget(self, monkeypatch, per_point):
+        self.state(monkeypatch, {"single": 9.0})
+        answer = self.answer(per_point=per_point)
+        assert set(np.atleast_1d(answer.level)) == {"fine"}
+        assert [notice.code for notice in answer.warnings] == ["tolerance_unmet"]
+
+    @pytest.mark.parametrize("per_point", [False, True])
+    def test_beyond_the_budget_the_starting_level_answers(self, monkeypatch, per_point):
+        self.state(monkeypatch, {"single": 11.0})
+        assert set(np.atleast_1d(self.answer(per_point=per_point).level)) == {"rough"}
+
+    def test_many_points_may_be_beyond_the_budget(self, monkeypatch):
+        self.state(monkeypatch, {"single": 4.0, "vectorised": 4.0})
+        assert self.answer(length=metres(1, 2)).level == "fine"
+        assert self.answer(length=metres(1, 2, 3)).level == "rough"
+
+    def test_the_cheapest_that_is_known_to_do_still_answers(self, monkeypatch):
+        self.state(monkeypatch, {"single": 0.1}, fine=0.001)
+        assert self.answer(tolerance=0.2).level == "rough"
+        assert self.answer(tolerance=0.01).level == "fine"
+
+
+def test_the_fit_of_the_standard_is_never_chosen_by_a_tolerance():
+    """At tolerances between the error of fit and that of map, and above both, over loads of six decades."""
+    film = get("oil_film", 2).template
+    loads = {"value": (10.0 ** np.arange(0, 6, 0.25)).tolist(), "unit": "N"}
+    for tolerance in (1.0, 0.1, 0.03, 0.01, 1e-3):
+        answer = evaluate(
+            film, {**film.example, "radial_load": loads}, tolerance=tolerance, per_point=True,
+            outputs=["minimum_film_thickness"],
+        )  # fmt: skip
+        assert "fit" not in set(np.atleast_1d(answer.level))
+    named = evaluate(film, film.example, level="fit", outputs=["minimum_film_thickness"])
+    assert named.level == "fit"

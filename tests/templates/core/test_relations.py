@@ -10,13 +10,14 @@ from hypothesis import strategies as st
 from seeds import examples
 
 from templates.core.errors import FaultyText
+from templates.core.units.nodes import kind_of
 from templates.core.units.quantity import registry
 from templates.core.units.relation import Kind, is_relation, parse
 from templates.core.units.units import unit
 
 LENGTH = Kind(registry.Unit("m"))
 PURE = Kind()
-TEMPERATURE = Kind(registry.kelvin, absolute=True)
+TEMPERATURE, RISE, KELVIN = kind_of("degC"), kind_of("delta_degC"), kind_of("K")
 
 
 def value(text, **names):
@@ -135,10 +136,14 @@ class TestUnits:
             ("= sin(d)", "sin takes an angle or a pure number"),
             ("= log(3 mm)", "log takes"),
             ("= 20 degC + 5 degC", "degC"),
-            ("= 20 degC + 5 K", "write it in K"),
-            ("= 2 * 20 degC", "write it in K"),
-            ("= T - 5 K", "write it in K"),
+            ("= 5 delta_degC - 20 degC", "write 20 delta_degC for a difference"),
+            ("= T + 5 degF", "write 5 delta_degF for a difference"),
+            ("= 2 * 20 degC", "write 293.15 K for a temperature, 20 delta_degC for a difference"),
+            ("= scale / -40 degF", "write 233.15 K for a temperature, -40 delta_degF for a difference"),
+            ("= sqrt(20 degC)", "write 293.15 K for a temperature"),
             ("= 3000 rpm + 50 1/s", "equal units"),
+            ("= 3000 rpm + 50 Hz", "equal units"),
+            ("= 3000 rad/s + 50 Hz", "equal units"),
         ],
     )
     def test_analytic_mismatch(self, text, words):
@@ -147,19 +152,31 @@ class TestUnits:
         assert refusal.value.code == "unit_mismatch"
         assert words in str(refusal.value)
 
-    def test_analytic_temperature_stays_absolute(self):
-        assert kind("= T", T=TEMPERATURE).absolute
-        assert kind("= max(T, 20 degC)", T=TEMPERATURE).absolute
-        assert not kind("= 20 K").absolute
+    @pytest.mark.parametrize(
+        ("text", "unit"),
+        [
+            ("= T", "degC"),
+            ("= max(T, 20 degC)", "degC"),
+            ("= 20 degC + 5 K", "degC"),
+            ("= T - 5 delta_degC", "degC"),
+            ("= T - 20 degC", "delta_degC"),
+            ("= T - T", "delta_degC"),
+            ("= max(dT, dT)", "delta_degC"),
+            ("= scale * (T - 300 K) + dT", "delta_degC"),
+            ("= 20 K", "K"),
+            ("= T - 5 K", "K"),  # 5 K is a difference, or a temperature
+            ("= 1 W / (1 W/K)", "K"),
+        ],
+    )
+    def test_analytic_a_temperature_is_known_from_a_difference(self, text, unit):
+        assert kind(text, T=TEMPERATURE, dT=RISE, scale=PURE).unit == unit
 
     @pytest.mark.parametrize("text", ["max(dT, 20 degC)", "max(20 degC, dT)", "min(dT, dT, 20 degC)"])
-    def test_analytic_a_temperature_among_differences_makes_the_whole_absolute(self, text):
-        """Else a difference could be added to it, or it could be doubled, as if it were one itself."""
-        kelvin = Kind(TEMPERATURE.base)
-        assert not kind("= max(dT, dT)", dT=kelvin).absolute
-        assert kind(f"= {text}", dT=kelvin).absolute
-        with pytest.raises(FaultyText, match="write it in K"):
-            kind(f"= 2 * {text}", dT=kelvin)
+    def test_analytic_a_temperature_among_differences_is_refused(self, text):
+        with pytest.raises(FaultyText, match="write 20 delta_degC for a difference"):
+            kind(f"= {text}", dT=RISE)
+        with pytest.raises(FaultyText, match="which may be a temperature or a difference"):
+            kind(f"= 2 * {text}", dT=KELVIN)
 
 
 ATTACKS = [

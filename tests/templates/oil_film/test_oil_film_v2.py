@@ -173,7 +173,7 @@ class TestSolve:
         result = solve(
             OilFilm, raw, "radial_load", ["1 N", "1 MN"], target, tolerance=0.1, outputs=list(target)
         )
-        assert result.evaluation.level == "fit"
+        assert result.evaluation.level == "map"
         assert result.evaluation.outputs["minimum_film_thickness"].value == pytest.approx(10, rel=1e-8)
 
 

@@ -115,7 +115,7 @@ def create_solids() -> None:
     )
     op.create_index("ix_analysis_build_key", "analysis", ["build_key"])
     op.create_table(
-        "brought_model",
+        "imported_model",
         sa.Column("id", sa.Text(), nullable=False),
         sa.Column("number", sa.Integer(), nullable=False),
         sa.Column("program", sa.Text(), nullable=False),
@@ -125,7 +125,7 @@ def create_solids() -> None:
         sa.Column("author", sa.Text()),
         sa.Column("author_principal", sa.Text()),
         sa.Column("created", sa.Text(), nullable=False),
-        sa.PrimaryKeyConstraint("id", "number", name="pk_brought_model"),
+        sa.PrimaryKeyConstraint("id", "number", name="pk_imported_model"),
     )
 
 

@@ -19,7 +19,7 @@ from app.client import Client, Problem
 from app.imported_models.programs import assembled
 from app.jobs import repository
 from app.maintenance.repair import Repair
-from app.maintenance.rows import Named
+from app.maintenance.rows import NamedFile
 from app.settings import Settings
 from app.workers.inline import Inline
 
@@ -205,7 +205,7 @@ class TestLostAnswers:
         job, _ = self.done(http)
         flip(self.file(settings, job))
         database, store = server.app.state.services.database, server.app.state.services.store
-        damaged = Named(self.file(settings, job).name, None, job["id"], "answer")
+        damaged = NamedFile(self.file(settings, job).name, None, job["id"], "answer")
         repair = Repair(database, store, settings, Inline(), assembled(settings, store))
         assert repair.row(damaged) is None
         new = http.get(f"{API}/jobs/{job['id']}").json()
@@ -213,7 +213,7 @@ class TestLostAnswers:
         assert http.get(new["result"]).status_code == 200
         store.delete(self.asked(server, job))
         store.delete(self.file(settings, new).name)
-        why = repair.row(Named(self.file(settings, new).name, None, job["id"], "answer"))
+        why = repair.row(NamedFile(self.file(settings, new).name, None, job["id"], "answer"))
         assert why == f"the request of job {job['id']} was lost. Send it again, or restore a backup"
 
 

@@ -11,22 +11,23 @@ import pytest
 from templates.core.errors import FaultyText
 from templates.core.units.closures import closure
 from templates.core.units.expressions import GRAMMAR, FaultyPlace, Sort, checked
-from templates.core.units.operations import Kind, Name
+from templates.core.units.nodes import kind_of
+from templates.core.units.operations import Name
 from templates.core.units.relation import parse
 from templates.core.units.sorts import MAX_NODES_DEEP
-from templates.core.units.units import unit
 
 PARSER = lark.Lark(GRAMMAR, parser="lalr", propagate_positions=True)
 
 
 def of(text, **more):
-    return Sort(Kind(unit(text).base), **more)
+    return Sort(kind_of(text), **more)
 
 
 SORTS = {
-    "T_1": of("K", weight=1.0),
-    "T_2": of("K", weight=1.0),
-    "dT": of("K"),
+    "T_1": of("degC"),
+    "T_2": of("degF"),
+    "dT": of("delta_degC"),
+    "kelvins": of("K"),
     "x": of("m"),
     "n": of("1"),
     "half": of("1"),
@@ -59,7 +60,16 @@ class Values:
     """What the names are: single values, or one for each of three points."""
 
     def __init__(self, points=None):
-        values = {"T_1": 300.0, "T_2": 310.0, "dT": 5.0, "x": 2e-3, "n": 2.0, "half": 0.5, "beyond": 4.0}
+        values = {
+            "T_1": 300.0,
+            "T_2": 310.0,
+            "dT": 5.0,
+            "kelvins": 5.0,
+            "x": 2e-3,
+            "n": 2.0,
+            "half": 0.5,
+            "beyond": 4.0,
+        }
         lists = {"F": [1.0, 2.0, 5.0], "G": [3.0, 4.0]}
         for name, value in (values | lists).items():
             single = np.array(value) if name in lists else value
@@ -151,37 +161,57 @@ class TestValues:
 
 class TestTemperatures:
     @pytest.mark.parametrize(
-        ("text", "weight"),
+        ("text", "counts"),
         [
-            ("T_1", 1),
-            ("20 degC", 1),
-            ("20 K", 0),
-            ("T_1 - T_2", 0),
-            ("(T_1 + T_2) / 2", 1),
-            ("0.5 * T_1 + T_2 * 0.5", 1),
-            ("T_1 + dT", 1),
-            ("-T_1", -1),
-            ("T_1 + T_2 - 20 degC", 1),
-            ("2/3 * T_1", pytest.approx(2 / 3)),
-            ("max(T_1, 20 degC)", 1),
-            ("max(T_1, dT)", None),
-            ("if n > 1 then T_1 else T_2", 1),
-            ("if n > 1 then T_1 else dT", None),
-            ("mean([T_1, T_2])", 1),
-            ("[T_1, T_2][n]", 1),
-            ("sum([dT, dT])", 0),
+            ("T_1", {1}),
+            ("20 degC", {1}),
+            ("20 K", {0, 1}),
+            ("kelvins", {0, 1}),
+            ("T_1 - T_2", {0}),
+            ("(T_1 + T_2) / 2", {1}),
+            ("0.5 * T_1 + T_2 * 0.5", {1}),
+            ("T_1 + dT", {1}),
+            ("T_1 + kelvins", {1, 2}),
+            ("T_1 - kelvins", {0, 1}),
+            ("-T_1", {-1}),
+            ("T_1 + T_2 - 20 degC", {1}),
+            ("2/3 * T_1", {2 / 3}),
+            ("max(T_1, 20 degC)", {1}),
+            ("max(T_1, kelvins)", {1}),
+            ("if n > 1 then T_1 else T_2", {1}),
+            ("if n > 1 then kelvins else dT", {0}),
+            ("mean([T_1, T_2])", {1}),
+            ("[T_1, T_2][n]", {1}),
+            ("sum([dT, dT])", {0}),
             ("sum([T_1, T_2])", None),
             ("n * T_1", None),
-            ("n * dT", 0),
-            ("20 degC * n", None),
+            ("n * dT", {0}),
+            ("n * kelvins", {0}),
             ("T_1 / n", None),
             ("sqrt(T_1 * T_2)", None),
-            ("T_1 / T_2", 0),
+            ("T_1 / T_2", {0}),
+            ("1 W / (1 W/K)", {0, 1}),
         ],
     )
-    def test_analytic_how_many_are_added_up(self, text, weight):
-        assert sort(text).weight == weight
-        assert not sort(text).kind.absolute
+    def test_analytic_how_many_are_added_up(self, text, counts):
+        assert sort(text).kind.temperatures == counts
+
+    @pytest.mark.parametrize("text", ["max(T_1, dT)", "if n > 1 then T_1 else dT", "T_1 < dT", "[T_1, dT]"])
+    def test_analytic_temperatures_and_differences_do_not_meet(self, text):
+        assert refusal(text).code == "unit_mismatch"
+
+    @pytest.mark.parametrize("text", ["20 degC * n", "n / 20 degC", "sqrt(20 degC)", "sum([20 degC, T_1])"])
+    def test_analytic_a_number_in_degc_is_no_factor(self, text):
+        assert "temperature or a difference" in str(refusal(text))
+
+    @pytest.mark.parametrize(("text", "holds"), [("dT < 6 degC", 1), ("4 degC > dT", 0), ("dT != 9 degF", 0)])
+    def test_analytic_beside_a_difference_a_number_in_degc_is_one(self, text, holds):
+        assert value(f"if {text} then 1 else 0") == holds
+
+    def test_analytic_beside_kelvins_a_number_in_degc_is_refused_with_both_meanings(self):
+        words = str(refusal("kelvins <= 30 degC"))
+        assert "303.15 K for a temperature" in words
+        assert "30 delta_degC for a difference" in words
 
 
 class TestRefusals:

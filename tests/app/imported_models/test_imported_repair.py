@@ -1,4 +1,4 @@
-"""`crankwright check --repair` draws the lost build of a brought model again, from the file that was sent."""
+"""`crankwright check --repair` draws the lost build of an imported model again from its source file."""
 
 import httpx
 import pytest
@@ -52,7 +52,7 @@ def test_without_the_file_that_was_sent_it_is_a_fault_that_says_what_to_do(kept)
         done = repaired(data)
         assert done.exit_code == 1
         assert "not repaired: step of " in done.output
-        assert "not repaired: model of bought_washer: it is the file of a brought model" in done.output
+        assert "not repaired: model of bought_washer: it is the file of an imported model" in done.output
         assert "import it again" in done.output
     finally:
         for path, bytes_ in content.items():

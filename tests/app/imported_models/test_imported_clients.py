@@ -1,4 +1,4 @@
-"""Brought models by the typed clients and on the command line."""
+"""Imported models by the typed clients and on the command line."""
 
 import asyncio
 import inspect

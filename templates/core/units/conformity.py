@@ -1,0 +1,125 @@
+"""Whether a value fits where another unit is declared, and what else it may be meant as.
+
+In a formula every angular speed has its value in rad/s, whatever the unit in which it is typed or shown;
+turns are a spelling. A name that is given in turns may be meant in turns by a textbook's formula: that is
+reported, since the value differs by 2*pi.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+from templates.core.units.nodes import EITHER, Kind
+from templates.core.units.rules import as_difference, in_words, meanings_of
+from templates.core.units.units import Unit, compatible, is_rate, radians, registry
+
+_TYPED = re.compile(r"-?[0-9.eE+-]+ \S+")
+_PER = re.compile(r"1\s*/\s*(.+)", re.DOTALL)
+_OF_TURNS = re.compile(r"(?:(2)\s*\*\s*)?pi\s*\*\s*(.+)", re.DOTALL)
+
+
+def misfit(kind: Kind, want: Unit, text: str) -> tuple[str, str] | None:
+    """Return why a value cannot stand where a unit is declared, and a remedy; None if it can.
+
+    Parameters
+    ----------
+    kind
+        That of the value.
+    want
+        The declared unit.
+    text
+        The expression that gives the value, for the remedy.
+    """
+    if not compatible(kind, want):
+        return f"this gives {in_words(kind)}", _remedy_of_rates(kind, want, text)
+    if is_rate(want.base) and radians(want.base) and not want.plain_angle and not radians(kind.base):
+        return f"this gives {in_words(kind)}, which counts neither turns nor radians", _counted(text)
+    if want.base != registry.kelvin or want.text == "1":
+        return None
+    return _other_kind(kind, want, text)
+
+
+def declared_kind(got: Kind, want: Kind) -> Kind:
+    """Return the kind of a value behind a declaration: as declared, but in K that of the value."""
+    counts = got.temperatures
+    if want.temperatures != EITHER or counts is None:
+        return replace(want, temperatures=want.temperatures if want.temperatures != EITHER else counts)
+    return replace(want, temperatures=counts & EITHER or counts)
+
+
+def _other_kind(kind: Kind, want: Unit, text: str) -> tuple[str, str] | None:
+    counts = kind.temperatures
+    if kind.literal and not want.absolute and _TYPED.fullmatch(text):
+        if want.difference:
+            return "this is a temperature, not a difference", f"write {as_difference(text)}"
+        return f"{text} may be a temperature or a difference", f"write {meanings_of(text)}"
+    if kind.literal and want.text == "K":
+        return "a temperature in degC or degF may be meant as a difference", "write its numbers in K"
+    if want.absolute and (counts is None or 1.0 not in counts):
+        return "this is a difference of temperatures, or no plain one", "declare it in delta_degC, or in K"
+    if want.difference and (counts is None or 0.0 not in counts):
+        return "this is a temperature, not a difference", "declare it in degC, or take a difference"
+    return None
+
+
+def _remedy_of_rates(kind: Kind, want: Unit, text: str) -> str:
+    if not (is_rate(kind.base) and is_rate(want.base)):
+        return ""
+    if kind.cycles and radians(want.base):
+        return f"Hz counts cycles: write 2*pi*{_in_brackets(text)}"
+    if radians(kind.base) and want.cycles:
+        return f"Hz counts cycles: write {_in_brackets(text)}/(2*pi)"
+    return ""
+
+
+def _counted(text: str) -> str:
+    """Return the ways to say what a rate in 1/s counts."""
+    if per := _PER.fullmatch(text.strip()):
+        return f"write 1 turn / {per[1]} or 1 rad / {per[1]}"
+    return f"write {_in_brackets(text)} * 1 turn or {_in_brackets(text)} * 1 rad"
+
+
+def _in_brackets(text: str) -> str:
+    text = text.strip()
+    return text if re.fullmatch(r"[A-Za-z][A-Za-z0-9_.]*", text) else f"({text})"
+
+
+def turns_remark(kind: Kind, want: Unit, text: str) -> str:
+    """Return both readings of a formula that takes a speed given in turns; empty where there is one only.
+
+    Parameters
+    ----------
+    kind
+        That of the formula's value.
+    want
+        The unit in which it is declared.
+    text
+        The formula.
+    """
+    names = sorted(kind.turned)
+    if names and (not radians(want.base) or kind.pi):
+        return _both_readings(names, want, text)
+    if want.turns and is_rate(want.base) and kind.pi < 0:
+        return (
+            f"{want.text} only shows a speed that the formula gives in rad/s: leave out the factor that "
+            "makes turns of radians, such as 30/pi"
+        )
+    return ""
+
+
+def _both_readings(names: list[str], want: Unit, text: str) -> str:
+    which = f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} given in turns"
+    if radians(want.base):
+        return f"{which}, but in a formula the value is in rad/s already: leave out 2*pi or pi/30"
+    in_turns = text
+    for name in names:
+        in_turns = re.sub(rf"(?<![\w.]){re.escape(name)}(?![\w.])", f"({name}/(2*pi))", in_turns)
+    plain = _OF_TURNS.fullmatch(text.strip()) if len(names) == 1 and not re.search(r"[-+,]", text) else None
+    same = f", which is {plain[2]}{'' if plain[1] else '/2'}" if plain else ""
+    turns = f": {in_turns}{same}" if in_turns != text else ""
+    return (
+        f"{which}, but in a formula the value is in rad/s, and {want.text} holds no angle. If the formula "
+        f"takes turns, write {names[0]}/(2*pi) for {names[0]}{turns}. If it takes radians, "
+        f"give {names[0]} in rad/s, or write {names[0]}/(1 rad)"
+    )
