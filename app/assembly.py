@@ -61,7 +61,7 @@ from app.workers.base import Limits, Worker
 from app.workers.choice import started_workers
 from app.workers.light import CHECKS
 from app.workers.local import LocalProcesses
-from app.worksheets.importing.service import IMPORT, Imports
+from app.worksheets.imports.service import IMPORT, Imports
 from app.worksheets.publication import WorksheetPublication
 from app.worksheets.service import Worksheets
 from cad.catalogue import models as find_models
@@ -77,7 +77,7 @@ from app.studies.service import Studies
 from app.studies.variant_design import DesignFactory
 
 NETWORK = (
-    "app.designs.engine.net",
+    "app.designs.engine.design_engine",
     "app.impact.process",
     "app.studies.plan",
     "app.studies.search_slice",

@@ -90,7 +90,7 @@ def fed(duty: RandomDuty) -> FedDuty:
     share = pocket.half_length if duty.fed_by.endswith("groove") else 0.0
     groove = tuple(np.float64(v) for v in (share, start, extent))
     lift = lift_of(groove[0], groove[2], np.float64(duty.supply.pressure))
-    return FedDuty(asked, *groove, duty.supply, lift, near_holes=True)
+    return FedDuty(asked, *groove, duty.supply, lift)
 
 
 def under_load(duty: RandomDuty) -> float:

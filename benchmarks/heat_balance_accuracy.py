@@ -27,7 +27,7 @@ import numpy as np
 from benchmarks.truths import FILM, FRICTION, converged
 from templates.core.arrays import Array
 from templates.core.language.spec import Text
-from templates.core.units.quantity import Typed
+from templates.core.units.quantity import TypedQuantity
 from templates.oil_film.oil_film_v2 import OilFilm
 from templates.physics.journals.heat_balance import HOTTEST, HeatBalance
 from templates.physics.journals.static_journal import JournalFilm
@@ -71,7 +71,10 @@ class Bearings:
 
     def some(self, rows: Array) -> "Bearings":
         """Return some of them."""
-        inputs = {n: replace(v, si=v.si[rows]) if isinstance(v, Typed) else v for n, v in self.inputs.items()}
+        inputs = {
+            n: replace(v, si=v.si[rows]) if isinstance(v, TypedQuantity) else v
+            for n, v in self.inputs.items()
+        }
         film = replace(self.film, **{f.name: getattr(self.film, f.name)[rows] for f in fields(self.film)})
         return Bearings(inputs, self.T[rows], self.T_out[rows], film)
 
@@ -113,7 +116,7 @@ def drawn(
         "speed": (omega, "rad/s"),
     }
     keep = np.isfinite(T) & (T < HOT)
-    inputs = {n: Typed(None, unit, v[keep], {}) for n, (v, unit) in {**load, **size, **cool}.items()}
+    inputs = {n: TypedQuantity(None, unit, v[keep], {}) for n, (v, unit) in {**load, **size, **cool}.items()}
     T_out = 2 * T - cold if supplied else np.full(count, np.nan)
     kept = replace(film, **{f.name: np.asarray(getattr(film, f.name))[keep] for f in fields(film)})
     return Bearings({**inputs, "oil_grade": grade}, T[keep], T_out[keep], kept)

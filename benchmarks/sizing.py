@@ -22,7 +22,7 @@ import numpy as np
 from app.catalogue.catalogues import Catalogues
 from app.catalogue.discovery import find_templates
 from app.designs.document import Document
-from app.designs.engine.net import Net
+from app.designs.engine.design_engine import DesignEngine
 from app.reference import Reference
 from app.studies.methods.answers import Answer, Columns, Held, Objective, Problem
 from app.studies.methods.optimise import Optimum, optimise
@@ -88,7 +88,7 @@ def space(of: Sizing) -> Space:
     return Space(tuple(Interval(name, low * x, high * x) for name, x, (low, high) in each))
 
 
-def net(of: Sizing) -> Net:
+def net(of: Sizing) -> DesignEngine:
     """Return the design of a sizing, of one step."""
     diameter = of.diameter_mm
     width, clearance = diameter * of.width_ratio, diameter * of.clearance_ratio
@@ -105,10 +105,10 @@ def net(of: Sizing) -> Net:
         "parameters": {"diameter": f"{diameter} mm", "width": f"{width} mm", "clearance": f"{clearance} mm"},
         "steps": {"film": {"template": "oil_film", "version": 2, "inputs": inputs}},
     }
-    return Net.of(Document.model_validate(raw), CATALOGUES, [Reference(name) for name in NAMES])
+    return DesignEngine.of(Document.model_validate(raw), CATALOGUES, [Reference(name) for name in NAMES])
 
 
-def level(design: Net, name: str, limit: float) -> Answer:
+def level(design: DesignEngine, name: str, limit: float) -> Answer:
     """Return the answer of a design at a level; the cost is processor time."""
 
     def answer(rows: Array) -> Columns:
@@ -125,7 +125,7 @@ def level(design: Net, name: str, limit: float) -> Answer:
     return answer
 
 
-def thickest(of: Sizing, design: Net, explore: str) -> float:
+def thickest(of: Sizing, design: DesignEngine, explore: str) -> float:
     """Return the thickest film [m] in the box of a sizing, at the exploring level."""
     return float(np.nanmax(level(design, explore, 0.0)(Sobol(space(of), 1024, 0).rows(0, 1024)).values))
 
@@ -135,7 +135,7 @@ def problem(of: Sizing) -> Problem:
     return Problem(space(of), (Objective("loss"),), (Held("film", ">="),))
 
 
-def run(of: Sizing, design: Net, explore: str, seed: int, within: float) -> None:
+def run(of: Sizing, design: DesignEngine, explore: str, seed: int, within: float) -> None:
     """Optimise one sizing, and note what came of it."""
     limit = of.limit_um / 1e6
     answers = level(design, explore, limit), level(design, FINE, limit)
@@ -148,13 +148,13 @@ def run(of: Sizing, design: Net, explore: str, seed: int, within: float) -> None
     of.seconds = optimum.seconds
 
 
-def full_seconds(of: Sizing, design: Net) -> float:
+def full_seconds(of: Sizing, design: DesignEngine) -> float:
     """Time that the scan would take at the confirming level [s]."""
     answer = level(design, FINE, of.limit_um / 1e6)
     return answer(Sobol(space(of), MEASURED, 0).rows(0, MEASURED)).seconds / MEASURED * SCANNED
 
 
-def started(random: np.random.Generator, number: int, explore: str) -> tuple[Sizing, Net]:
+def started(random: np.random.Generator, number: int, explore: str) -> tuple[Sizing, DesignEngine]:
     """Return a sizing with its limit, and its design."""
     one = sizing(random, heat=bool(number % 2))
     design, share = net(one), random.uniform(0.5, 0.9)

@@ -35,7 +35,7 @@ REASONS: dict[str, str] = {
     "app.reports.crank_star": "one picture of the report",
     "app.workers.remote.client": "Dask's client with an end in time, apart from what uses it",
     "app.workers.remote.strays": "the rule by which a task counts as lost, tested by itself",
-    "app.worksheets.importing.job": "all that a process of its own imports to read a file of a user",
+    "app.worksheets.imports.job": "all that a process of its own imports to read a file of a user",
 }
 """Short modules with a single importer, and why each is a file of its own."""
 

@@ -14,8 +14,8 @@ from math import isclose
 from cadquery import Shape, Vector
 
 from cad.errors import GeometryError
-from cad.surfaces import AXES, FaceSeen, faces_of
-from cad.tolerances import REPEATED, Carried
+from cad.surfaces import AXES, FaceReadback, faces_of
+from cad.tolerances import REPEATED, ToleranceFaces
 
 _CLOSE = 1e-6  # [mm]: a face of this size is the parameter's
 ROUND = ("cylinders", "beside", "along", "askew", "spheres")
@@ -35,11 +35,11 @@ class Place:
 
 
 def located(
-    declared: Mapping[str, Carried],
+    declared: Mapping[str, ToleranceFaces],
     solids: Mapping[str, Shape],
     sizes: Mapping[str, float],
     names: Iterable[str],
-) -> dict[str, Carried]:
+) -> dict[str, ToleranceFaces]:
     """Return the declarations, with what only the solids show of the named dimensions.
 
     The planes of lengths that repeat along an axis are counted; two sides are on the part that has them.
@@ -59,10 +59,10 @@ class Carriers:
     """Finds faces of the parts of one model; `sizes` [mm] are those of all declared parameters."""
 
     def __init__(
-        self, solids: Mapping[str, Shape], declared: Mapping[str, Carried], sizes: Mapping[str, float]
+        self, solids: Mapping[str, Shape], declared: Mapping[str, ToleranceFaces], sizes: Mapping[str, float]
     ) -> None:
         self._solids, self._declared, self._sizes = solids, declared, sizes
-        self._seen: dict[str, list[FaceSeen]] = {}
+        self._seen: dict[str, list[FaceReadback]] = {}
 
     def places(self, name: str) -> list[Place]:
         """Return where a dimension stands, once for each pair of levels.
@@ -89,7 +89,7 @@ class Carriers:
                 raise GeometryError("tolerance", detail, (name, other))
         return [Place(faces or self._missing(one, size))]
 
-    def counted(self, name: str) -> Carried:
+    def counted(self, name: str) -> ToleranceFaces:
         """Return a dimension that repeats along an axis, as pairs of planes across that.
 
         Raises
@@ -112,7 +112,7 @@ class Carriers:
                 raise GeometryError("tolerance", detail, (name, other))
         return replace(one, faces="planes", where=of.where, levels=pairs)
 
-    def sided(self, name: str) -> Carried:
+    def sided(self, name: str) -> ToleranceFaces:
         """Return a dimension between two sides of a part, on the first of its parts that has both."""
         one, size = self._declared[name], self._sizes[name]
         standing = (replace(one, part=part) for part in (one.part, *one.others) if part in self._solids)
@@ -132,12 +132,12 @@ class Carriers:
             == (one.faces == "shoulders")
         ]
 
-    def _levels_along(self, one: Carried, axis: Vector) -> list[float]:
+    def _levels_along(self, one: ToleranceFaces, axis: Vector) -> list[float]:
         """Return where planes across an axis lie, from low to high."""
         planes = (f for f in self._faces(one) if f.kind == "plane" and f.surface.along(axis))
         return sorted({round(f.surface.point.dot(axis), 6) for f in planes})
 
-    def _round(self, one: Carried) -> tuple[int, ...]:
+    def _round(self, one: ToleranceFaces) -> tuple[int, ...]:
         """Return the faces of a diameter; without those that belong to the dimension of an end."""
         faces = self._of_size(one)
         if one.end:
@@ -146,11 +146,11 @@ class Carriers:
         taken = {number for end in ends for number in self._round(end)}
         return tuple(face.number for face in faces if face.number not in taken)
 
-    def _of_size(self, one: Carried) -> list[FaceSeen]:
+    def _of_size(self, one: ToleranceFaces) -> list[FaceReadback]:
         size = self._sizes[one.name]
         return [f for f in self._faces(one) if abs(f.surface.diameter - size) < _CLOSE and _is_meant(f, one)]
 
-    def _levels(self, one: Carried, size: float, low: int, high: int) -> Place:
+    def _levels(self, one: ToleranceFaces, size: float, low: int, high: int) -> Place:
         axis = AXES[one.where]
         planes = [f for f in self._faces(one) if f.kind == "plane" and f.surface.along(axis)]
         levels = self._levels_along(one, axis)
@@ -165,7 +165,7 @@ class Carriers:
             self._missing(one, size)
         return Place(first, second)
 
-    def _sides(self, one: Carried, size: float) -> Place | None:
+    def _sides(self, one: ToleranceFaces, size: float) -> Place | None:
         """Return the planes across an axis on both sides of the origin; None if the part lacks one."""
         axis = AXES[one.where]
         planes = [f for f in self._faces(one) if f.kind == "plane" and f.surface.along(axis)]
@@ -175,7 +175,7 @@ class Carriers:
         )
         return Place(low, high) if low and high else None
 
-    def _walls(self, one: Carried, size: float) -> Place:
+    def _walls(self, one: ToleranceFaces, size: float) -> Place:
         inner = self._about(replace(one, part=one.inside[0]) if one.inside else one)
         thinnest = min((f.surface.diameter for f in inner), default=0.0)
         first, second = (
@@ -186,12 +186,12 @@ class Carriers:
             self._missing(one, size)
         return Place(first, second, one.inside[0] if one.inside else "")
 
-    def _about(self, one: Carried) -> list[FaceSeen]:
+    def _about(self, one: ToleranceFaces) -> list[FaceReadback]:
         """Return the cylinders of a part about an axis."""
         axis = AXES[one.where]
         return [f for f in self._faces(one) if f.kind == "cylinder" and f.surface.about(axis)]
 
-    def _between(self, one: Carried, size: float) -> Place:
+    def _between(self, one: ToleranceFaces, size: float) -> Place:
         (first,), (second,) = (self.places(name) for name in one.where)
         by_number = {face.number: face.surface for face in self._faces(one)}
         start = by_number[first.first[0]]
@@ -201,23 +201,23 @@ class Carriers:
                 self._missing(one, size)
         return Place(first.first, second.first)
 
-    def _faces(self, one: Carried) -> list[FaceSeen]:
+    def _faces(self, one: ToleranceFaces) -> list[FaceReadback]:
         if one.part not in self._seen:
             solid = self._solids.get(one.part)
             self._seen[one.part] = [] if solid is None else faces_of(solid)
         return self._seen[one.part]
 
-    def _missing(self, one: Carried, size: float) -> tuple[int, ...]:
+    def _missing(self, one: ToleranceFaces, size: float) -> tuple[int, ...]:
         detail = f"{one.name} has a tolerance, but no face of {one.part} shows its {size:g} mm"
         raise GeometryError("tolerance", f"{detail}; leave the tolerance out, or give it a size", (one.name,))
 
 
-def _is_beside(other: Carried, one: Carried) -> bool:
+def _is_beside(other: ToleranceFaces, one: ToleranceFaces) -> bool:
     """Return whether another dimension might claim the same faces."""
     return other.faces in ROUND and other.part == one.part
 
 
-def _is_meant(face: FaceSeen, one: Carried) -> bool:
+def _is_meant(face: FaceReadback, one: ToleranceFaces) -> bool:
     """Return whether a face is of the sort, and lies as the declaration says."""
     if one.faces == "spheres":
         return face.kind == "sphere"
@@ -231,7 +231,7 @@ def _is_meant(face: FaceSeen, one: Carried) -> bool:
     return face.surface.along(axis)
 
 
-def _at_end(faces: list[FaceSeen], one: Carried) -> Iterator[FaceSeen]:
+def _at_end(faces: list[FaceReadback], one: ToleranceFaces) -> Iterator[FaceReadback]:
     """Of cylinders about an axis those that begin first, or end last, along it."""
     axis: Vector = AXES[one.where]
     reaches = {face.number: face.surface.turned(axis).reach for face in faces}

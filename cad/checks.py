@@ -9,11 +9,11 @@ from math import inf, isclose, isfinite
 import numpy as np
 
 from cad.errors import GeometryError
-from cad.inspect import Measured
+from cad.inspect import BodyMeasures
 from cad.model import Box, CadModel, Dimension, Part
 from cad.overlaps import Clearance, Report, clearances, overlaps
 from cad.step import Body, is_single, rigid
-from cad.surfaces import Seen
+from cad.surfaces import PartSurfaces
 
 MOST_NAMED = 20
 """Of interferences in a refusal."""
@@ -23,7 +23,7 @@ _is_close: Callable[..., bool] = partial(isclose, rel_tol=1e-12, abs_tol=_DIMENS
 
 
 def check_bodies(
-    model: CadModel, parts: Sequence[Part], bodies: Sequence[Body], measured: Sequence[Measured]
+    model: CadModel, parts: Sequence[Part], bodies: Sequence[Body], measured: Sequence[BodyMeasures]
 ) -> None:
     """Every part is there as often as drawn, and is one valid solid of the volume of its closed form.
 
@@ -145,7 +145,7 @@ def check_places(model: CadModel, parts: Sequence[Part], bodies: Sequence[Body])
                 )
 
 
-def check_dimensions(model: CadModel, seen: Mapping[str, Seen]) -> dict[str, Dimension]:
+def check_dimensions(model: CadModel, seen: Mapping[str, PartSurfaces]) -> dict[str, Dimension]:
     """Compare every parameter that the solid shows with the one requested; return them by API name.
 
     Of a list each item is; where one number stands for all items, each of them is that number.
@@ -182,7 +182,7 @@ def check_dimensions(model: CadModel, seen: Mapping[str, Seen]) -> dict[str, Dim
     return measured
 
 
-def _check_body(model: CadModel, part: Part, one: Measured) -> None:
+def _check_body(model: CadModel, part: Part, one: BodyMeasures) -> None:
     def refuse(code: str, detail: str) -> GeometryError:
         return GeometryError(code, f"{part.name} of {model.id} {detail}", part.shaped_by or model.inputs)
 

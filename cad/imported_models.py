@@ -118,7 +118,7 @@ class DrawnPart:
 
 
 @dataclass(frozen=True)
-class Drawn:
+class ProgramResult:
     """The answer of a program: its solids, or a STEP file."""
 
     parts: tuple[DrawnPart, ...] = ()
@@ -132,14 +132,14 @@ class ImportedModel(CadModel):
 
     imported: ClassVar[Description]
 
-    def take(self, drawn: Drawn) -> None:
+    def take(self, drawn: ProgramResult) -> None:
         """Be what a program drew for these parameters."""
         vars(self)[_DRAWN] = drawn
 
     def build(self) -> tuple[Part, ...]:
         """Return the solids that the program drew."""
         if _PARTS not in vars(self):
-            drawn: Drawn | None = vars(self).get(_DRAWN)
+            drawn: ProgramResult | None = vars(self).get(_DRAWN)
             if drawn is None:
                 raise GeometryError("kernel", f"{self.id} has not been drawn by its program", self.inputs)
             parts = tuple(parts_of(drawn))
@@ -232,14 +232,14 @@ def _has(sizes: Iterable[float], wanted: float) -> bool:
     return any(isclose(size, wanted, rel_tol=1e-12, abs_tol=1e-6) for size in sizes)
 
 
-def trial_sizes(drawn: Drawn) -> dict[str, list[float]]:
+def trial_sizes(drawn: ProgramResult) -> dict[str, list[float]]:
     """Return the sizes of what a program drew; runs in a process with the kernel."""
     from cad.surfaces import look
 
     return sizes_of(look(part.solid) for part in parts_of(drawn))
 
 
-def parts_of(drawn: Drawn) -> Iterator[Part]:
+def parts_of(drawn: ProgramResult) -> Iterator[Part]:
     """Yield what a program drew, as parts with names of their own; raises as `parts_of_step` does."""
     if drawn.step:
         yield from parts_of_step(drawn.step)

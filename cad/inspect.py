@@ -18,7 +18,7 @@ from OCP.GProp import GProp_GProps
 
 from cad.model import Box
 from cad.step import Body, rigid
-from cad.surfaces import Seen, look
+from cad.surfaces import PartSurfaces, look
 from templates.core.arrays import Array
 
 MEASURES = {
@@ -40,7 +40,7 @@ _PRECISION = 1e-6  # [mm]
 
 
 @dataclass(frozen=True)
-class Measured:
+class BodyMeasures:
     """One body: mass properties at density 1."""
 
     solids: int
@@ -50,7 +50,7 @@ class Measured:
     inertia: Array  # [mm⁵], about the centre
 
 
-def measure(body: Body) -> Measured:
+def measure(body: Body) -> BodyMeasures:
     """Measure one body in its own coordinates."""
     shape = body.shape.wrapped
     properties = GProp_GProps()
@@ -58,7 +58,7 @@ def measure(body: Body) -> Measured:
     # that of the volume: at 1e-6 the inertia of a ring was still off by 9e-6, at 1e-11 it is within 1e-8.
     BRepGProp.VolumeProperties_s(shape, properties, 1e-11, False)
     centre, inertia = properties.CentreOfMass(), properties.MatrixOfInertia()
-    return Measured(
+    return BodyMeasures(
         solids=len(body.shape.Solids()),
         valid=BRepCheck_Analyzer(shape).IsValid(),
         volume=properties.Mass(),
@@ -67,13 +67,13 @@ def measure(body: Body) -> Measured:
     )
 
 
-def look_at(bodies: Iterable[Body]) -> dict[str, Seen]:
+def look_at(bodies: Iterable[Body]) -> dict[str, PartSurfaces]:
     """Return the surfaces of every body, by its name."""
     return {body.name: look(body.shape, len(body.places)) for body in bodies}
 
 
 def summarise(
-    bodies: Sequence[Body], measured: Sequence[Measured], densities: Mapping[str, float], box: Box
+    bodies: Sequence[Body], measured: Sequence[BodyMeasures], densities: Mapping[str, float], box: Box
 ) -> dict[str, float]:
     """Return measures of the whole, in the units of `MEASURES`; densities [kg/m³] by the name of the body."""
     standing = [
@@ -124,7 +124,7 @@ def _rounded(corner: tuple[float, float, float]) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _stand(one: Measured, place: Location, density: float) -> tuple[float, Array, Array]:
+def _stand(one: BodyMeasures, place: Location, density: float) -> tuple[float, Array, Array]:
     """Return mass [kg], centre [mm] and inertia about it [kg·mm²] of a body at a place; density in kg/mm³."""
     turn, shift = rigid(place)
     return density * one.volume, turn @ one.centre + shift, density * turn @ one.inertia @ turn.T

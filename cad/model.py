@@ -36,12 +36,12 @@ from cad.tolerances import TolerancedTemplate
 from templates.core.errors import Fault, InvalidInputs, excerpt
 from templates.core.language.spec import Curve
 from templates.core.language.template import Array
-from templates.core.units.quantity import Typed
+from templates.core.units.quantity import TypedQuantity
 
 if TYPE_CHECKING:
     from cadquery import Location, Shape
 
-    from cad.surfaces import Seen
+    from cad.surfaces import PartSurfaces
 
 Colour = tuple[float, float, float]
 Dimension = float | list[float]
@@ -178,7 +178,7 @@ class CadModel(TolerancedTemplate):
         """Return where pin and fillets of a throw are; None if it is not one throw."""
         return None
 
-    def dimensions(self, seen: Mapping[str, Seen]) -> Mapping[str, Dimension]:
+    def dimensions(self, seen: Mapping[str, PartSurfaces]) -> Mapping[str, Dimension]:
         """Parameters by API name [mm, a count as 1], as far as the parts seen in the file show them."""
         raise NotImplementedError
 
@@ -197,7 +197,7 @@ class CadModel(TolerancedTemplate):
                 read[name] = value = listed(value)
                 if isinstance(value, str) and value.lstrip()[:1] == "[":
                     wrong.append(_no_list(name, value, declared.meaning.unit))
-            if isinstance(value, Typed) and np.size(value.si) == 0:
+            if isinstance(value, TypedQuantity) and np.size(value.si) == 0:
                 wrong.append(Fault(name, "empty", "an array needs at least one value"))
         if wrong:
             raise InvalidInputs(wrong)

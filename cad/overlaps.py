@@ -126,7 +126,7 @@ def require_few_meeting(bodies: Sequence[Body], group: Group) -> None:
 
 
 @dataclass(frozen=True)
-class _Standing:
+class _PlacedSolid:
     """A solid where it stands, and the fixed part to which it belongs."""
 
     name: str
@@ -143,15 +143,15 @@ class _Pair:
     j: int
 
 
-def _standing(bodies: Sequence[Body], group: Group) -> list[_Standing]:
+def _standing(bodies: Sequence[Body], group: Group) -> list[_PlacedSolid]:
     return [
-        _Standing(name, group(body.name), body.shape.moved(place))
+        _PlacedSolid(name, group(body.name), body.shape.moved(place))
         for body in bodies
         for name, place in zip(names_at(body.name, len(body.places)), body.places, strict=True)
     ]
 
 
-def _pairs(standing: Sequence[_Standing]) -> list[_Pair]:
+def _pairs(standing: Sequence[_PlacedSolid]) -> list[_Pair]:
     """Return all pairs that are to be compared, those with the closest boxes first."""
     boxes = [_box(one.shape) for one in standing]
     return sorted(
@@ -161,7 +161,7 @@ def _pairs(standing: Sequence[_Standing]) -> list[_Pair]:
     )
 
 
-def _require_few(standing: Sequence[_Standing], pairs: Sequence[_Pair]) -> None:
+def _require_few(standing: Sequence[_PlacedSolid], pairs: Sequence[_Pair]) -> None:
     """Raise if more boxes meet than are compared; see `clearances`."""
     meeting = [pair for pair in pairs if pair.between <= _TOUCHING]
     if len(meeting) <= MOST_MEETING:

@@ -24,7 +24,7 @@ from OCP.XCAFDimTolObjects import XCAFDimTolObjects_GeomToleranceType as Toleran
 from OCP.XCAFDoc import XCAFDoc_Datum, XCAFDoc_Dimension, XCAFDoc_DocumentTool, XCAFDoc_GeomTolerance
 
 from cad.carriers import Carriers, Place
-from cad.tolerances import Carried, Faces, Form, Limits
+from cad.tolerances import Faces, Form, Limits, ToleranceFaces
 
 _DIAMETER = "XCAFDimTolObjects_DimensionType_Size_Diameter"
 _DISTANCE = "XCAFDimTolObjects_DimensionType_Location_LinearDistance"
@@ -64,7 +64,7 @@ class Annotations:
     `sizes` [mm] are those of all declared parameters, toleranced or not.
     """
 
-    declared: Mapping[str, Carried] = field(default_factory=dict)
+    declared: Mapping[str, ToleranceFaces] = field(default_factory=dict)
     limits: Mapping[str, Limits] = field(default_factory=dict)
     sizes: Mapping[str, float] = field(default_factory=dict)
 
@@ -109,7 +109,7 @@ class _Writer:
         document: TDocStd_Document,
         products: Mapping[str, Product],
         carriers: Carriers,
-        declared: Mapping[str, Carried],
+        declared: Mapping[str, ToleranceFaces],
     ) -> None:
         self._shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
         self._tool = XCAFDoc_DocumentTool.DimTolTool_s(document.Main())
@@ -130,7 +130,7 @@ class _Writer:
                 faces = self._labels(one.part, dict.fromkeys(numbers))
                 self._form(form, within.share(share), faces, one.to)
 
-    def _dimension(self, one: Carried, place: Place, within: Limits) -> None:
+    def _dimension(self, one: ToleranceFaces, place: Place, within: Limits) -> None:
         size = DimensionObject()
         size.SetType(getattr(DimensionType, _TYPES[one.faces]))
         size.SetValue(within.nominal)

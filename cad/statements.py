@@ -72,7 +72,7 @@ class Statement:
 
 
 @dataclass(frozen=True)
-class Compared:
+class StatementDifference:
     """A statement that a file should make beside the one that it makes; None where it makes none."""
 
     kind: str
@@ -106,7 +106,7 @@ def read_statements(step: bytes) -> list[Statement]:
     return list(_Reader(_entities(step)).statements())
 
 
-def compared(expected: Sequence[Statement], stated: Sequence[Statement]) -> list[Compared]:
+def compared(expected: Sequence[Statement], stated: Sequence[Statement]) -> list[StatementDifference]:
     """Statement by statement, each kind in its order; parts may have other names: a download renames them."""
     one, other = _by_kind(expected), _by_kind(stated)
     return [
@@ -116,14 +116,14 @@ def compared(expected: Sequence[Statement], stated: Sequence[Statement]) -> list
     ]
 
 
-def _pair(kind: str, expected: Statement | None, stated: Statement | None) -> Compared:
+def _pair(kind: str, expected: Statement | None, stated: Statement | None) -> StatementDifference:
     named = expected or stated
     assert named is not None, "one of both is there"
     is_of_part = kind in ("volume", "surface area", "centroid", "density", "material")
     if expected and stated and expected.name != stated.name and not is_of_part:
-        return Compared(kind, expected.name, expected.values, None)
+        return StatementDifference(kind, expected.name, expected.values, None)
     values = (one.values if one is not None else None for one in (expected, stated))
-    return Compared(kind, named.name, *values)
+    return StatementDifference(kind, named.name, *values)
 
 
 def _by_kind(statements: Sequence[Statement]) -> defaultdict[str, list[Statement]]:

@@ -55,7 +55,7 @@ class Surface:
 
 
 @dataclass(frozen=True)
-class Seen:
+class PartSurfaces:
     """The surfaces of one part, in its own coordinates, and how many of it there are."""
 
     count: int
@@ -83,7 +83,7 @@ class Seen:
 
 
 @dataclass(frozen=True)
-class FaceSeen:
+class FaceReadback:
     """A face of a solid by its number, of which sort it is, and its plane or cylinder.
 
     Of a sphere the surface is its centre and diameter; other sorts, with the kind "", have none to speak of.
@@ -94,30 +94,30 @@ class FaceSeen:
     surface: Surface
 
 
-def faces_of(solid: Shape) -> list[FaceSeen]:
+def faces_of(solid: Shape) -> list[FaceReadback]:
     """Return every face of a solid, in the order of the solid."""
     return [_face(n, BRepAdaptor_Surface(face.wrapped)) for n, face in enumerate(solid.Faces())]
 
 
-def _face(number: int, adaptor: BRepAdaptor_Surface) -> FaceSeen:
+def _face(number: int, adaptor: BRepAdaptor_Surface) -> FaceReadback:
     match adaptor.GetType():
         case Kind.GeomAbs_Plane:
-            return FaceSeen(number, "plane", _surface(adaptor.Plane().Axis()))
+            return FaceReadback(number, "plane", _surface(adaptor.Plane().Axis()))
         case Kind.GeomAbs_Cylinder:
-            return FaceSeen(number, "cylinder", _cylinder(adaptor))
+            return FaceReadback(number, "cylinder", _cylinder(adaptor))
         case Kind.GeomAbs_Sphere:
             sphere = adaptor.Sphere()
-            return FaceSeen(number, "sphere", Surface(Vector(sphere.Location()), Z, 2 * sphere.Radius()))
-    return FaceSeen(number, "", Surface(Vector(), Z))
+            return FaceReadback(number, "sphere", Surface(Vector(sphere.Location()), Z, 2 * sphere.Radius()))
+    return FaceReadback(number, "", Surface(Vector(), Z))
 
 
-def look(solid: Shape, count: int = 1) -> Seen:
+def look(solid: Shape, count: int = 1) -> PartSurfaces:
     """Look at every face of a solid of which there are `count`."""
     of = defaultdict[Any, list[BRepAdaptor_Surface]](list)
     for face in solid.Faces():
         adaptor = BRepAdaptor_Surface(face.wrapped)
         of[adaptor.GetType()].append(adaptor)
-    return Seen(
+    return PartSurfaces(
         count,
         planes=tuple(_surface(a.Plane().Axis()) for a in of[Kind.GeomAbs_Plane]),
         cylinders=tuple(map(_cylinder, of[Kind.GeomAbs_Cylinder])),

@@ -42,7 +42,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 from templates.core.errors import FaultyText
 from templates.core.language.template import Template
-from templates.core.units.quantity import Typed, read
+from templates.core.units.quantity import TypedQuantity, read
 from templates.core.units.tolerance import Tolerance
 from templates.core.units.units import unit
 
@@ -73,7 +73,7 @@ _DIGITS = 9  # decimals of a limit in mm: what differs less is the same limit
 
 
 @dataclass(frozen=True)
-class Carried:
+class ToleranceFaces:
     """Faces by which a part carries a dimension.
 
     Attributes
@@ -117,7 +117,7 @@ class Carried:
         """Return the dimensions that it names, of a length that repeats along a shaft."""
         return (self.where,) if isinstance(self.where, str) else tuple(self.where)
 
-    def among(self, drawn: Collection[str]) -> Carried:
+    def among(self, drawn: Collection[str]) -> ToleranceFaces:
         """Return the same on that of its parts which is drawn; on the first of them if none is."""
         part = next((name for name in (self.part, *self.others) if name in drawn), self.part)
         return replace(self, part=part, inside=tuple(name for name in self.inside if name in drawn))
@@ -153,7 +153,7 @@ class TolerancedTemplate(Template):
         carried(cls)
 
 
-def carried(cls: type[TolerancedTemplate]) -> dict[str, Carried]:
+def carried(cls: type[TolerancedTemplate]) -> dict[str, ToleranceFaces]:
     """Return what a model declares, by parameter.
 
     Raises
@@ -173,7 +173,7 @@ def carried(cls: type[TolerancedTemplate]) -> dict[str, Carried]:
     return read_
 
 
-def _carried(cls: type[TolerancedTemplate], name: str, said: dict[str, Any]) -> Carried:
+def _carried(cls: type[TolerancedTemplate], name: str, said: dict[str, Any]) -> ToleranceFaces:
     if name not in cls.inputs or unit(cls.inputs[name].meaning.unit).base != unit("m").base:
         raise _wrong(cls, name, "it is no parameter that is a length")
     kinds = [kind for kind in FACES if kind in said]
@@ -193,7 +193,7 @@ def _carried(cls: type[TolerancedTemplate], name: str, said: dict[str, Any]) -> 
     inside = _parts(cls, name, "inside", said["inside"]) if "inside" in said else []
     if inside and kinds[0] != "walls":
         raise _wrong(cls, name, "only walls have parts inside")
-    return Carried(
+    return ToleranceFaces(
         name,
         part,
         kinds[0],
@@ -229,7 +229,9 @@ def _wrong(cls: type[TolerancedTemplate], name: str, detail: str) -> TypeError:
 def limits(model: TolerancedTemplate) -> dict[str, Limits]:
     """Return the limits that a user gave to dimensions of a model which its faces carry, by parameter."""
     declared, given = type(model).toleranced, model.ledger.typed
-    return dict(_single((name, typed) for name in declared if isinstance(typed := given.get(name), Typed)))
+    return dict(
+        _single((name, typed) for name in declared if isinstance(typed := given.get(name), TypedQuantity))
+    )
 
 
 def limits_in(header: Header) -> dict[str, Limits]:
@@ -242,7 +244,7 @@ def limits_of(texts: Mapping[str, str]) -> dict[str, Limits]:
     return dict(_single(_read(texts)))
 
 
-def _read(parameters: Mapping[str, str]) -> Iterator[tuple[str, Typed]]:
+def _read(parameters: Mapping[str, str]) -> Iterator[tuple[str, TypedQuantity]]:
     for name, text in parameters.items():
         if text.count(" ") < 2:
             continue  # `48 mm` and words have no room for a tolerance
@@ -252,7 +254,7 @@ def _read(parameters: Mapping[str, str]) -> Iterator[tuple[str, Typed]]:
             continue  # a word, a count or an angle
 
 
-def _single(pairs: Iterator[tuple[str, Typed]]) -> Iterator[tuple[str, Limits]]:
+def _single(pairs: Iterator[tuple[str, TypedQuantity]]) -> Iterator[tuple[str, Limits]]:
     """Yield the limits of single values, where they leave any room."""
     for name, typed in pairs:
         tolerance, si = typed.tolerance, typed.si

@@ -106,6 +106,8 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 THREADS = 64
+WATCHED = 0.05
+"""Time after which it is watched whether the client leaves [s]: most answers take less."""
 
 
 class Threads:
@@ -124,12 +126,20 @@ class Threads:
         self, request: Request, function: Callable[P, T], *args: P.args, **options: P.kwargs
     ) -> T:
         """Call a function for a client; what it calculates ends if the client leaves."""
-        caller = present_caller()
-        leaving = asyncio.create_task(_note_leaving(request, caller))
+        if (caller := present_caller()) is None:
+            return await self.run(function, *args, **options)
+        leaving = list[asyncio.Task[None]]()
+
+        def watch() -> None:
+            leaving.append(asyncio.create_task(_note_leaving(request, caller)))
+
+        timer = asyncio.get_running_loop().call_later(WATCHED, watch)
         try:
             return await self.run(_closing, caller, lambda: function(*args, **options))
         finally:
-            leaving.cancel()
+            timer.cancel()
+            for task in leaving:
+                task.cancel()
 
     async def run_within(
         self, seconds: float, request: Request, function: Callable[P, T], *args: P.args, **options: P.kwargs
@@ -143,7 +153,7 @@ class Threads:
         return await self.run_for(request, function, *args, **options)
 
 
-def _closing(caller: Caller | None, function: Callable[[], T]) -> T:
+def _closing(caller: Caller, function: Callable[[], T]) -> T:
     """Call a function, then end what it has begun and left to no job."""
     failed = True
     try:
@@ -151,14 +161,12 @@ def _closing(caller: Caller | None, function: Callable[[], T]) -> T:
         failed = False
         return result
     finally:
-        if caller is not None:
-            caller.begun.close(failed=failed)
+        caller.begun.close(failed=failed)
 
 
-async def _note_leaving(request: Request, caller: Caller | None) -> None:
+async def _note_leaving(request: Request, caller: Caller) -> None:
     await client_left(request)
-    if caller is not None:
-        caller.left.set()
+    caller.left.set()
 
 
 class Compression:

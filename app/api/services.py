@@ -40,7 +40,7 @@ from app.storage.database import Database
 from app.studies.service import Studies
 from app.tolerances.schemas import ToleranceAnalysis
 from app.workers.pieces import Pieces
-from app.worksheets.importing.service import Imports
+from app.worksheets.imports.service import Imports
 from app.worksheets.service import Worksheets
 
 

@@ -24,9 +24,9 @@ from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText, unknown_name, unknown_names
 from templates.core.judging.criterion import (
     Criterion,
-    Described,
     Limit,
-    Missing,
+    MissingValue,
+    NameDescription,
     read_comparison,
     read_criterion,
 )
@@ -260,7 +260,7 @@ class Subject:
         return values | {n: cell.reference for n, cell in self.block.related.items() if n in limits}
 
     @cached_property
-    def instead(self) -> tuple[tuple[Missing, Subject], ...]:
+    def instead(self) -> tuple[tuple[MissingValue, Subject], ...]:
         """Return the comparisons to judge where a value is missing."""
         every = self.criterion.absent.values()
         return tuple((one, Subject(one.instead, self.block, None)) for one in every if one.instead)
@@ -302,7 +302,7 @@ def read_demands(document: Document, blocks: Mapping[str, Block]) -> tuple[dict[
 
 
 def _is_unread(name: str, document: Document, blocks: Mapping[str, Block]) -> bool:
-    """True if a criterion is one of a step whose template is not known, which is a fault of its own."""
+    """Return whether a criterion belongs to a step of an unknown template, which is a fault of its own."""
     criterion = Reference.parse(name)
     is_of_step = criterion.output is not None and criterion.block in document.steps
     return is_of_step and criterion.block not in blocks
@@ -385,15 +385,15 @@ def _checked(network: Network, kinds: Mapping[str, Kind], demand: Demand) -> Cri
     return read_criterion(demand.name, {key: part for key, part in parts.items() if part}, meanings)
 
 
-def _meaning(network: Network, kinds: Mapping[str, Kind], name: str, reference: Reference) -> Described:
+def _meaning(network: Network, kinds: Mapping[str, Kind], name: str, reference: Reference) -> NameDescription:
     """Return the unit in which a value is shown, and its words."""
     if cell := network.parameters.get(name):
         typed = None if cell.relations else read_any(cell.raw).unit
-        return Described(typed or kinds[name].unit, name.replace("_", " "), kinds[name])
+        return NameDescription(typed or kinds[name].unit, name.replace("_", " "), kinds[name])
     block = network.blocks[reference.block]
     declared = block.cls.inputs.get(reference.member) or block.cls.formulas.get(reference.member)
     words = declared.meaning.words if declared else name
-    return Described(network.unit_of(reference), words, network.kind_of(reference))
+    return NameDescription(network.unit_of(reference), words, network.kind_of(reference))
 
 
 def fault_of(name: str, error: FaultyText) -> Fault:

@@ -28,7 +28,8 @@ _EVER_RELEASED = select(func.max(ApprovalRow.revision)).where(
 )
 EVER_RELEASED = Statement(_EVER_RELEASED, "design")
 """The number of the newest revision of a `design` that was released, withdrawn since or not; or null."""
-NEWEST_RELEASED = Statement(_EVER_RELEASED.where(~_IS_WITHDRAWN), "design")
+OF_NEWEST_RELEASED = _EVER_RELEASED.where(~_IS_WITHDRAWN)
+NEWEST_RELEASED = Statement(OF_NEWEST_RELEASED, "design")
 """The number of the newest released revision of a `design` that is not withdrawn; or null."""
 
 

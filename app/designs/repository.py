@@ -15,7 +15,7 @@ from sqlalchemy.orm.util import identity_key
 from app.designs import statements
 from app.designs.errors import DesignReleased, StaleRevision
 from app.designs.filters import DesignFilter, conditions
-from app.designs.releases import EVER_RELEASED, NEWEST_RELEASED
+from app.designs.releases import EVER_RELEASED
 from app.designs.results import ModelState
 from app.identity.audit import record
 from app.identity.principal import acting
@@ -247,7 +247,7 @@ def append(session: Session, id: str, base: int, written: StoredRevision, at: st
         "state": written.state,
         "problem": None,
         "author": acting().id,
-        "supersedes": NEWEST_RELEASED.scalar(session, {"design": id}),
+        "design": id,
     }
     statements.NEW_REVISION.run(session, revision)
     digest = hashlib.sha256(canonical_json(written.document).encode()).hexdigest()

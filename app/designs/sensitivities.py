@@ -17,7 +17,7 @@ from app.catalogue.catalogues import Catalogues
 from app.designs.analyses import is_table
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
-from app.designs.engine.net import Net, Table
+from app.designs.engine.design_engine import DesignEngine, Table
 from app.designs.engine.relations import MOST_OPERATIONS
 from app.designs.engine.row_design import MOST_VALUES, Targets
 from app.designs.network import Subject
@@ -63,7 +63,7 @@ class SensitivityQuestion:
         """Return all values that are needed."""
         return Targets.of(self.values, [self.subject] if self.subject else [])
 
-    def unit(self, net: Net) -> str:
+    def unit(self, net: DesignEngine) -> str:
         """Return the unit in which the value is shown."""
         return self.subject.criterion.unit if self.subject else net.unit(*self.values)
 
@@ -208,8 +208,8 @@ class DifferenceRows:
         return InvalidInputs([Fault(self.asked.name, code, detail)])
 
     @cached_property
-    def _net(self) -> Net:
-        return Net.of(
+    def _net(self) -> DesignEngine:
+        return DesignEngine.of(
             self.document,
             self.catalogues,
             self.places,

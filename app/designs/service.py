@@ -20,7 +20,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.errors import StaleRevision
 from app.designs.explanation import explained
 from app.designs.graph import Graph, build_graph, raise_if, read_document, resolved, starts
-from app.designs.repository import StoredRevision, note_revision
+from app.designs.repository import Newest, StoredRevision, note_revision
 from app.designs.results import ModelState, Outcome
 from app.designs.schemas.designs import Design, Explanation, Proposal
 from app.designs.schemas.network import DesignNetwork
@@ -202,20 +202,20 @@ class Designs:
         with self.database.read() as session:
             if before := once.find(session):
                 return _saved_before(before)
-            base, document, created, *_ = repository.newest(session, id)
-        _require_match(expected, base)
-        return self._append(id, base, merge(document, patch), note, once, "design.change", created)
+            base = repository.newest(session, id)
+        _require_match(expected, base.number)
+        return self._append(id, base, merge(base.document, patch), note, once, "design.change")
 
     def restore(self, id: str, number: int, note: str | None, expected: str | None, once: Once) -> SaveResult:
         """Return a new revision equal to an old one."""
         with self.database.read() as session:
             if before := once.find(session):
                 return _saved_before(before)
-            design = repository.design(session, id)
+            base = repository.newest(session, id)
             document = repository.document(session, id, number)
-        _require_match(expected, design.head)
+        _require_match(expected, base.number)
         words = note or f"as revision {number}"
-        return self._append(id, design.head, document, words, once, "design.restore", design.created)
+        return self._append(id, base, document, words, once, "design.restore")
 
     def copy(self, id: str, name: str | None, once: Once) -> SaveResult:
         """Return a new design with the newest document of another."""
@@ -268,26 +268,27 @@ class Designs:
     def _append(
         self,
         id: str,
-        base: int,
+        base: Newest,
         raw: Mapping[str, Raw],
         note: str | None,
         once: Once,
         action: str,
-        created: str,
     ) -> SaveResult:
+        """Return the revision after `base` with another document; `base` itself if that has this document."""
         draft = self.draft(raw, note, action)
+        is_changed = base.document != draft.written.document
 
         def unit(session: Session) -> SaveResult:
             if before := once.begin(session):
                 return _saved_before(before)
-            if repository.document(session, id, base) == draft.written.document:
-                _require_match(f'"{base}"', repository.design(session, id).head)
-                unchanged = SaveResult(id, base, None, created=False, fresh=False)
+            if not is_changed:
+                _require_match(f'"{base.number}"', repository.design(session, id).head)
+                unchanged = SaveResult(id, base.number, None, created=False, fresh=False)
                 unchanged.keep(session, once)
                 return unchanged
             certain, at = _with_builds(session, draft), now()
-            revision = repository.append(session, id, base, certain.written, at)
-            return self._enqueued(session, id, revision, certain, once, created=created, at=at)
+            revision = repository.append(session, id, base.number, certain.written, at)
+            return self._enqueued(session, id, revision, certain, once, created=base.created, at=at)
 
         return self._saved(unit, draft)
 

@@ -12,7 +12,7 @@ from app.calculations.schemas.evaluations import Jump, TracedCurve
 from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document, Place
 from app.designs.engine.calculate import calculate
-from app.designs.engine.net import Net
+from app.designs.engine.design_engine import DesignEngine
 from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph, starts
 from app.designs.overrides import changed
@@ -28,7 +28,7 @@ from app.schemas.values import Given
 from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.language.confirming import Root
 from templates.core.language.roots import Jump as FoundJump
-from templates.core.units.quantity import Typed, read, read_beside
+from templates.core.units.quantity import TypedQuantity, read, read_beside
 
 _NAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63}){0,2}$"
 Named = Annotated[str, StringConstraints(pattern=_NAME)]
@@ -91,7 +91,7 @@ def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
     unknown = Reference.parse(question.unknown)
     [(name, raw)] = question.target.items()
     target = Reference.parse(name)
-    net = Net.of(document, catalogues, [unknown], wanted=[target], pending=True)
+    net = DesignEngine.of(document, catalogues, [unknown], wanted=[target], pending=True)
     low, high = (_single(read, end, net.accepted(unknown), "between") for end in question.between)
     if low >= high:
         detail = "the first bound must be below the second"
@@ -101,7 +101,7 @@ def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
     return _SolutionText(solution, document, catalogues).answer(revision)
 
 
-def _single(read_as: Callable[[object, str], Typed], raw: object, unit: str, name: str) -> float:
+def _single(read_as: Callable[[object, str], TypedQuantity], raw: object, unit: str, name: str) -> float:
     """Return one value [SI] as typed."""
     try:
         value = read_as(raw, unit).si

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from app.designs.engine.net import Net, Table
+from app.designs.engine.design_engine import DesignEngine, Table
 from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
@@ -43,7 +43,7 @@ class RootQuestion:
 class DesignCurve(SampledCurve):
     """An output of a design as a function of one of its values, each step at one level."""
 
-    net: Net
+    net: DesignEngine
     unknown: Reference
     target: Reference
     levels: Mapping[str, str | None]
@@ -100,7 +100,7 @@ class DesignRoots:
     requested: DesignCurve
 
 
-def roots_of_design(net: Net, wanted: RootQuestion) -> DesignRoots:
+def roots_of_design(net: DesignEngine, wanted: RootQuestion) -> DesignRoots:
     """Return every value of the unknown that gives the target.
 
     Raises
@@ -117,7 +117,7 @@ def roots_of_design(net: Net, wanted: RootQuestion) -> DesignRoots:
     return DesignRoots(roots_of(requested, scanned, wanted.between), scanned, requested)
 
 
-def _levels(net: Net, wanted: RootQuestion) -> tuple[dict[str, str | None], dict[str, str | None]]:
+def _levels(net: DesignEngine, wanted: RootQuestion) -> tuple[dict[str, str | None], dict[str, str | None]]:
     """Return the levels of the curve, and those of its solutions.
 
     None of the first is finer than the second.
@@ -131,13 +131,13 @@ def _levels(net: Net, wanted: RootQuestion) -> tuple[dict[str, str | None], dict
     return {step: _coarser(net, step, level, fine.get(step)) for step, level in cheap.items()}, fine
 
 
-def _coarser(net: Net, step: str, one: str | None, other: str | None) -> str | None:
+def _coarser(net: DesignEngine, step: str, one: str | None, other: str | None) -> str | None:
     """Return the cheaper of two levels of a step."""
     ladder = list(net.graph.blocks[step].cls.levels)
     levels = [level for level in (one, other) if level in ladder]
     return min(levels, key=ladder.index) if levels else one
 
 
-def _meaning(net: Net, reference: Reference) -> Meaning:
+def _meaning(net: DesignEngine, reference: Reference) -> Meaning:
     """Return a name of the design as messages call it, with its declared unit."""
     return Meaning(words=str(reference), unit=net.unit(reference), name=str(reference))

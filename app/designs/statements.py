@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from sqlalchemy import Integer, bindparam, func, insert, select, update
 
+from app.designs.releases import OF_NEWEST_RELEASED
 from app.storage.tables import Base, BuildRow, DesignRow, RevisionModelRow, RevisionRow
 from app.storage.units import Statement
 
@@ -13,7 +14,7 @@ _BUILDS = Base.metadata.tables[BuildRow.__tablename__]
 MODELS = Base.metadata.tables[RevisionModelRow.__tablename__]
 NEW_DESIGN = Statement(insert(_DESIGNS), "id", "name", "created", "head")
 NEW_REVISION = Statement(
-    insert(_REVISIONS),
+    insert(_REVISIONS).values(supersedes=OF_NEWEST_RELEASED.scalar_subquery()),
     "design_id",
     "number",
     "note",
@@ -23,8 +24,9 @@ NEW_REVISION = Statement(
     "state",
     "problem",
     "author",
-    "supersedes",
+    "design",
 )
+"""`design` is that of which the revision supersedes the newest released one."""
 APPENDED = Statement(
     update(_DESIGNS)
     .where(

@@ -189,7 +189,7 @@ class Needs:
     is_public: bool = False
 
     async def __call__(self) -> None:
-        """As a dependency of a route it does nothing: the gate has read it."""
+        """Do nothing as a dependency of a route: the gate has read it."""
 
     def check(self) -> None:
         """Let the acting principal pass.

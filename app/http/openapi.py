@@ -93,7 +93,7 @@ def _drop_item_schemas(operation: dict[str, Any]) -> None:
 
 
 def _drop_nulls(operation: dict[str, Any]) -> None:
-    """An optional parameter may be absent; there is no way to write null in a URL or a header."""
+    """Remove null from optional parameters: a URL or header cannot contain null."""
     for parameter in operation.get("parameters", ()):
         schema = parameter["schema"]
         kinds = [kind for kind in schema.get("anyOf", ()) if kind != {"type": "null"}]
@@ -103,7 +103,7 @@ def _drop_nulls(operation: dict[str, Any]) -> None:
 
 
 def _declare_preconditions(method: str, operation: dict[str, Any]) -> None:
-    """If-Match is needed for PATCH and PUT and compared wherever it is sent."""
+    """Declare If-Match: PATCH and PUT need it, and every route compares it."""
     matching = [one for one in operation.get("parameters", ()) if one["name"] == "if-match"]
     if not matching:
         return

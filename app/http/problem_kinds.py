@@ -37,7 +37,7 @@ from app.storage.errors import CannotRebuild
 from app.studies.errors import RowsLost
 from app.workers import errors as workers
 from app.worksheets import errors as worksheets
-from app.worksheets.importing.errors import SheetNotRead
+from app.worksheets.imports.errors import SheetNotRead
 from cad.errors import AnalysisError, GeometryError, ProgramMissing, UnreadableModel, UnreadableStep
 from templates.core import errors as templates
 from templates.library.tables import UnknownTable

@@ -15,8 +15,8 @@ from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.columns import Indices
+from app.designs.engine.design_engine import DesignEngine
 from app.designs.engine.needs import is_member
-from app.designs.engine.net import Net
 from app.designs.engine.row_design import RowDesign, Rows, Targets
 from app.designs.engine.steps import LevelMoved, StepRows
 from app.designs.engine.verdicts import Verdicts
@@ -54,7 +54,7 @@ class Together:
         if document.iterations:
             return None
         try:
-            net = Net.of(document, catalogues, varied)
+            net = DesignEngine.of(document, catalogues, varied)
         except TemplateError:
             return None
         graph = net.graph

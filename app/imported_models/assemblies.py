@@ -23,7 +23,7 @@ from app.storage.errors import ArtifactDamaged, ArtifactMissing, NotFound
 from app.storage.tables import ArtifactRow, DesignRow, RevisionModelRow
 from cad.assemblies import AssemblyDescription, Component, base_of, described
 from cad.errors import GeometryError, UnreadableModel
-from cad.imported_models import Description, Drawn
+from cad.imported_models import Description, ProgramResult
 from cad.model import CadModel
 from cad.model_classes import description_of
 from templates.core.catalogue.loading import is_outside
@@ -84,7 +84,7 @@ class AssemblyFiles:
     def __init__(self, store: Artifacts) -> None:
         self._store = store
 
-    def draw(self, described: Description, values: Mapping[str, float], cancelled: object) -> Drawn:
+    def draw(self, described: Description, values: Mapping[str, float], cancelled: object) -> ProgramResult:
         """Return the files, by hash; see `Drawing.draw`."""
         try:
             packed = self._store.read(described.file)
@@ -94,7 +94,7 @@ class AssemblyFiles:
             )
             raise GeometryError("component_lost", detail) from None
         with zipfile.ZipFile(io.BytesIO(packed)) as package:
-            return Drawn(fixed={name: package.read(name) for name in package.namelist()})
+            return ProgramResult(fixed={name: package.read(name) for name in package.namelist()})
 
 
 def _packed(files: Mapping[str, bytes]) -> bytes:

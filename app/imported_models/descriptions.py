@@ -18,7 +18,7 @@ from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded
 from cad.errors import GeometryError, UnreadableModel
 from cad.freecad.admission import admitted
-from cad.imported_models import Description, Drawn, Parameter, Role, role_of, shows, trial_sizes
+from cad.imported_models import Description, Parameter, ProgramResult, Role, role_of, shows, trial_sizes
 
 READING = Limits(deadline=20.0, memory_mb=512)
 
@@ -48,7 +48,7 @@ class Deadline:
 
     @contextmanager
     def kept(self) -> Iterator[None]:
-        """Whatever does not end in what is left has exceeded the whole."""
+        """Raise `DeadlineExceeded` with the deadline of the whole import, not with the time that was left."""
         try:
             yield
         except DeadlineExceeded:
@@ -124,7 +124,7 @@ def described_step(content: bytes, file_name: str, store: Artifacts, context: Jo
         If it holds no solid.
     """
     context.progress(0.1, "reading the STEP file")
-    context.run(trial_sizes, Drawn(step=content))
+    context.run(trial_sizes, ProgramResult(step=content))
     return Description("step", store.put(content), file_name, f"Fixed part {_stem(file_name)}", "STEP")
 
 
@@ -149,7 +149,7 @@ def _parameters(listed: list[list[str | float]]) -> list[Parameter]:
 
 def _trials(
     parameters: list[Parameter],
-    base: Drawn,
+    base: ProgramResult,
     warm: WarmProcesses,
     file: str,
     store: Artifacts,

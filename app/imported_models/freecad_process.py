@@ -28,7 +28,7 @@ from app.workers.errors import DeadlineExceeded, JobCancelled, MemoryExceeded
 from app.workers.lifeline import Lifeline
 from cad.errors import GeometryError
 from cad.freecad import drawing_process
-from cad.imported_models import Drawn, DrawnPart
+from cad.imported_models import DrawnPart, ProgramResult
 
 STARTING = 60.0
 """Time in which FreeCAD has to start [s]; it takes 3 s."""
@@ -57,7 +57,7 @@ class FreeCadAnswer:
     """An answer of FreeCAD: what it says, and what it drew."""
 
     about: About
-    drawn: Drawn
+    drawn: ProgramResult
 
 
 class FreeCadProcess:
@@ -123,7 +123,7 @@ class FreeCadProcess:
             raise self._refusal(about)
         parts = zip(about["parts"], shapes, strict=True)
         return FreeCadAnswer(
-            about, Drawn(tuple(DrawnPart(name, shape, size) for (name, size), shape in parts))
+            about, ProgramResult(tuple(DrawnPart(name, shape, size) for (name, size), shape in parts))
         )
 
     def kill(self) -> None:

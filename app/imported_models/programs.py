@@ -17,7 +17,7 @@ from app.settings import Settings
 from app.storage.artifacts import Artifacts
 from app.workers.base import Limits, Runner
 from cad.errors import GeometryError, ProgramMissing, UnreadableModel
-from cad.imported_models import Description, Drawn, ImportedModel, Parameter, Program
+from cad.imported_models import Description, ImportedModel, Parameter, Program, ProgramResult
 
 Values = dict[str, float]
 """By API name, in the unit of each parameter; those that are as in the file may be left out."""
@@ -26,7 +26,7 @@ Values = dict[str, float]
 class Drawing(Protocol):
     """A program that draws."""
 
-    def draw(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
+    def draw(self, described: Description, values: Values, cancelled: threading.Event) -> ProgramResult:
         """Return the solids of a model for some values.
 
         Raises
@@ -45,9 +45,9 @@ class StepFiles:
     def __init__(self, store: Artifacts) -> None:
         self._store = store
 
-    def draw(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
+    def draw(self, described: Description, values: Values, cancelled: threading.Event) -> ProgramResult:
         """Return the STEP file; there are no values."""
-        return Drawn(step=self._store.read(described.file))
+        return ProgramResult(step=self._store.read(described.file))
 
 
 class CreoModels:
@@ -56,7 +56,7 @@ class CreoModels:
     def __init__(self, store: Artifacts, drawing: CreoDrawing) -> None:
         self._store, self.drawing = store, drawing
 
-    def draw(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
+    def draw(self, described: Description, values: Values, cancelled: threading.Event) -> ProgramResult:
         """Return the STEP file that Creo exports; see `Drawing.draw`."""
         try:
             manifest = read(self._store.read(described.file))
@@ -71,7 +71,7 @@ class FreeCadDrawing:
     def __init__(self, store: Artifacts, find: Callable[[], FreeCad], limits: Limits) -> None:
         self._store, self.warm = store, WarmProcesses(find, limits)
 
-    def draw(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
+    def draw(self, described: Description, values: Values, cancelled: threading.Event) -> ProgramResult:
         """Return the solids that FreeCAD draws; see `Drawing.draw`."""
         given = [given_to_freecad(one, values[one.name]) for one in _changed(described, values)]
         return self.warm.ask(
@@ -103,7 +103,7 @@ class Programs:
     freecad: FreeCadDrawing
     by_name: dict[Program, Drawing]
 
-    def draw(self, shape: ImportedModel, context: Runner) -> Drawn:
+    def draw(self, shape: ImportedModel, context: Runner) -> ProgramResult:
         """Return the drawing of a model for its parameters; raises as `Drawing.draw` does."""
         cancelled = context.cancelled if isinstance(context, JobContext) else threading.Event()
         values = (
@@ -111,7 +111,7 @@ class Programs:
         )  # it has words and lists too
         return self.drawn(shape.imported, values, cancelled)
 
-    def drawn(self, described: Description, values: Values, cancelled: threading.Event) -> Drawn:
+    def drawn(self, described: Description, values: Values, cancelled: threading.Event) -> ProgramResult:
         """Return the drawing of a program for some values; raises as `Drawing.draw` does."""
         program = self.by_name.get(described.program)
         if program is None:

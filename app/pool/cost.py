@@ -23,7 +23,7 @@ from templates.core.language.levels import SINGLE, accuracy
 from templates.core.language.scan import SAMPLES
 from templates.core.language.spec import Curve, Table
 from templates.core.language.template import Template
-from templates.core.units.quantity import Typed
+from templates.core.units.quantity import TypedQuantity
 
 EXPENSIVE = 0.05  # beyond this a calculation leaves the server's process [s]
 
@@ -177,7 +177,7 @@ def _first(cls: type[Template], name: str, raw: Raw) -> Raw:
     """Return an array's first value, in its unit; anything else as it is."""
     if isinstance(cls.inputs.get(name), (Curve, Table)):
         return raw
-    if isinstance(raw, Typed):
+    if isinstance(raw, TypedQuantity):
         return raw if isinstance(raw.si, float) else replace(raw, value=None, si=float(raw.si.flat[0]))
     value = raw.get("value") if isinstance(raw, Mapping) else raw
     while isinstance(value, list) and value:
@@ -222,7 +222,7 @@ def arrays(inputs: Mapping[str, Raw]) -> dict[str, Shape]:
     """Return the shapes of the arrays among inputs, as typed."""
     shapes: dict[str, Shape] = {}
     for name, raw in inputs.items():
-        is_single = isinstance(raw, str) or (isinstance(raw, Typed) and isinstance(raw.si, float))
+        is_single = isinstance(raw, str) or (isinstance(raw, TypedQuantity) and isinstance(raw.si, float))
         if not is_single and (axes := shape(raw)):
             shapes[name] = axes
     return shapes
@@ -237,7 +237,7 @@ def spanned(shapes: Iterable[Shape]) -> int:
 
 def shape(raw: Raw) -> Shape:
     """Return the shape of a quantity as typed: by its first items, as what is uneven is refused later."""
-    if isinstance(raw, Typed):
+    if isinstance(raw, TypedQuantity):
         return np.shape(raw.si)
     lengths: list[int] = []
     while isinstance(items := raw.get("value") if isinstance(raw, Mapping) else raw, list) and items:

@@ -27,7 +27,7 @@ from app.workers.errors import JobCancelled
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.template import Template
 from templates.core.progress import Reporter
-from templates.core.units.quantity import Typed
+from templates.core.units.quantity import TypedQuantity
 
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
@@ -259,4 +259,4 @@ def fingerprint(inputs: Mapping[str, Raw]) -> bytes:
 
 def _plain(value: object) -> object:
     """Return a value as JSON; a quantity that was read already becomes the text that its user typed."""
-    return [value.value, value.unit, value.extra] if isinstance(value, Typed) else repr(value)
+    return [value.value, value.unit, value.extra] if isinstance(value, TypedQuantity) else repr(value)

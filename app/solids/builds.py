@@ -24,7 +24,7 @@ from app.storage.errors import CannotRebuild
 from app.workers.base import Runner, may_share
 from cad.errors import AnalysisError, GeometryError, ProgramMissing
 from cad.export import DRAWINGS, derive
-from cad.imported_models import Drawn, ImportedModel, imported_description
+from cad.imported_models import ImportedModel, ProgramResult, imported_description
 from cad.model import CadModel
 from cad.regenerate import (
     Build,
@@ -189,7 +189,7 @@ def build_in_worker(source: Source, texts: Mapping[str, str]) -> Build:
     return regenerate_class(cls, texts, report=report)
 
 
-def build_drawn_in_worker(source: Source, texts: Mapping[str, str], drawn: Drawn) -> Build:
+def build_drawn_in_worker(source: Source, texts: Mapping[str, str], drawn: ProgramResult) -> Build:
     """Return the build of what a program drew, checked like any other; runs in the worker's process."""
     shape = loaded(source).from_quantities(texts)
     assert isinstance(shape, ImportedModel), "the source is that of an imported model"

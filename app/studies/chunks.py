@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.designs.engine.net import Refusal, Table
+from app.designs.engine.design_engine import Refusal, Table
 from app.reference import Reference
 from app.studies.archive import AnyArray, packed
 from app.studies.row_solids import SolidRequest, Solids

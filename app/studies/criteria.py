@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.designs.engine.net import Net, Table
+from app.designs.engine.design_engine import DesignEngine, Table
 from app.designs.network import subjects
 from app.studies.archive import AnyArray
 from templates.core.arrays import Array
@@ -12,7 +12,7 @@ from templates.core.judging.comparison import MET
 from templates.core.judging.criterion import Criterion
 
 
-def criterion_of(net: Net, name: str) -> Criterion:
+def criterion_of(net: DesignEngine, name: str) -> Criterion:
     """Return a criterion as it is judged.
 
     As the design writes it, else as the template of its step declares it.
@@ -25,7 +25,7 @@ SIDES = ("value", "limit", "low", "high")
 """The values of a criterion that a search needs, in arrays `judged/<criterion>/<side>`."""
 
 
-def judged_of(net: Net, name: str, table: Table) -> dict[str, AnyArray]:
+def judged_of(net: DesignEngine, name: str, table: Table) -> dict[str, AnyArray]:
     """Return the value, limit and margins [SI] of a criterion over the rows; at least zero is safe."""
     column, codes = table.judged[name], np.asarray(table.verdicts[name])
     sign = 1.0 if criterion_of(net, name).sign == ">=" else -1.0

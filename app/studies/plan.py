@@ -9,7 +9,7 @@ from typing import Self
 import numpy as np
 
 from app.designs.document import Document
-from app.designs.engine.net import Table
+from app.designs.engine.design_engine import Table
 from app.plain import JsonObject
 from app.reference import Reference
 from app.studies.bodies import MOST_BUILT, MOST_ROWS

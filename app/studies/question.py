@@ -8,7 +8,7 @@ from math import prod
 
 import numpy as np
 
-from app.designs.engine.net import Net
+from app.designs.engine.design_engine import DesignEngine
 from app.designs.slopes import Local
 from app.plain import Raw
 from app.reference import Reference
@@ -39,7 +39,7 @@ class StudyQuestion:
         return directions(self.body)[0]
 
 
-def asked_of(body: StudyIn, varied: Sequence[str], net: Net) -> StudyQuestion:
+def asked_of(body: StudyIn, varied: Sequence[str], net: DesignEngine) -> StudyQuestion:
     """Return a body read against the network of its design.
 
     Raises
@@ -90,7 +90,7 @@ _WITHOUT_POINTS = {
 }
 
 
-def _variables(body: StudyIn, varied: Sequence[str], net: Net) -> Iterator[Variable]:
+def _variables(body: StudyIn, varied: Sequence[str], net: DesignEngine) -> Iterator[Variable]:
     """Yield the variables in the order of the columns; the keys of a stored body have another."""
     faults: list[Fault] = []
     for name in varied if body.vary else ():
@@ -122,7 +122,7 @@ def single(raw: Raw, unit: str, name: str) -> float:
     return value
 
 
-def points_of(body: StudyIn, space: Space, net: Net) -> Points | None:
+def points_of(body: StudyIn, space: Space, net: DesignEngine) -> Points | None:
     """Return the rows of a method by number; None if the method finds them by itself."""
     match body.method:
         case "grid":
@@ -152,7 +152,7 @@ def _steps(body: StudyIn, space: Space) -> dict[str, int]:
     return {name: int(given[name] or 0) for name in intervals}
 
 
-def _around(space: Space, net: Net) -> Local:
+def _around(space: Space, net: DesignEngine) -> Local:
     """Return the design's own values, or the middle of an interval that leaves them out."""
     at, steps, faults = [], [], []
     for variable in space.variables:

@@ -14,8 +14,8 @@ import numpy as np
 
 from app.designs.analyses import axes_of, is_table
 from app.designs.document import Document
+from app.designs.engine.design_engine import DesignEngine, Refusal
 from app.designs.engine.needs import needs, varying
-from app.designs.engine.net import Net, Refusal
 from app.designs.engine.refusals import refusal_of
 from app.designs.engine.row_design import Levels, Rows, Targets
 from app.designs.network import Block, subjects
@@ -81,7 +81,7 @@ class RowsWithSolids:
 
 
 def measures_of_rows(
-    net: Net, body: StudyIn, outputs: Collection[Reference], measured: Collection[Reference]
+    net: DesignEngine, body: StudyIn, outputs: Collection[Reference], measured: Collection[Reference]
 ) -> list[Reference]:
     """Return the measures that a study needs and that differ from row to row, or are not `known`.
 
@@ -121,7 +121,7 @@ def tables_among(measures: Sequence[Reference]) -> Iterator[Fault]:
 class RowSolids:
     """The solids of rows: of which models, and what is measured on them."""
 
-    net: Net
+    net: DesignEngine
     measures: tuple[Reference, ...]
 
     @cached_property

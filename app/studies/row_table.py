@@ -7,7 +7,7 @@ from itertools import islice
 
 import numpy as np
 
-from app.designs.engine.net import Net
+from app.designs.engine.design_engine import DesignEngine
 from app.designs.variant_sheets.grid import MOST_FAULTS, refuse
 from app.plain import Raw
 from app.reference import Reference
@@ -49,7 +49,7 @@ def _uneven(number: int, row: Mapping[str, Raw], first: Mapping[str, Raw]) -> Fa
     return Fault(f"rows.{number}", "uneven", detail)
 
 
-def given_rows(rows: Rows, net: Net) -> Array:
+def given_rows(rows: Rows, net: DesignEngine) -> Array:
     """Return the values [SI] of the rows, shape (N, d).
 
     Raises

@@ -15,7 +15,7 @@ from app.catalogue.catalogues import Catalogues
 from app.designs.analyses import measured_unit
 from app.designs.document import Document
 from app.designs.engine.calculation import NOT_MEASURED
-from app.designs.engine.net import Refusal
+from app.designs.engine.design_engine import Refusal
 from app.designs.engine.refusals import refusal_of
 from app.designs.graph import build_graph, raise_if
 from app.designs.network import Graph

@@ -10,7 +10,7 @@ from pydantic_core import from_json
 
 from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document
-from app.designs.engine.net import Net
+from app.designs.engine.design_engine import DesignEngine
 from app.designs.graph import raise_if
 from app.designs.tasks import DesignTask
 from app.plain import JsonObject
@@ -67,7 +67,7 @@ class TaskState:
         These measures of the design itself, as far as they are known [SI]: for rows that are only tried.
     """
 
-    net: Net
+    net: DesignEngine
     asked: StudyQuestion
     solids: RowSolids
     nominal: Mapping[Reference, float]
@@ -116,13 +116,13 @@ def _net(
     varied: Sequence[Reference],
     measured: Mapping[Reference, float],
     aside: Sequence[Reference],
-) -> Net:
+) -> DesignEngine:
     """Return the design with rows.
 
     Where a relation is refused, the refusal names the remedy of a study too.
     """
     try:
-        return Net.of(document, catalogues, varied, measured=measured, pending=True, set_aside=aside)
+        return DesignEngine.of(document, catalogues, varied, measured=measured, pending=True, set_aside=aside)
     except InvalidInputs as error:
         raise InvalidInputs(_with_remedy(fault) for fault in error.faults) from None
 

@@ -12,8 +12,8 @@ from functools import cached_property
 import numpy as np
 
 from app.designs.document import Document
+from app.designs.engine.design_engine import DesignEngine, Refusal, Table
 from app.designs.engine.needs import needs
-from app.designs.engine.net import Net, Refusal, Table
 from app.designs.graph import Catalogues, Graph, build_graph, raise_if
 from app.reference import Reference
 from app.schemas.answers import Warning
@@ -65,7 +65,7 @@ class Analysis:
     """
 
     graph: Graph
-    net: Net
+    net: DesignEngine
     question: Question
     outputs: list[Reference]
     demands: dict[str, CriterionVariable]
@@ -94,7 +94,9 @@ class Analysis:
         wanted = {*outputs, *(r for demand in named.values() for r in demand.references)}
         chosen, warnings = varied(graph, needs(graph, wanted, ()).cells)
         raise_if(list(faults(chosen, warnings)))
-        net = Net.of(document, catalogues, [v.reference for v in chosen], wanted=wanted, pending=True)
+        net = DesignEngine.of(
+            document, catalogues, [v.reference for v in chosen], wanted=wanted, pending=True
+        )
         return cls(graph, net, question, outputs, named, chosen, warnings)
 
     @cached_property

@@ -12,7 +12,7 @@ from app.tolerances.factors import Factor
 from templates.core.errors import Fault
 from templates.core.language.spec import Choice, Table
 from templates.core.language.tolerances import UNUSED
-from templates.core.units.quantity import Typed, read, read_any
+from templates.core.units.quantity import TypedQuantity, read, read_any
 from templates.core.units.tolerance import is_toleranced
 
 MOST = 40
@@ -28,7 +28,7 @@ class TolerancedVariable:
     """A toleranced value: where it stands, as its user wrote it, and as a factor of the analysis."""
 
     reference: Reference
-    typed: Typed
+    typed: TypedQuantity
     factor: Factor
 
 
@@ -53,7 +53,7 @@ def varied(graph: Graph, behind: Collection[Cell]) -> tuple[list[TolerancedVaria
     return chosen, warnings
 
 
-def _factor(cell: Cell, typed: Typed) -> Factor | str:
+def _factor(cell: Cell, typed: TypedQuantity) -> Factor | str:
     """Return a toleranced value as a factor, or why it is none."""
     tolerance, value = typed.tolerance, typed.si
     assert tolerance is not None

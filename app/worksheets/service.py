@@ -25,7 +25,7 @@ from app.worksheets import repository, views
 from app.worksheets.bodies import ReviewIn, SheetIn, SheetPatch, WithdrawIn
 from app.worksheets.errors import IdTaken, OtherText, OutOfOrder, OwnReview, StaleWorksheet, TestsFailed
 from app.worksheets.examination import Examination, TestRun, examined, tried
-from app.worksheets.importing.record import ImportRecord, require_resolved
+from app.worksheets.imports.record import ImportRecord, require_resolved
 from app.worksheets.names import is_same_person, require_free, signed
 from app.worksheets.publication import WorksheetPublication
 from app.worksheets.repository import RELEASED

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from app.catalogue.sheets import Key
 from app.storage.tables import WorksheetVersionRow as Row
-from app.worksheets.importing.views import origin
+from app.worksheets.imports.views import origin
 from app.worksheets.schemas.worksheets import Sheet, SheetSummary, SheetVersion, State
 
 Broken = Mapping[Key, str]

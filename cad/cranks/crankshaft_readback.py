@@ -14,7 +14,7 @@ from math import atan2, degrees, hypot, pi, radians, remainder
 from cadquery import Vector
 
 from cad.cranks.throw_readback import Webs, stubs
-from cad.surfaces import Seen, Surface, Z
+from cad.surfaces import PartSurfaces, Surface, Z
 
 _CLEAR = 1e-6  # [mm], and as the sine of an angle
 _ANGLE = 1e-8  # [rad]
@@ -35,7 +35,7 @@ def alike(values: Iterable[float], what: str) -> float:
 
 
 @dataclass(frozen=True)
-class ThrowSeen:
+class ThrowReadback:
     """A throw: its pins, and where the faces of its webs lie [mm], from front to rear.
 
     An undivided pin counts once; split pins count as two, with a middle web between them.
@@ -62,10 +62,10 @@ class ThrowSeen:
 
 
 @dataclass(frozen=True)
-class ShaftSeen:
+class ShaftReadback:
     """The features of a shaft of many throws, as read from its surfaces; `split` if its pins are."""
 
-    seen: Seen
+    seen: PartSurfaces
     split: bool = False
 
     @cached_property
@@ -74,7 +74,7 @@ class ShaftSeen:
         return [c.turned(Z) for c in self.seen.cylinders if c.along(Z) and not c.about(Z)]
 
     @cached_property
-    def throws(self) -> list[ThrowSeen]:
+    def throws(self) -> list[ThrowReadback]:
         """Return the throws, from front to rear.
 
         Each has four planes across the shaft, six with split pins. Before them lie the end of the nose and
@@ -93,7 +93,7 @@ class ShaftSeen:
         for place in range(first, len(levels) - count, count):
             faces = tuple(levels[place : place + count])
             pins = (self._pin_between(*faces[at : at + 2]) for at in range(1, count - 1, 2))
-            found.append(ThrowSeen(tuple(pins), faces))
+            found.append(ThrowReadback(tuple(pins), faces))
         if not found:
             raise LookupError("a pin between two webs")
         return found
@@ -149,10 +149,10 @@ class ShaftSeen:
         cylinders = self.seen.about(Z)
         return [c for c in cylinders if low - _CLEAR < c.reach[0] and c.reach[1] < high + _CLEAR]
 
-    def _each(self, read: Callable[[ThrowSeen], float], what: str) -> float:
+    def _each(self, read: Callable[[ThrowReadback], float], what: str) -> float:
         return alike(map(read, self.throws), what)
 
-    def _pin_bore(self, throw: ThrowSeen) -> float:
+    def _pin_bore(self, throw: ThrowReadback) -> float:
         """Diameter of the cylinder beside the shaft that goes on from each pin through its web or webs."""
         if self.split:
             inner = throw.faces[1], throw.faces[-2]
@@ -164,7 +164,7 @@ class ShaftSeen:
         through = (c for c in self.beside if c.reach[0] < front - _CLEAR and rear + _CLEAR < c.reach[1])
         return max((c.diameter for c in through), default=0.0)
 
-    def _journal_bore(self, throw: ThrowSeen) -> float:
+    def _journal_bore(self, throw: ThrowReadback) -> float:
         """Diameter of the cylinder about the shaft that goes on through both of the outer faces."""
         sizes = []
         for face in (throw.faces[0], throw.faces[-1]):
@@ -176,7 +176,7 @@ class ShaftSeen:
 
     @property
     def web_width(self) -> float:
-        """Twice the distance of the sides of webs from the axis: of all planes along it none is nearer."""
+        """Return twice the distance of the sides of webs from the axis, the nearest planes along it."""
         along = [p for p in self.seen.planes if abs(p.direction.dot(Z)) < _CLEAR]
         for normal, distance in self._sides_of_middle_webs() if self.split else ():
             sides = [plane for plane in along if _lies(plane, normal, distance)]

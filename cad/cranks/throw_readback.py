@@ -11,7 +11,7 @@ from math import atan2, degrees
 
 from cadquery import Vector
 
-from cad.surfaces import Seen, Surface, X, Y, Z
+from cad.surfaces import PartSurfaces, Surface, X, Y, Z
 
 _CLEAR = 1e-6  # [mm], and as the sine of an angle
 
@@ -23,7 +23,7 @@ class Webs:
     faces: tuple[float, float, float, float]
 
     @staticmethod
-    def of(seen: Seen) -> Webs:
+    def of(seen: PartSurfaces) -> Webs:
         """Return the two planes across the shaft next to mid-pin, on either side."""
         levels = seen.levels(Z)
         front, rear = [z for z in levels if z < 0], [z for z in levels if z > 0]
@@ -41,7 +41,7 @@ class Webs:
         return self.faces[2] - self.faces[1]
 
 
-def pin(seen: Seen, webs: Webs) -> dict[str, float]:
+def pin(seen: PartSurfaces, webs: Webs) -> dict[str, float]:
     """Pin diameter, bore and throw: the pin stands between the webs, its bore goes through both."""
     _, front, rear, _ = webs.faces
     beside = [c.turned(Z) for c in seen.cylinders if c.along(Z) and not c.about(Z)]
@@ -51,21 +51,21 @@ def pin(seen: Seen, webs: Webs) -> dict[str, float]:
     return {"pin_diameter": pin_surface.diameter, "pin_bore": max(bores, default=0.0), "throw": throw}
 
 
-def stubs(seen: Seen, webs: Webs) -> tuple[list[Surface], list[Surface]]:
+def stubs(seen: PartSurfaces, webs: Webs) -> tuple[list[Surface], list[Surface]]:
     """Return the cylinders about the shaft on the webs at the front and at the rear, from the web on."""
     behind = [c for c in seen.about(Z) if c.reach[0] > webs.faces[3] - _CLEAR]
     before = [c.turned(-Z) for c in seen.about(Z) if c.reach[1] < webs.faces[0] + _CLEAR]
     return sorted(before, key=_start), sorted(behind, key=_start)
 
 
-def journal_bore(seen: Seen, webs: Webs) -> float:
+def journal_bore(seen: PartSurfaces, webs: Webs) -> float:
     """Diameter of the cylinder about the shaft that goes on through the web; 0 if there is none."""
     low, high = webs.faces[3] - _CLEAR, webs.faces[3] + _CLEAR
     through = (c.diameter for c in seen.about(Z) if c.reach[0] < low and high < c.reach[1])
     return max(through, default=0.0)
 
 
-def counterweight(seen: Seen, webs: Webs) -> dict[str, float]:
+def counterweight(seen: PartSurfaces, webs: Webs) -> dict[str, float]:
     """Return its radius, and its angle [deg] if there is one: as thick as the web, and wider than it is."""
     _, _, inner, outer = webs.faces
     within = (c for c in seen.about(Z) if inner - _CLEAR < c.reach[0] and c.reach[1] < outer + _CLEAR)
@@ -77,7 +77,7 @@ def counterweight(seen: Seen, webs: Webs) -> dict[str, float]:
     return {"counterweight_radius": max(standing_out) / 2, "counterweight_angle": angle}
 
 
-def fillet(seen: Seen) -> float:
+def fillet(seen: PartSurfaces) -> float:
     """Return the radius of the fillets, all of which are alike; 0 if there are none.
 
     Raises
@@ -93,12 +93,12 @@ def fillet(seen: Seen) -> float:
     return radii[0]
 
 
-def drilling(seen: Seen) -> float:
+def drilling(seen: PartSurfaces) -> float:
     """Return the diameter of the cylinder that runs askew; 0 if there is none."""
     return max((c.diameter for c in seen.cylinders if not c.along(Z)), default=0.0)
 
 
-def inclination(seen: Seen) -> float:
+def inclination(seen: PartSurfaces) -> float:
     """Return the angle [deg] of the planes that are inclined to the shaft; 0 if there are none."""
     slopes = (
         degrees(atan2(abs(p.direction.x), abs(p.direction.z))) for p in seen.planes if _askew(p.direction)

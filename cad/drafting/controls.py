@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import cos, pi, radians, sin
 
 from cad.drafting.curves import Point
-from cad.drafting.declaration import Control, Declared
-from cad.drafting.dimension_layout import TEXT, NoRoom, Placed
+from cad.drafting.declaration import Control, DrawingDeclaration
+from cad.drafting.dimension_layout import TEXT, NoRoom, PlacedDimension
 from cad.drafting.formats import FORMATS
 from cad.drafting.frames import Frame
 from cad.drafting.letter_width import width_of
@@ -33,7 +33,7 @@ class Controls:
     def __init__(self, page: Page, room: Room, *, is_last: bool) -> None:
         self.page, self.plan, self.room, self.is_last = page, page.plan, room, is_last
 
-    def draw(self, declared: Declared, placed: Sequence[Placed]) -> str:
+    def draw(self, declared: DrawingDeclaration, placed: Sequence[PlacedDimension]) -> str:
         """Return everything that belongs to a dimension that is drawn; returns the letter of the first datum.
 
         Raises
@@ -41,7 +41,7 @@ class Controls:
         NoRoom
             If something has no place, unless it is the last scale to be tried.
         """
-        of: Mapping[str, Placed] = {one.dimension.name: one for one in placed if one.dimension.name}
+        of: Mapping[str, PlacedDimension] = {one.dimension.name: one for one in placed if one.dimension.name}
         for name, letter in declared.datums.items():
             if name in of:
                 self._datum(of[name], letter)
@@ -54,7 +54,7 @@ class Controls:
                 self._texture(of[name], f"Ra {height:g}")
         return drawn[0] if drawn else ""
 
-    def _datum(self, placed: Placed, letter: str) -> None:
+    def _datum(self, placed: PlacedDimension, letter: str) -> None:
         tries = list(self._stems(placed))
         chosen = next((one for one in tries if self.room.is_free(one[0])), None)
         if chosen is None and not self.is_last:
@@ -66,7 +66,7 @@ class Controls:
         middle = (box[0] + box[2]) / 2
         self.page.write(letter, middle - width_of(letter, TEXT) / 2, box[1] + TEXT / 2, TEXT)
 
-    def _stems(self, placed: Placed) -> Iterator[tuple[Rectangle, Symbol]]:
+    def _stems(self, placed: PlacedDimension) -> Iterator[tuple[Rectangle, Symbol]]:
         """Yield the places of a datum's letter: in line with a dimension line, or about what is measured."""
         if placed.ends is None:
             tip, turns = self._target(placed), [radians(turn) for turn in range(0, 360, 30)]
@@ -81,7 +81,7 @@ class Controls:
                 middle = end[0] + _HIGH / 2 * cos(turn), end[1] + _HIGH / 2 * sin(turn)
                 yield around(middle, _HIGH, _HIGH), symbol
 
-    def _frame(self, placed: Placed, control: Control) -> None:
+    def _frame(self, placed: PlacedDimension, control: Control) -> None:
         """A frame: sign, width, datum."""
         frame = Frame(control.form, control.width, control.to, TEXT)
         width, height = frame.width, frame.height
@@ -94,7 +94,7 @@ class Controls:
         frame.draw(self.page, left, low)
         self.room.add_line([target, start])
 
-    def _texture(self, placed: Placed, text: str) -> None:
+    def _texture(self, placed: PlacedDimension, text: str) -> None:
         reach = width_of(text, 2.5)
         target = self._target(placed)
         x, y = self._place(target, lambda x, y: (x - 3.5, y - 0.5, x + 6.5 + reach, y + 10.5), reach)
@@ -102,7 +102,7 @@ class Controls:
         self.page.write(text, x + 5.5, y + 6.0, 2.5)
         self.room.add_line([target, (x, y)])
 
-    def _target(self, placed: Placed) -> Point:
+    def _target(self, placed: PlacedDimension) -> Point:
         """Return a point of a face that carries a dimension, on the paper; within an edge, off its corner."""
         measure = placed.dimension.measure
         x, y = self.plan.paper(measure.points[1], placed.right)

@@ -1,4 +1,4 @@
-"""What a drawing takes from a model's declaration: is it a shaft, limits, datums, tolerances of form."""
+"""The part of a model's declaration that a drawing shows: kind, limits, datums, tolerances of form."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cad.drafting.title import TEXTURE, roughness
 from cad.header import Header
 from cad.model import CadModel
 from cad.step import Body
-from cad.tolerances import REPEATED, Carried, Limits, carried, limits_in
+from cad.tolerances import REPEATED, Limits, ToleranceFaces, carried, limits_in
 
 _FACES = ("cylinders", "beside", "spheres", "planes")  # that a tool machines, so they have a texture
 
@@ -31,7 +31,7 @@ class Control:
 
 
 @dataclass(frozen=True)
-class Declared:
+class DrawingDeclaration:
     """The declaration of a model.
 
     A file of nobody, or of a team's model, which other machines lack, has its limits from its header alone.
@@ -56,7 +56,7 @@ class Declared:
     datums: Mapping[str, str] = field(default_factory=dict)
     textures: Mapping[str, float] = field(default_factory=dict)
     sections: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    carriers: Mapping[str, Carried] = field(default_factory=dict)
+    carriers: Mapping[str, ToleranceFaces] = field(default_factory=dict)
 
     def repeated(self, parameters: Mapping[str, str], bodies: Sequence[Body]) -> dict[str, list[Point]]:
         """Return where the lengths begin and end that repeat along the shaft, by parameter [mm]."""
@@ -70,19 +70,19 @@ class Declared:
         return {name: spans for name in along if (spans := carriers.spans(name))}
 
     @staticmethod
-    def of(header: Header | None, *, is_assembly: bool = False) -> Declared:
+    def of(header: Header | None, *, is_assembly: bool = False) -> DrawingDeclaration:
         """Return what the model of a STEP file declares."""
         if header is None:
-            return Declared()
+            return DrawingDeclaration()
         limits = limits_in(header)
         model = models().versions.get((header.model, header.version))
         if model is None:
-            return Declared(limits=limits)
+            return DrawingDeclaration(limits=limits)
         carriers = carried(model)
         controls = tuple(_controls(model, limits))
         every = {one.datum for one in carriers.values()}
         shown = ({control.to for control in controls} if is_assembly else every) - {""}
-        return Declared(
+        return DrawingDeclaration(
             _is_shaft(model),
             limits,
             controls,

@@ -32,7 +32,7 @@ _NEAREST, _FARTHEST, _STEP = 5.0, 150.0, 3.0  # from what is measured to its wor
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedDimension:
     """A dimension with its place, in the drawing's coordinates.
 
     Attributes
@@ -55,7 +55,7 @@ class Placed:
     ends: tuple[Point, Point] | None = None
 
 
-Try = tuple[Rectangle, Placed, list[list[Point]]]
+Try = tuple[Rectangle, PlacedDimension, list[list[Point]]]
 """A place of words, the dimension with it, and the lines that it draws on the paper."""
 
 
@@ -63,13 +63,13 @@ class NoRoom(Exception):
     """The sheet has no free place at this scale."""
 
 
-class Placing:
+class DimensionLayout:
     """Finds a place for each dimension of a plan."""
 
     def __init__(self, plan: Plan, room: Room, *, is_last: bool) -> None:
         self.plan, self.room, self.is_last = plan, room, is_last
 
-    def all(self) -> list[Placed]:
+    def all(self) -> list[PlacedDimension]:
         """Return every dimension; those in lanes first.
 
         Raises
@@ -83,14 +83,14 @@ class Placing:
         ordered = sorted(self.plan.lanes.local, key=lambda one: one.measure.form != "angle")
         return placed + [self._local(one) for one in ordered]
 
-    def lane(self, lane: Lane) -> list[Placed]:
+    def lane(self, lane: Lane) -> list[PlacedDimension]:
         """Return the dimensions of one side of a view."""
         placed = list(self._in_lanes(lane))
         for one in placed:
             self._take_lines(one)
         return placed
 
-    def within(self, one: Dimension, along: float, high: float) -> Placed:
+    def within(self, one: Dimension, along: float, high: float) -> PlacedDimension:
         """An upright dimension whose line runs within a view, as across a web; its words stand above that.
 
         Parameters
@@ -112,7 +112,7 @@ class Placing:
         self.room.add((place - GAP - label.height(TEXT) - 0.5, middle - half, place + 0.5, middle + half))
         return self._laned(moved, label, 1, place, (ends[0], ends[1]), middle, 0.0)
 
-    def _in_lanes(self, lane: Lane) -> Iterator[Placed]:
+    def _in_lanes(self, lane: Lane) -> Iterator[PlacedDimension]:
         right = self.plan.beside if lane.is_of_end else 0.0
         ends = [sorted(p[lane.along] for p in self._on_paper(one, right)) for one in lane.dimensions]
         for one, (low, high) in zip(lane.dimensions, ends, strict=True):
@@ -142,14 +142,14 @@ class Placing:
         ends: tuple[float, float],
         middle: float,
         right: float,
-    ) -> Placed:
+    ) -> PlacedDimension:
         """Return a dimension whose line runs at a place across its lane."""
         line = tuple((place, end) if along else (end, place) for end in ends)
         words = None
         if label.upper or not ends[0] <= middle <= ends[1]:
             above = GAP + label.height(TEXT) / 2
             words = self.plan.at(*((place - above, middle) if along else (middle, place + above)))
-        return Placed(one, label, self.plan.at(*line[0]), words, right, (line[0], line[1]))
+        return PlacedDimension(one, label, self.plan.at(*line[0]), words, right, (line[0], line[1]))
 
     def _box_in_lane(
         self, label: Label, along: int, place: float, ends: tuple[float, float], middle: float
@@ -164,7 +164,7 @@ class Placing:
             return place - height, begin, place + 1.0, stop
         return begin, place - 1.0, stop, place + height
 
-    def _take_lines(self, placed: Placed) -> None:
+    def _take_lines(self, placed: PlacedDimension) -> None:
         """Dimension line and extension lines, which no later words cross."""
         assert placed.ends is not None
         self.room.add_line(placed.ends)
@@ -174,7 +174,7 @@ class Placing:
             nearest = min(points, key=lambda point: abs(point[along] - end[along]))
             self.room.add_line([nearest, end])
 
-    def _local(self, one: Dimension) -> Placed:
+    def _local(self, one: Dimension) -> PlacedDimension:
         right = self.plan.beside if one.measure.place == "end" else 0.0
         label = label_of(one)
         match one.measure.form:
@@ -213,7 +213,7 @@ class Placing:
                     low = y + GAP + TEXT / 2 - height / 2
                     box = left - 0.5, min(low, y + 0.2), left + width + 0.5, low + height
                     lines = [[centre, (x, y)], [(left, y), (left + width, y)]]
-                    yield box, Placed(arc, label, self.plan.at(x, y), None, right), lines
+                    yield box, PlacedDimension(arc, label, self.plan.at(x, y), None, right), lines
 
     def _across_angle(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
         """Yield the words beyond an arc between two legs, or their prolongations."""
@@ -236,7 +236,7 @@ class Placing:
             steps = [turns[0] + opening * (i / 24 * 1.2 - 0.1) for i in range(25)]
             arc = [(corner[0] + radius * cos(t), corner[1] + radius * sin(t)) for t in steps]
             lines = [arc, [legs[0], arc[2]], [legs[0], arc[-3]], [legs[1], arc[2]], [legs[1], arc[-3]]]
-            placed = Placed(one, label, self.plan.at(*base), None, right)
+            placed = PlacedDimension(one, label, self.plan.at(*base), None, right)
             yield around(words, width, height), placed, lines[:1] + _nearest(lines[1:])
 
     def _distances(self) -> Iterator[float]:
@@ -255,7 +255,7 @@ class Placing:
             for turn in range(90, 450, 15):
                 x = middle[0] + (away + width / 2) * cos(radians(turn))
                 y = middle[1] + (away + height / 2) * sin(radians(turn))
-                placed = Placed(one, label, self.plan.at(*middle), self.plan.at(x, y), right)
+                placed = PlacedDimension(one, label, self.plan.at(*middle), self.plan.at(x, y), right)
                 yield around((x, y), width + 1.0, height + 1.0), placed, [[middle, (x, y)]]
 
 

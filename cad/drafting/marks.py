@@ -10,7 +10,7 @@ from math import hypot
 from cadquery import Vector
 
 from cad.drafting.curves import Point
-from cad.drafting.dimension_layout import Placed
+from cad.drafting.dimension_layout import PlacedDimension
 from cad.drafting.letter_width import width_of
 from cad.drafting.page import Page
 from cad.drafting.plan import Plan
@@ -59,7 +59,7 @@ def centre_lines(section: View, end: View, bodies: Sequence[Body], plan: Plan) -
     return Centres([shaft[0], *axes, *crosses, *moved], [((plan.beside, 0.0), radius) for radius in pitch])
 
 
-def pitch_circles(placed: Sequence[Placed]) -> list[tuple[Point, float]]:
+def pitch_circles(placed: Sequence[PlacedDimension]) -> list[tuple[Point, float]]:
     """Return the circles about the shaft on which holes lie and that a dimension gives."""
     return [
         ((one.right, 0.0), one.dimension.measure.value / 2)

@@ -14,7 +14,7 @@ from cad.drafting.curves import Point
 from cad.drafting.views import View
 from cad.inspect import look_at
 from cad.step import Body
-from cad.surfaces import Seen, Surface, X, Y, Z
+from cad.surfaces import PartSurfaces, Surface, X, Y, Z
 
 Sort = Literal["diameter", "radius", "length", "width", "gap", "offset", "angle"]
 Form = Literal["across", "up", "aligned", "circle", "arc", "angle"]
@@ -54,7 +54,7 @@ def measures(bodies: Sequence[Body], section: View, end: View, most: int = _MOST
     return results
 
 
-def _of_cylinders(seen: Seen, section: View, end: View) -> Iterator[Measure]:
+def _of_cylinders(seen: PartSurfaces, section: View, end: View) -> Iterator[Measure]:
     about = []
     for cylinder in seen.cylinders:
         if cylinder.along(Z):
@@ -71,7 +71,7 @@ def _of_cylinders(seen: Seen, section: View, end: View) -> Iterator[Measure]:
             yield Measure("gap", high - low, "section", "up", ((ends[0], low), (ends[1], high)))
 
 
-def alike(cylinder: Surface, seen: Seen) -> int:
+def alike(cylinder: Surface, seen: PartSurfaces) -> int:
     """Return the number of equal cylinders in a pattern with one: at its place along parallel axes."""
     axis = cylinder.direction
     feet = {
@@ -153,7 +153,7 @@ def length_between(low: float, high: float, section: View, count: int = 1) -> Me
     return Measure("length", high - low, "section", "across", points, count)
 
 
-def _of_planes(seen: Seen, section: View, end: View, most: int) -> Iterator[Measure]:
+def _of_planes(seen: PartSurfaces, section: View, end: View, most: int) -> Iterator[Measure]:
     levels = seen.levels(Z)
     for low, high in _spans(levels if len(levels) <= most else [*levels[: most - 1], levels[-1]]):
         yield length_between(low, high, section, seen.count)
@@ -224,7 +224,7 @@ def _of_slopes(section: View) -> Iterator[Measure]:
             yield Measure("angle", degrees(atan2(abs(lean), rise)), "section", "angle", points)
 
 
-def _of_flanks(seen: Seen, end: View) -> Iterator[Measure]:
+def _of_flanks(seen: PartSurfaces, end: View) -> Iterator[Measure]:
     """Yield the angles between planes that hold the shaft's axis, on the side of the material."""
     flanks = [plane for plane in seen.planes if plane.holds(Z)]
     legs = [_leg(plane, end) for plane in flanks]

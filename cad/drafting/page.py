@@ -13,7 +13,7 @@ from ezdxf.filemanagement import new
 
 from cad.drafting.breaks import zigzag
 from cad.drafting.curves import Curve, Point
-from cad.drafting.dimension_layout import EXTENSION, GAP, TEXT, Placed
+from cad.drafting.dimension_layout import EXTENSION, GAP, TEXT, PlacedDimension
 from cad.drafting.plan import Plan
 from cad.drafting.symbols import Symbol
 from cad.drafting.views import View
@@ -118,7 +118,7 @@ class Page:
         for centre, radius in circles:
             self.space.add_circle(centre, radius, dxfattribs={"layer": "CENTRE"})
 
-    def dimension(self, placed: Placed) -> None:
+    def dimension(self, placed: PlacedDimension) -> None:
         """A dimension at its place, with the name of its parameter."""
         override = self._drawn(placed)
         override.dimension.dxf.layer = "DIMENSIONS"
@@ -126,7 +126,7 @@ class Page:
         if placed.dimension.name:
             override.dimension.set_xdata(APP, [(1000, placed.dimension.name)])
 
-    def _drawn(self, placed: Placed) -> Any:
+    def _drawn(self, placed: PlacedDimension) -> Any:
         """Return a DIMENSION of the right kind."""
         measure, base = placed.dimension.measure, placed.base
         points: Any = [(x + placed.right, y) for x, y in measure.points]
@@ -154,7 +154,7 @@ class Page:
                 return self.space.add_radius_dim(points[0], radius=measure.value, location=base, **level)
         return self.space.add_angular_dim_3p(base, *_counter_clockwise(points), **style)
 
-    def _line_under(self, placed: Placed, along: int) -> None:
+    def _line_under(self, placed: PlacedDimension, along: int) -> None:
         """Prolong a dimension line under words that stand beyond its end."""
         assert placed.ends is not None
         assert placed.words is not None

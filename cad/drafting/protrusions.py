@@ -12,7 +12,7 @@ from cad.drafting.measures import Measure, Sort, alike
 from cad.drafting.views import View
 from cad.inspect import look_at
 from cad.step import Body
-from cad.surfaces import Seen, X, Y, Z
+from cad.surfaces import PartSurfaces, X, Y, Z
 
 _CLEAR = 1e-6  # [mm]
 
@@ -25,7 +25,7 @@ def standing(bodies: Sequence[Body], section: View, end: View) -> list[Measure]:
     return [*beside, *of_walls(list(seen), section), *of_bevels(section)]
 
 
-def of_circles(seen: Seen, end: View) -> Iterator[Measure]:
+def of_circles(seen: PartSurfaces, end: View) -> Iterator[Measure]:
     """Yield the circles about the shaft on which the axes of holes lie."""
     for cylinder in seen.cylinders:
         if cylinder.along(Z) and not cylinder.about(Z):
@@ -33,7 +33,7 @@ def of_circles(seen: Seen, end: View) -> Iterator[Measure]:
             yield Measure("diameter", 2 * hypot(right, up), "end", "circle", ((0.0, 0.0), (right, up)))
 
 
-def of_walls(parts: Sequence[Seen], section: View) -> Iterator[Measure]:
+def of_walls(parts: Sequence[PartSurfaces], section: View) -> Iterator[Measure]:
     """From the bore of one part to the outside of another; from a bore to a circle beside it, its relief."""
     left = section.box[0][0]
     bores = {min(one.diameters(Z), default=0.0) / 2 for one in parts}
@@ -47,7 +47,7 @@ def of_walls(parts: Sequence[Seen], section: View) -> Iterator[Measure]:
                 yield Measure("gap", reach - low, "end", "across", ((low, 0.0), (reach, 0.0)))
 
 
-def of_arms(seen: Seen, end: View) -> Iterator[Measure]:
+def of_arms(seen: PartSurfaces, end: View) -> Iterator[Measure]:
     """Angles at the shaft between planes through it, on the side of the crown, as of the ends of a groove."""
     arms = []
     for plane in seen.planes:
@@ -62,7 +62,7 @@ def of_arms(seen: Seen, end: View) -> Iterator[Measure]:
             yield Measure("angle", angle, "end", "angle", ((0.0, 0.0), *points))
 
 
-def of_uprights(seen: Seen, end: View) -> Iterator[Measure]:
+def of_uprights(seen: PartSurfaces, end: View) -> Iterator[Measure]:
     """Yield the holes along y: their diameter, their depth, and how far apart their axes are."""
     feet = []
     for hole in (cylinder.turned(Y) for cylinder in seen.cylinders if cylinder.along(Y)):
@@ -79,7 +79,7 @@ def of_uprights(seen: Seen, end: View) -> Iterator[Measure]:
             yield Measure("width", abs(one[0] - other[0]), "end", "across", (one, other))
 
 
-def of_levels(seen: Seen, end: View) -> Iterator[Measure]:
+def of_levels(seen: PartSurfaces, end: View) -> Iterator[Measure]:
     """From the largest cylinder about the shaft to planes beyond it, and from the shaft to each plane."""
     radii = [0.0, *(diameter / 2 for diameter in seen.diameters(Z))]
     for axis in (X, Y):

@@ -17,7 +17,7 @@ from itertools import combinations
 from cadquery import Location, Vector
 
 from cad.drafting.curves import Point
-from cad.drafting.dimension_layout import TEXT, NoRoom, Placed, Placing
+from cad.drafting.dimension_layout import TEXT, DimensionLayout, NoRoom, PlacedDimension
 from cad.drafting.labels import label_of
 from cad.drafting.lanes import Lane
 from cad.drafting.letter_width import width_of
@@ -40,7 +40,7 @@ _LABEL = 14.0  # of a section's label above it [mm on paper]
 
 
 @dataclass(frozen=True)
-class Removed:
+class RemovedSection:
     """A removed section: its view about its own origin, its dimensions, and its height in the end view."""
 
     letter: str
@@ -68,7 +68,7 @@ def removed_sections(
     limits: Mapping[str, Limits],
     bodies: Sequence[Body],
     end: View,
-) -> list[Removed]:
+) -> list[RemovedSection]:
     """Return the removed sections of a drawing; one that shows nothing is left out."""
     if (end.frame.up - Y).Length > CLEAR:
         return []  # y is not upright in the view in which the section would be marked
@@ -86,7 +86,7 @@ def _removed(
     limits: Mapping[str, Limits],
     bodies: Sequence[Body],
     end: View,
-) -> Removed | None:
+) -> RemovedSection | None:
     factors, shows = said["at"], said["shows"]
     assert isinstance(factors, Mapping)
     assert isinstance(shows, Sequence)
@@ -102,7 +102,7 @@ def _removed(
     view = View(frame, curves, [], [], [cut_of(part, face, frame) for face in faces], [], straight)
     wanted = {name: parameters[name] for name in shows if name in parameters}
     dimensions, _ = matched(wanted, [*_measures(view)], limits)
-    return Removed(letter, view, height, tuple(dimensions)) if dimensions else None
+    return RemovedSection(letter, view, height, tuple(dimensions)) if dimensions else None
 
 
 def _measures(view: View) -> Iterator[Measure]:
@@ -120,7 +120,7 @@ def _measures(view: View) -> Iterator[Measure]:
             yield Measure("width", high - low, "section", form, points)
 
 
-def mark(page: Page, room: Room, removed: Removed) -> None:
+def mark(page: Page, room: Room, removed: RemovedSection) -> None:
     """The line along which a section is cut, in the end view; the arrows point down, as the eye looks."""
     plan = page.plan
     (left, _), (right, _) = removed.view.box
@@ -135,7 +135,7 @@ def mark(page: Page, room: Room, removed: Removed) -> None:
         room.add((min(at, start, stop) - 0.5, y - 9.5, max(at + width, start, stop) + 0.5, y + 1.0))
 
 
-def place(page: Page, room: Room, removed: Removed, placing: Placing) -> list[Placed]:
+def place(page: Page, room: Room, removed: RemovedSection, placing: DimensionLayout) -> list[PlacedDimension]:
     """Draw a section at a free place of the sheet; returns its dimensions.
 
     Raises
@@ -187,7 +187,7 @@ def _is_within(one: Dimension, view: View) -> bool:
     return min(x for x, _ in one.measure.points) > view.box[0][0] + CLEAR
 
 
-def _found(plan: Plan, room: Room, removed: Removed, sides: tuple[float, float, float]) -> Point:
+def _found(plan: Plan, room: Room, removed: RemovedSection, sides: tuple[float, float, float]) -> Point:
     """Lower left corner of the nearest free place for a section with its dimensions [mm on paper]."""
     (x, y), (right, high) = removed.view.box
     width = sides[0] + (right - x) * plan.scale + _MARGIN

@@ -16,8 +16,8 @@ from ezdxf._options import options
 from ezdxf.document import Drawing
 
 from cad.drafting.controls import Controls
-from cad.drafting.declaration import Declared
-from cad.drafting.dimension_layout import NoRoom, Placed, Placing
+from cad.drafting.declaration import DrawingDeclaration
+from cad.drafting.dimension_layout import DimensionLayout, NoRoom, PlacedDimension
 from cad.drafting.formats import Format
 from cad.drafting.marks import Centres, centre_lines, cutting_line, pitch_circles, section_label
 from cad.drafting.measures import length_between, measures
@@ -25,7 +25,7 @@ from cad.drafting.page import Page, document_of
 from cad.drafting.parameter_match import Dimension, matched, references
 from cad.drafting.plan import Plan, plans
 from cad.drafting.protrusions import standing
-from cad.drafting.removed_section import Removed, mark, place, removed_sections
+from cad.drafting.removed_section import RemovedSection, mark, place, removed_sections
 from cad.drafting.room import Rectangle, Room
 from cad.drafting.sheet_border import General, frame, notes, table, title_block
 from cad.drafting.title import general_profile
@@ -72,7 +72,7 @@ class _Content:
 
     section: View
     end: View
-    removed: Sequence[Removed]
+    removed: Sequence[RemovedSection]
     dimensions: Sequence[Dimension]
     unseen: Sequence[str]
 
@@ -89,13 +89,13 @@ class _Laid:
     page: Page
     room: Room
     centres: Centres
-    placed: Sequence[Placed]
+    placed: Sequence[PlacedDimension]
     datum: str
 
 
 def draw(bodies: Sequence[Body], header: Header | None) -> tuple[Drawing, Format]:
     """Return the drawing as a document of ezdxf, and its sheet."""
-    declared = Declared.of(header, is_assembly=is_assembly(bodies))
+    declared = DrawingDeclaration.of(header, is_assembly=is_assembly(bodies))
     content, laid = _laid_out(bodies, header, declared)
     page = laid.page
     section_label(page, content.section, laid.room)
@@ -110,7 +110,9 @@ def draw(bodies: Sequence[Body], header: Header | None) -> tuple[Drawing, Format
     return page.document, page.plan.format
 
 
-def _laid_out(bodies: Sequence[Body], header: Header | None, declared: Declared) -> tuple[_Content, _Laid]:
+def _laid_out(
+    bodies: Sequence[Body], header: Header | None, declared: DrawingDeclaration
+) -> tuple[_Content, _Laid]:
     """Return the first sheet on which everything has a place.
 
     One without removed sections if there is no other.
@@ -143,7 +145,7 @@ def _laid_out(bodies: Sequence[Body], header: Header | None, declared: Declared)
 
 
 def _laid(
-    content: _Content, bodies: Sequence[Body], declared: Declared, plan: Plan, *, is_last: bool
+    content: _Content, bodies: Sequence[Body], declared: DrawingDeclaration, plan: Plan, *, is_last: bool
 ) -> _Laid:
     """Return the dimensions, removed sections and symbols on one sheet.
 
@@ -158,7 +160,7 @@ def _laid(
     cutting_line(page, content.section, content.end, room)
     for one in content.removed:
         mark(page, room, one)
-    placing = Placing(plan, room, is_last=is_last)
+    placing = DimensionLayout(plan, room, is_last=is_last)
     placed = placing.all()
     for one in content.removed:
         placed += place(page, room, one, placing)
@@ -171,7 +173,7 @@ def _fill(
     section: View,
     end: View,
     centres: Centres,
-    placed: Sequence[Placed],
+    placed: Sequence[PlacedDimension],
 ) -> None:
     page.view(section, 0.0)
     page.view(end, page.plan.beside)

@@ -77,7 +77,7 @@ def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View
     up = _upright(bodies)
     section, end = Frame(Z, up), Frame(Z.cross(up), up)
     placed = [
-        _Placed(part, body.shape.moved(place), is_shaft or _is_ball(body.shape) or _is_bar(body.shape))
+        _PlacedPart(part, body.shape.moved(place), is_shaft or _is_ball(body.shape) or _is_bar(body.shape))
         for part, body in enumerate(bodies)
         for place in body.places
     ]
@@ -90,7 +90,7 @@ def is_assembly(bodies: Sequence[Body]) -> bool:
     return any(whole) and not all(whole)
 
 
-def _end(placed: Sequence[_Placed], frame: Frame, section: Frame) -> View:
+def _end(placed: Sequence[_PlacedPart], frame: Frame, section: Frame) -> View:
     """Return the view along the shaft, opened at holes that the section does not show."""
     plane = Plane((0, 0, 0), frame.right, frame.towards)
     shapes = [one.shape for one in placed if not one.is_whole]
@@ -127,7 +127,7 @@ def _end(placed: Sequence[_Placed], frame: Frame, section: Frame) -> View:
     )
 
 
-def _axes_across(placed: Sequence[_Placed], frame: Frame) -> list[tuple[Point, Point]]:
+def _axes_across(placed: Sequence[_PlacedPart], frame: Frame) -> list[tuple[Point, Point]]:
     """Return the axes of cylinders that lie in the plane of the paper, from where to where these reach."""
     axes = []
     for cylinder in (c for one in placed for c in look(one.shape).cylinders):
@@ -139,7 +139,7 @@ def _axes_across(placed: Sequence[_Placed], frame: Frame) -> list[tuple[Point, P
 
 
 @dataclass(frozen=True)
-class _Placed:
+class _PlacedPart:
     """A part where it stands; `is_whole` if a section does not cut it."""
 
     part: int
@@ -203,7 +203,7 @@ def _sides(shape: Shape, normal: Vector) -> tuple[float, float]:
     return low, high
 
 
-def _section(placed: Sequence[_Placed], frame: Frame) -> View:
+def _section(placed: Sequence[_PlacedPart], frame: Frame) -> View:
     """Return what lies behind the plane, with what is not cut, and the faces that the plane cuts."""
     sections = [(one, face) for one in placed for face in faces_across(one.shape, frame.towards)]
     faces = [face for _, face in sections]
@@ -219,7 +219,7 @@ def _section(placed: Sequence[_Placed], frame: Frame) -> View:
     return View(frame, view.visible, view.smooth, hidden, cuts, arcs, straight)
 
 
-def _seen(one: _Placed, normal: Vector) -> list[Shape]:
+def _seen(one: _PlacedPart, normal: Vector) -> list[Shape]:
     """Return what a section leaves of a part: its half behind the plane, or all of it if it is not cut."""
     if not one.is_whole:
         return half_behind(one.shape, normal)

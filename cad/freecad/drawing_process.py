@@ -116,7 +116,7 @@ def deny_calls(libc: ctypes.CDLL) -> None:
         raise OSError(ctypes.get_errno(), "the kernel does not filter calls")
 
 
-class Handled(ctypes.Structure):
+class FileAccess(ctypes.Structure):
     """The kinds of access to files that are ruled."""
 
     _fields_ = [("access", ctypes.c_uint64)]
@@ -146,7 +146,7 @@ def keep_to_files(libc: ctypes.CDLL, writable: str) -> None:
     if rules < 1:
         return  # a kernel without Landlock; the other walls stand
     everything = (1 << {1: 13, 2: 14}.get(rules, 15)) - 1  # later kernels rule links and shortening too
-    ruled = libc.syscall(create, ctypes.byref(Handled(everything)), ctypes.sizeof(Handled), 0)
+    ruled = libc.syscall(create, ctypes.byref(FileAccess(everything)), ctypes.sizeof(FileAccess), 0)
     places = {place: reading if os.path.isdir(place) else of_a_file for place in READABLE}
     for place, access in {**places, writable: everything}.items():
         try:

@@ -26,7 +26,7 @@ from cadquery import Edge, Face, Location, Solid, Vector
 from cadquery.func import face, segment, sphere, wire
 
 from cad.model import BRIGHT_STEEL, Box, CadModel, Part, mm
-from cad.surfaces import Seen, Z
+from cad.surfaces import PartSurfaces, Z
 from templates.core.language.template import Array, Truth, derived, formula, given, require, units
 
 SIZES = np.genfromtxt(
@@ -234,7 +234,7 @@ class BallBearing(CadModel):
         radius, half = mm(self.D) / 2, mm(self.B) / 2
         return Box((-radius, -radius, -half), (radius, radius, half))
 
-    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+    def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
         """Return every parameter, as the parts show it."""
         inner, outer, ball = seen["inner_ring"], seen["outer_ring"], seen["ball"]
         return {

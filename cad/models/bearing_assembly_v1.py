@@ -10,7 +10,7 @@ from cadquery import Solid, Vector
 from cad.model import BRIGHT_STEEL, BRONZE, STEEL, Box, CadModel, Part, mm
 from cad.shells.half_shell import HalfShell
 from cad.shells.housing import Housing
-from cad.surfaces import Seen, X, Y, Z
+from cad.surfaces import PartSurfaces, X, Y, Z
 from templates.core.language.template import Array, Truth, derived, formula, given, require, units
 
 IRON = (0.42, 0.44, 0.47)
@@ -231,7 +231,7 @@ class BearingAssembly(CadModel):
         a, b = mm(self.A) / 2, max(mm(self.B), mm(self.L_j)) / 2
         return Box((-a, -mm(self.H_c) - 2 * mm(self.a), -b), (a, mm(self.H_b), b))
 
-    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+    def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
         """Return every parameter; clearance between bore and journal, crush height between block and cap."""
         journal, lining, back = seen["journal"], seen["upper_lining"], seen["upper_back"]
         block, cap = seen["block"], seen["cap"]

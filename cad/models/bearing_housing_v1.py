@@ -8,7 +8,7 @@ import numpy as np
 
 from cad.model import STEEL, Box, CadModel, Part, mm
 from cad.shells.housing import Housing
-from cad.surfaces import Seen, X, Y, Z
+from cad.surfaces import PartSurfaces, X, Y, Z
 from templates.core.language.template import Array, Truth, derived, formula, given, require
 
 IRON: tuple[float, float, float] = (0.42, 0.44, 0.47)
@@ -167,7 +167,7 @@ class BearingHousing(CadModel):
         a, b = mm(self.A) / 2, mm(self.B) / 2
         return Box((-a, -mm(self.H_c), -b), (a, mm(self.H_b), b))
 
-    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+    def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
         """Return every parameter; spacing and depth of bolt holes only if there are any."""
         block, cap = seen["block"], seen["cap"]
         holes = [hole.turned(Y) for hole in block.cylinders if hole.along(Y)]

@@ -9,7 +9,7 @@ import numpy as np
 from cad.model import BRIGHT_STEEL, STEEL, Box, CadModel, Part, mm
 from cad.shells.housing import Housing
 from cad.shells.rod import Rod
-from cad.surfaces import Seen, X, Y, Z
+from cad.surfaces import PartSurfaces, X, Y, Z
 from templates.core.language.template import Array, Truth, derived, formula, given, require
 
 
@@ -264,7 +264,7 @@ class ConnectingRod(CadModel):
         a, b = max(mm(self.A), mm(self.A_s)) / 2, max(mm(self.B), mm(self.B_s)) / 2
         return Box((-a, -mm(self.H_c), -b), (a, mm(self.L) + mm(self.A_s) / 2, b))
 
-    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+    def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
         """Return every parameter; sizes of bolt holes and pockets only if there are any."""
         rod, cap = seen["rod"], seen["cap"]
         across, along = rod.levels(X), [z for z in rod.levels(Z) if z > 0]

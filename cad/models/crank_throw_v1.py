@@ -25,7 +25,7 @@ from cad.cranks.volume import volume
 from cad.fillets import Crank
 from cad.model import Box, Part, mm
 from cad.shaft import Shaft
-from cad.surfaces import Seen, Y
+from cad.surfaces import PartSurfaces, Y
 from templates.core.language.template import Array, formula
 
 
@@ -145,7 +145,7 @@ class CrankThrow(CrankRules):
             drawn.fillet,
         )
 
-    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+    def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
         """Return every parameter; the angle of a counterweight only if there is one."""
         surfaces, webs = seen[self.id], Webs.of(seen[self.id])
         front, rear = (stub[0] for stub in stubs(surfaces, webs))

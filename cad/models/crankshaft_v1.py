@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from cad.cranks.counterweights import count, sectors, stand_out, there_is_none, webs_of
-from cad.cranks.crankshaft_readback import ShaftSeen
+from cad.cranks.crankshaft_readback import ShaftReadback
 from cad.cranks.end_parameters import EndParameters
 from cad.cranks.outline import Outline
 from cad.cranks.rules import clear_of_corners, corner
@@ -18,7 +18,7 @@ from cad.cranks.throw import Throw
 from cad.cranks.whole import Throws, WholeShaft
 from cad.model import Box, Dimension, Part, mm
 from cad.shaft import Shaft
-from cad.surfaces import Seen
+from cad.surfaces import PartSurfaces
 from templates.core.language.template import Array, Truth, curve, formula, profile, require
 
 MOST_THROWS = 16
@@ -221,10 +221,10 @@ class Crankshaft(SplitParameters, EndParameters):
         shaft = self.drawn()
         return Shaft(shaft.low, shaft.high)
 
-    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, Dimension]:
+    def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, Dimension]:
         """Return every parameter; the angle of counterweights and the bolt circle only if there are any."""
         split = bool(are_split(self.delta))
-        found = ShaftSeen(seen[self.id], split)
+        found = ShaftReadback(seen[self.id], split)
         front, rear = found.ends
         radii = found.counterweights()
         near = np.degrees(np.atleast_1d(self.psi)).tolist()

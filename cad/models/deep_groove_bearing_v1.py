@@ -21,7 +21,7 @@ from cad.deep_groove import (
     width_by_designation,
 )
 from cad.model import BRIGHT_STEEL, BRONZE, Box, CadModel, Part, mm
-from cad.surfaces import Seen, Z
+from cad.surfaces import PartSurfaces, Z
 from templates.core.language.template import Array, Truth, choice, derived, formula, require
 
 INWARDS, OUTWARDS = -1, 1
@@ -207,7 +207,7 @@ class DeepGrooveBearing(CadModel):
         radius, half = mm(self.D) / 2, mm(self.B) / 2
         return Box((-radius, -radius, -half), (radius, radius, half))
 
-    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+    def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
         """Every length and the count of balls, as the parts show them; those of the cage if there is one."""
         inner, outer, ball = seen["inner_ring"], seen["outer_ring"], seen["ball"]
         sizes = {

@@ -14,7 +14,7 @@ from cadquery.func import cut
 
 from cad.model import BRONZE, Box, CadModel, Part, mm
 from cad.revolution import Point, drill, drilled_volume, outline, turned, turned_volume
-from cad.surfaces import Seen, Y, Z
+from cad.surfaces import PartSurfaces, Y, Z
 from templates.core.language.template import Array, Truth, derived, formula, given, require, units
 
 
@@ -259,7 +259,7 @@ class FlangedBush(CadModel):
         radius = mm(self.D_f) / 2
         return Box((-radius, -radius, 0.0), (radius, radius, mm(self.B)))
 
-    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+    def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
         """Return every length that the bush has; no groove and no hole show none."""
         bush = seen["bush"]
         about, levels, holes = (

@@ -15,9 +15,9 @@ from cad.shells.half_shell import Flange, FullBush, Groove, HalfShell, Tang
 from cad.shells.parameters import joints
 from cad.shells.relief import Relief
 from cad.shells.rules import ShellRules
-from cad.shells.shell_readback import ShellSeen
-from cad.shells.spread import FreeShellSeen, half_angle, reach_of
-from cad.surfaces import Seen
+from cad.shells.shell_readback import ShellReadback
+from cad.shells.spread import FreeShellReadback, half_angle, reach_of
+from cad.surfaces import PartSurfaces
 from templates.core.language.template import (
     Array,
     Truth,
@@ -246,12 +246,12 @@ class PlainBearing(ShellRules):
         }[self.shells]  # fmt: skip
         return Box((-left, bottom, -b), (right, top, b))
 
-    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+    def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
         """Return every length that the shells have, of the upper one if it is there."""
         which = "upper" if self.shells == "pair" else self.shells
         back = seen[f"{which}_back"]
         shown = back, seen.get(f"{which}_lining", back), self.drawn(which)
         if self.state == "free":
-            return FreeShellSeen(*shown).free_sizes(with_oil=which == "upper")
+            return FreeShellReadback(*shown).free_sizes(with_oil=which == "upper")
         side = {"upper": 1, "lower": -1, "full": 0}[which]
-        return ShellSeen(*shown).sizes(with_oil=which != "lower", side=side)
+        return ShellReadback(*shown).sizes(with_oil=which != "lower", side=side)

@@ -16,7 +16,7 @@ from cadquery.func import cut, extrude, face, segment, wire
 
 from cad.model import BRONZE, Box, CadModel, Part, mm
 from cad.revolution import nearest, sheet_under_arc
-from cad.surfaces import Seen, X, Y, Z
+from cad.surfaces import PartSurfaces, X, Y, Z
 from templates.core.language.template import (
     Array,
     Truth,
@@ -325,7 +325,7 @@ class ThrustWasher(CadModel):
         R, top = mm(self.D) / 2, mm(self.D) / 2 + (mm(self.h_l) if self.w_l > 0 else 0.0)
         return Box((-R, 0.0 if self.washer == "half" else -R, 0.0), (R, top, mm(self.t)))
 
-    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+    def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
         """Return every parameter; those of grooves, pin hole and lug only if there are any."""
         washer, wanted = seen["washer"], self.drawn()
         about, levels = washer.diameters(Z), washer.levels(Z)

@@ -9,20 +9,20 @@ from math import asin, degrees, hypot, pi
 from cad.revolution import nearest
 from cad.shells.half_shell import HalfShell
 from cad.shells.relief import read_relief
-from cad.surfaces import Seen, Surface, Y, Z
+from cad.surfaces import PartSurfaces, Surface, Y, Z
 
 _SAME = 1e-6  # [mm]
 
 
 @dataclass(frozen=True)
-class ShellSeen:
+class ShellReadback:
     """Back and lining of one shell, and what it should be: of equal sizes the nearer one is meant.
 
     Without a lining the back stands for it.
     """
 
-    back: Seen
-    lining: Seen
+    back: PartSurfaces
+    lining: PartSurfaces
     wanted: HalfShell
 
     def sizes(self, *, with_oil: bool, side: int) -> dict[str, float]:
@@ -64,7 +64,7 @@ class ShellSeen:
 
     @property
     def groove_turn(self) -> float:
-        """The turn of the groove [rad]: from end to end, or half a turn if it goes from joint to joint."""
+        """Return the angle of the groove [rad] from end to end; half a turn from joint to joint."""
         groove = self.wanted.groove
         if groove is None or groove.is_whole:
             return pi
@@ -88,7 +88,7 @@ class ShellSeen:
             sizes["outer_chamfer"] = half + min(reaches)
         return sizes
 
-    def _highest(self, seen: Seen, radius: float) -> float:
+    def _highest(self, seen: PartSurfaces, radius: float) -> float:
         return max(c.reach[1] for c in seen.about(Z) if abs(c.diameter / 2 - radius) < _SAME)
 
     def relief(self) -> dict[str, float]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from cad.revolution import nearest
 from cad.shells.half_shell import HalfShell
-from cad.shells.shell_readback import ShellSeen
+from cad.shells.shell_readback import ShellReadback
 from cad.surfaces import Surface, X, Y, Z
 from templates.core.language.declare import on_paper
 from templates.core.language.template import Array, units
@@ -53,7 +53,7 @@ def half_angle(length: Array, wall: Array, crush: Array, width: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class FreeShellSeen(ShellSeen):
+class FreeShellReadback(ShellReadback):
     """A free half shell: the sizes in the housing follow from its arc, and its spread from its joints."""
 
     @property

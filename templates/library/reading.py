@@ -31,7 +31,7 @@ class UnusableTable(TemplateError):
 
 
 @dataclass(frozen=True)
-class Cited:
+class CitedValue:
     """A value in its unit, and where it comes from."""
 
     value: float
@@ -45,7 +45,7 @@ class Row:
 
     id: str
     words: str
-    values: Mapping[str, Cited]
+    values: Mapping[str, CitedValue]
     source: str
     note: str = ""
 
@@ -75,13 +75,13 @@ def read_sources(path: Path) -> dict[str, Source]:
 
 
 def read_rows(path: Path, sources: Mapping[str, Source]) -> tuple[Row, ...]:
-    """Return the rows of a table, checked.
+    """Check the rows of a table and return them.
 
     Raises
     ------
     UnusableTable
-        If a row is there twice, is not confirmed, names a source that is unknown or no value, or has a
-        number or a unit that is none.
+        If a row occurs twice or is not confirmed, names an unknown source or no value, or has an invalid
+        number or unit.
     """
     records = list(_records(path))
     _each_once(path, (record["id"] for record in records))
@@ -116,7 +116,7 @@ def _row(path: Path, record: Mapping[str, str], sources: Mapping[str, Source]) -
 
 def _values(
     path: Path, record: Mapping[str, str], sources: Mapping[str, Source]
-) -> Iterator[tuple[str, Cited]]:
+) -> Iterator[tuple[str, CitedValue]]:
     for head, text in record.items():
         match = _QUANTITY.fullmatch(head)
         if match is None and head not in _OTHERS and not head.startswith("source of "):
@@ -124,7 +124,7 @@ def _values(
         if match and text:
             own = f"source of {match[1]}"
             source = _citation(path, record, own if record.get(own) else "source", sources)
-            yield match[1], Cited(_number(path, record["id"], text), _unit(path, match[2]), source)
+            yield match[1], CitedValue(_number(path, record["id"], text), _unit(path, match[2]), source)
 
 
 def _citation(path: Path, record: Mapping[str, str], column: str, sources: Mapping[str, Source]) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from templates.core.errors import TemplateError
 from templates.core.units.units import unit
-from templates.library.reading import Cited, Row, UnusableTable, read_rows, read_sources
+from templates.library.reading import CitedValue, Row, UnusableTable, read_rows, read_sources
 from templates.physics.journals.oil import MM2_PER_S
 from templates.physics.journals.oil_grades import basis, grades, viscosity_at_40, viscosity_at_100
 
@@ -127,7 +127,7 @@ def table(id: str) -> Table:
     return tables()[id]
 
 
-def limits_of(table_id: str, row_id: str) -> Mapping[str, Cited]:
+def limits_of(table_id: str, row_id: str) -> Mapping[str, CitedValue]:
     """Return the limits that a row gives, by name, each with its unit and source.
 
     Raises
@@ -145,7 +145,7 @@ def limits_of(table_id: str, row_id: str) -> Mapping[str, Cited]:
     return row.values
 
 
-def fills(input_name: str) -> Iterator[tuple[Row, Cited]]:
+def fills(input_name: str) -> Iterator[tuple[Row, CitedValue]]:
     """Yield the rows whose values an input may take, such as the finishes for `journal_roughness`."""
     for one in tables().values():
         names = [column.name for column in one.columns if input_name in column.fills]
@@ -170,8 +170,8 @@ def _oil(grade: str) -> Row:
     source = basis(grade)
     at_40, at_100 = (float(f(grade)) / MM2_PER_S for f in (viscosity_at_40, viscosity_at_100))
     values = {
-        "viscosity_at_40": Cited(round(at_40, 9), "mm**2/s", source),
-        "viscosity_at_100": Cited(round(at_100, 9), "mm**2/s", source),
+        "viscosity_at_40": CitedValue(round(at_40, 9), "mm**2/s", source),
+        "viscosity_at_100": CitedValue(round(at_100, 9), "mm**2/s", source),
     }
     return Row(grade, _words_of_oil(grade), values, source)
 

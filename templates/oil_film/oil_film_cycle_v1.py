@@ -24,12 +24,12 @@ from templates.physics.numerics.reserve import above, below
 from templates.physics.orbits.cyclic_film import CycleFilm, Duty
 from templates.physics.pads.slider_film import spread
 from templates.physics.supplied.fed_cycle import (
-    BOUNDARY_RELIEVED,
+    BOUNDARY,
     FedDuty,
     FedOrbit,
+    fed_duty,
     fed_film,
     fed_orbit,
-    relieved_duty,
 )
 from templates.physics.supplied.feeding import feed_under_load, supply_kind
 
@@ -289,7 +289,7 @@ class OilFilmCycle(FedBearing):
     @shared
     def fed(self) -> FedDuty:
         """The same with what feeds it, and what its pressure bears in a groove."""
-        return relieved_duty(self.duty, self.feeding, self.P_s)
+        return fed_duty(self.duty, self.feeding, self.P_s)
 
     @shared
     def any_orbit(self) -> FedOrbit:
@@ -322,7 +322,7 @@ class OilFilmCycle(FedBearing):
     @shared
     def boundary_of_level(self) -> str:
         """What the level takes for the pressure at the film's borders."""
-        return BOUNDARY_RELIEVED[self.level]
+        return BOUNDARY[self.level]
 
     @formula("um", "minimum film thickness", symbol=r"h_{0}", absent=STARVED)
     def h_0(self) -> Array:

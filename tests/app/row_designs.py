@@ -7,7 +7,7 @@ import pytest
 
 from app.designs.document import Document
 from app.designs.engine.calculate import calculate
-from app.designs.engine.net import Net
+from app.designs.engine.design_engine import DesignEngine
 from app.designs.graph import Catalogues, build_graph
 from app.reference import Reference
 from cad.catalogue import models
@@ -91,7 +91,7 @@ CURVES = {
 
 def net_of(raw, *varied, **options):
     """The net of a raw document in which places of these names vary."""
-    return Net.of(Document.model_validate(raw), CATALOGUES, list(map(ref, varied)), **options)
+    return DesignEngine.of(Document.model_validate(raw), CATALOGUES, list(map(ref, varied)), **options)
 
 
 def spread(net, count, low=0.9, high=1.1, seed=0):

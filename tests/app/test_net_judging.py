@@ -10,7 +10,7 @@ from row_designs import BEARING, CURVES, FILM, alone, calculated, net_of, ref, s
 from app.designs.engine.verdicts import judged
 from templates.core.errors import InvalidInputs
 from templates.core.judging.comparison import MET, NOT_CHECKED, NOT_MET, UNDECIDED, WORST_FIRST
-from templates.core.language.criteria import Evaluated, estimate_of
+from templates.core.language.criteria import EvaluatedValues, estimate_of
 from templates.core.language.evaluate import evaluate
 from templates.core.language.levels import accuracy
 from templates.core.units.units import unit
@@ -224,7 +224,7 @@ def test_points_without_a_size_leave_the_errors_of_others():
     load = {"value": [25.0, 1e9], "unit": "kN"}
     result = evaluate(template, {**template.example, "radial_load": load}, outputs=["stiffness_xx"])
     measured = accuracy(template)
-    evaluated = Evaluated(result.template, result.outputs, result.error, measured)
+    evaluated = EvaluatedValues(result.template, result.outputs, result.error, measured)
     estimate = estimate_of(evaluated, "stiffness_xx")
     assert np.isnan(estimate.error).tolist() == [False, True]
     assert estimate.error[0] == result.error["stiffness_xx"][0]

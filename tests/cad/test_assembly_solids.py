@@ -14,7 +14,7 @@ from cad.checks import MOST_NAMED
 from cad.errors import GeometryError
 from cad.export import DERIVED, derive
 from cad.header import Header
-from cad.imported_models import Drawn
+from cad.imported_models import ProgramResult
 from cad.model import Part
 from cad.model_classes import class_of, description_of
 from cad.overlaps import clearances
@@ -36,7 +36,7 @@ def assembly(step=BOLT, base=("bearing_assembly", 1), **component):
     sha = hashlib.sha256(step).hexdigest()
     one = Component("bolt", sha, "a file", **component)
     text = described("Assembly", "0" * 64, "a.json", base, {one: {}}).text
-    return class_of(text, "with_bolt", 1), Drawn(fixed={sha: step})
+    return class_of(text, "with_bolt", 1), ProgramResult(fixed={sha: step})
 
 
 def built(step=BOLT, base=("bearing_assembly", 1), datum="cap.low_y", may_overlap=(), **parameters):
@@ -99,7 +99,7 @@ def test_a_name_of_a_part_of_the_model_is_refused():
     text = described("A", "0" * 64, "a.json", ("bearing_assembly", 1), {Component("cap", sha, "a"): {}}).text
     cls = class_of(text, "two_caps", 1)
     shape = cls.from_quantities(cls.example)
-    shape.take(Drawn(fixed={sha: step}))
+    shape.take(ProgramResult(fixed={sha: step}))
     with pytest.raises(GeometryError, match="cap is the name of a part of bearing_assembly"):
         shape.build()
 
@@ -185,7 +185,7 @@ def two_components(step, **of_second):
     parts = {Component("one", sha, "a file"): {}, Component("two", sha, "a file", **of_second): {}}
     cls = class_of(described("Twice", "0" * 64, "a.json", None, parts).text, "twice", 1)
     shape = cls.from_quantities({})
-    shape.take(Drawn(fixed={sha: step}))
+    shape.take(ProgramResult(fixed={sha: step}))
     return shape
 
 

@@ -187,6 +187,8 @@ def parameters(draw: st.DrawFn, cls: type[CadModel]) -> dict[str, Value]:
             chosen[name] = draw(st.sampled_from(declared.options))
         elif declared.required:
             chosen[name] = _between(declared, draw(st.floats(0, 1)))
+    if _refused(cls, chosen):
+        return chosen  # choices that exclude each other, as a full bush and a free state
     defaults = cls.from_si(chosen).inputs_si()
     optional = [name for name, declared in cls.inputs.items() if isinstance(declared, Derived)]
     factors = st.sampled_from([0.0, 0.5, 0.8, 1.01, 1.25, 2.0]) | st.floats(0.3, 3) | st.floats(-1, 1000)

@@ -9,7 +9,15 @@ from cadquery import Solid, Workplane, exporters
 
 from cad.errors import GeometryError
 from cad.header import Header
-from cad.imported_models import Description, Drawn, DrawnPart, Parameter, parts_of, role_of, trial_sizes
+from cad.imported_models import (
+    Description,
+    DrawnPart,
+    Parameter,
+    ProgramResult,
+    parts_of,
+    role_of,
+    trial_sizes,
+)
 from cad.model import Part
 from cad.model_classes import class_of, description_of
 from cad.regenerate import as_text, build_key, regenerate_shape
@@ -25,7 +33,7 @@ def ring(bore, tmp_path):
     place = tmp_path / f"ring_{bore}.step"
     solid = Solid.makeCylinder(20, 8).cut(Solid.makeCylinder(bore / 2, 8))
     exporters.export(Workplane(solid), str(place))
-    return Drawn(step=place.read_bytes())
+    return ProgramResult(step=place.read_bytes())
 
 
 def shape(**parameters):
@@ -114,7 +122,7 @@ def fixed(step):
     one = class_of(
         Description("step", 64 * "c", "bought.stp", "Bought", "STEP").text, "bought", 1
     ).from_quantities({})
-    one.take(Drawn(step=step))
+    one.take(ProgramResult(step=step))
     return one
 
 
@@ -147,7 +155,7 @@ def test_a_part_without_a_name_has_one():
 def test_solids_that_freecad_calls_alike_get_numbers():
     brep = io.BytesIO()
     Solid.makeBox(1, 2, 3).exportBrep(brep)
-    drawn = Drawn(
+    drawn = ProgramResult(
         tuple(DrawnPart(name, brep.getvalue(), 6.0) for name in ("Körper", "Körper", "Körper 1", ""))
     )
     assert [part.name for part in parts_of(drawn)] == ["Körper", "Körper_2", "Körper 1", "part"]

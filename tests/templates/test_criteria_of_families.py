@@ -14,7 +14,7 @@ from criteria_of_shafts import CASES as OF_SHAFTS
 
 from templates.core.judging.judging import judge
 from templates.core.language import levels
-from templates.core.language.criteria import Evaluated, estimates_of
+from templates.core.language.criteria import EvaluatedValues, estimates_of
 from templates.core.language.evaluate import evaluate
 from templates.door import built_in
 
@@ -326,7 +326,9 @@ def test_what_is_judged_without_a_threshold_says_the_same_where_there_is_one(see
     speed, threshold = (result.template.omega_J, result.template.omega_w)
     whirl = next(one for one in cls.declared_criteria if one.name == "whirl")
     instead = whirl.absent["whirl_threshold_speed"].instead
-    estimates, absent = estimates_of(Evaluated(result.template, result.outputs, result.error, None), instead)
+    estimates, absent = estimates_of(
+        EvaluatedValues(result.template, result.outputs, result.error, None), instead
+    )
     judgement = judge(instead, estimates, absent)
     assert (judgement.value <= judgement.limit) == (abs(speed) <= threshold)
     assert judgement.value / judgement.limit == pytest.approx((speed / threshold) ** 2, rel=1e-9)

@@ -17,7 +17,7 @@ from app.catalogue.schemas.library import (
 from app.http.pages import Cursor, Limit, page_of
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
-from templates.library.reading import Cited, Row
+from templates.library.reading import CitedValue, Row
 from templates.library.tables import Column, Table, table, tables
 
 router = APIRouter(prefix="/api/v1/library", tags=["library"], route_class=StrictRoute)
@@ -60,5 +60,5 @@ def _row(row: Row) -> LibraryRow:
     return LibraryRow(id=row.id, words=row.words, values=values, source=row.source, note=row.note or None)
 
 
-def _cited(cited: Cited) -> CitedQuantity:
+def _cited(cited: CitedValue) -> CitedQuantity:
     return CitedQuantity(value=cited.value, unit=cited.unit, source=cited.source)

@@ -27,7 +27,7 @@ from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.request import read_request
 from templates.core.language.spec import Choice, Curve
-from templates.core.units.quantity import Typed, read, read_any
+from templates.core.units.quantity import TypedQuantity, read, read_any
 from templates.core.units.relation import is_relation
 
 NOT_FINITE = "the relation has no finite value here (a division by zero, a root below zero?)"
@@ -163,7 +163,7 @@ def _copy(before: Calculation) -> Calculation:
 
 
 def _unmeasured(*_: object) -> None:
-    """Rows measure no solid."""
+    """Return no measure: rows build no solids."""
 
 
 def calculate_nodes(
@@ -207,7 +207,7 @@ def _unmapped(result: Calculation, name: str, sources: Iterable[Node]) -> list[F
 
 
 def _cell(result: Calculation, cell: Cell) -> None:
-    """The value of a cell, if what it follows from has one; a faulty literal is left to its block."""
+    """Return the value of a cell if its sources have values; its block reports a faulty literal."""
     sources = result.graph.sources[cell]
     if cell.reference in result.given:
         column = Column(result.given[cell.reference], is_row=True)
@@ -237,7 +237,7 @@ def _waits(result: Calculation, cell: Cell, sources: Collection[Node]) -> bool:
     return result.needs is not None and not result.needs.waiting.isdisjoint(cell.uses.values())
 
 
-def literal(cell: Cell) -> Typed:
+def literal(cell: Cell) -> TypedQuantity:
     """Return a quantity as its user wrote it.
 
     Raises
@@ -249,7 +249,7 @@ def literal(cell: Cell) -> Typed:
 
 
 def _related(result: Calculation, cell: Cell) -> None:
-    """The value of relations, in a block in the unit that is declared there."""
+    """Return the value of relations, in a block in the unit that is declared there."""
     uses = {name: result.used(reference) for name, reference in cell.uses.items()}
     _limit(result, cell, uses)
     column = _admitted(result, cell, _joined(cell, uses), uses, NOT_FINITE)
@@ -266,16 +266,16 @@ def _limit(result: Calculation, cell: Cell, uses: Mapping[str, Column]) -> None:
         limit_operations(result.operations)
 
 
-def _typed(result: Calculation, cell: Cell, column: Column) -> Typed:
+def _typed(result: Calculation, cell: Cell, column: Column) -> TypedQuantity:
     """Return the value of a relation as the template of its block takes it."""
     si = column.value
     if cell.declared is None:
-        return Typed(None, "", si, {})  # it is used in SI only
+        return TypedQuantity(None, "", si, {})  # it is used in SI only
     scale = cell.declared.meaning.scale
     block = result.graph.blocks.get(cell.reference.block)
     is_of_model = block is not None and block.is_model
     tolerance = tolerance_of(result.graph, cell, result.typed) if is_of_model else None
-    return Typed(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {}, tolerance)
+    return TypedQuantity(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {}, tolerance)
 
 
 def _joined(cell: Cell, uses: Mapping[str, Column]) -> Column:

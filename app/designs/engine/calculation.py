@@ -23,7 +23,7 @@ from templates.core.arrays import Array
 from templates.core.errors import Fault, FaultyText, TemplateError
 from templates.core.language.evaluate import Evaluation
 from templates.core.language.template import Template
-from templates.core.units.quantity import Typed
+from templates.core.units.quantity import TypedQuantity
 from templates.core.units.units import Value, unit
 
 Measures = Mapping[str, float]  # in the units of MEASURES
@@ -93,7 +93,7 @@ class Calculation:
     given: Mapping[Reference, Array] = field(default_factory=dict)
     changed: Mapping[Reference, Column] = field(default_factory=dict)
     values: dict[str, Column] = field(default_factory=dict)
-    typed: dict[str, Typed] = field(default_factory=dict)
+    typed: dict[str, TypedQuantity] = field(default_factory=dict)
     prepared: dict[str, Prepared] = field(default_factory=dict)
     evaluations: dict[str, Evaluation] = field(default_factory=dict)
     steps: dict[str, StepRows] = field(default_factory=dict)

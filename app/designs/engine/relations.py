@@ -20,7 +20,7 @@ from templates.core.units.items import item_of
 from templates.core.units.lists import ITEM, LIST
 from templates.core.units.nodes import Apply, Constant, Item, Name, Node, Operation, Word
 from templates.core.units.operations import OPERATORS
-from templates.core.units.quantity import Typed
+from templates.core.units.quantity import TypedQuantity
 from templates.core.units.relation import Relation
 from templates.core.units.tolerance import Tolerance
 from templates.core.units.walking import LISTWISE, check_ranks, listwise
@@ -133,7 +133,7 @@ def rank_of(node: Node, ranks: Mapping[str, int]) -> int:
     return max(inside, default=0)
 
 
-def tolerance_of(graph: Graph, cell: Cell, typed: Mapping[str, Typed]) -> Tolerance | None:
+def tolerance_of(graph: Graph, cell: Cell, typed: Mapping[str, TypedQuantity]) -> Tolerance | None:
     """Return the tolerance that a cell has by its relation; None if it has none.
 
     `typed` are the values of cells as they were read. A zone of ISO 286 is that of its own nominal size:

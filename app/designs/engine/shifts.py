@@ -25,7 +25,7 @@ from app.pool.cost import EXPENSIVE, estimated_seconds
 from app.reference import Reference
 from templates.core.arrays import Mask
 from templates.core.judging.judging import Absent
-from templates.core.units.quantity import Typed
+from templates.core.units.quantity import TypedQuantity
 
 MOST_SHIFTED = 12
 """Uncertain outputs of a design that are shifted; each takes two calculations of what follows from it."""
@@ -238,7 +238,7 @@ class Shifts:
         if column is None or cell.declared is None or not column.is_row:
             return self.calculation.typed.get(cell.name, cell.raw)
         si = column.of(slice(0, 1)).value[0]  # type: ignore[index] # it has rows
-        return Typed(None, cell.declared.meaning.unit, si if np.ndim(si) else float(si), {})
+        return TypedQuantity(None, cell.declared.meaning.unit, si if np.ndim(si) else float(si), {})
 
     def _is_carried(self, origin: Reference) -> bool:
         """Return whether what follows from an output is calculated at both ends; it is done here, once."""

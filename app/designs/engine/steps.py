@@ -29,13 +29,13 @@ from templates.core.errors import InvalidInputs
 from templates.core.judging.bands import Estimate
 from templates.core.judging.judging import Absent
 from templates.core.language.answer import Answer
-from templates.core.language.criteria import Evaluated, estimate_of
+from templates.core.language.criteria import EvaluatedValues, estimate_of
 from templates.core.language.evaluate import Evaluation, answers_at_level
 from templates.core.language.intake import is_single
 from templates.core.language.levels import at_level
 from templates.core.language.spec import Curve, Profile, Table
 from templates.core.language.template import Template
-from templates.core.units.quantity import Typed
+from templates.core.units.quantity import TypedQuantity
 from templates.core.units.units import Value
 
 NO_VALUE = "there is no value here"
@@ -224,7 +224,7 @@ class _Evaluator:
     is_level_given: bool
 
     def evaluate(self, rows: Indices) -> None:
-        """Answers for some rows; a refusing call is halved down to single rows."""
+        """Evaluate some rows; if a call is refused, evaluate its halves, down to single rows."""
         try:
             part = self._part(rows)
         except InvalidInputs as error:
@@ -276,7 +276,7 @@ class _Evaluator:
             si = np.asarray(value.value)[rows[0]]
         elif isinstance(declared, Curve) and not value.rank:
             si = np.broadcast_to(np.asarray(si)[:, None], (rows.size, self._places(declared)))
-        return Typed(None, declared.meaning.unit, si if np.ndim(si) else float(si), {})
+        return TypedQuantity(None, declared.meaning.unit, si if np.ndim(si) else float(si), {})
 
     def _places(self, declared: Curve) -> int:
         """Number of places that the other curves have along the same axis."""
@@ -289,7 +289,7 @@ class _Evaluator:
         return max(lengths)
 
 
-Evaluations = Sequence[tuple[Part, Evaluated]]
+Evaluations = Sequence[tuple[Part, EvaluatedValues]]
 """The parts of a step as the criteria of its template see them."""
 
 

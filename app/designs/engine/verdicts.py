@@ -29,7 +29,7 @@ from templates.core.judging.limits import GivenLimit
 from templates.core.judging.summary import worst_first
 from templates.core.judging.worst import worst_of_rows
 from templates.core.language.criteria import (
-    Evaluated,
+    EvaluatedValues,
     along_of,
     estimates_of,
     is_due,
@@ -186,7 +186,7 @@ class Verdicts:
         judgement = self._of_step(subject, evaluated, notes(evaluated, criterion), instead)
         yield _named(judgement, block, subject.demand)
 
-    def _instead(self, block: Block, evaluated: Evaluated, criterion: Criterion) -> Instead | None:
+    def _instead(self, block: Block, evaluated: EvaluatedValues, criterion: Criterion) -> Instead | None:
         """Return the judgement where a side has no value, with the errors from upstream."""
         missing = missing_of(evaluated, criterion)
         if missing is None or missing.instead is None:
@@ -195,7 +195,11 @@ class Verdicts:
         return Instead(self._of_step(subject, evaluated, {}, None), missing.reason)
 
     def _of_step(
-        self, subject: Subject, evaluated: Evaluated, more: Mapping[str, str | None], instead: Instead | None
+        self,
+        subject: Subject,
+        evaluated: EvaluatedValues,
+        more: Mapping[str, str | None],
+        instead: Instead | None,
     ) -> Judgement:
         criterion, block = subject.criterion, subject.block
         assert block is not None
@@ -335,7 +339,7 @@ class Verdicts:
             return estimate_rows(step, parts, reference.member)
         return Absent((), f"{reference} is not computed; name it in the outputs of the step")
 
-    def _evaluated(self, step: str) -> Evaluated | None:
+    def _evaluated(self, step: str) -> EvaluatedValues | None:
         """Return a step as its criteria see it; None of a model, and while it waits."""
         parts = self._parts(step)
         return parts[0][1] if parts else None
@@ -350,7 +354,7 @@ class Verdicts:
                 self._steps[name] = [
                     (
                         part,
-                        Evaluated(
+                        EvaluatedValues(
                             part.template, part.answers, part.errors, measured, limits, level=step.level
                         ),
                     )

@@ -20,7 +20,7 @@ from templates.core.language.intake import is_single
 from templates.core.language.levels import at_level
 from templates.core.language.spec import Curve, Declaration, Profile, Table
 from templates.core.language.template import Template
-from templates.core.units.quantity import Typed
+from templates.core.units.quantity import TypedQuantity
 
 MOST_ROWS = 4096
 
@@ -54,7 +54,7 @@ class StepInputs:
 
 def _form(block: Block, name: str, raw: Raw) -> Hashable:
     declared = block.cls.inputs[name]
-    if not isinstance(raw, Typed):
+    if not isinstance(raw, TypedQuantity):
         return repr(raw)
     shape = np.shape(raw.si)
     is_curve = isinstance(declared, Curve)
@@ -116,12 +116,12 @@ def _stacked(asked: Sequence[StepInputs]) -> dict[str, Raw]:
 
 def _column(asked: Sequence[StepInputs], name: str) -> Raw:
     first = asked[0].raw[name]
-    typed = [raw for one in asked if isinstance(raw := one.raw[name], Typed)]
-    if not isinstance(first, Typed) or all(np.array_equal(first.si, other.si) for other in typed):
+    typed = [raw for one in asked if isinstance(raw := one.raw[name], TypedQuantity)]
+    if not isinstance(first, TypedQuantity) or all(np.array_equal(first.si, other.si) for other in typed):
         return first
     scale = asked[0].block.cls.inputs[name].meaning.scale
     si: Array = np.array([one.si for one in typed], dtype=np.float64)
-    return Typed(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {})
+    return TypedQuantity(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {})
 
 
 @dataclass(frozen=True)

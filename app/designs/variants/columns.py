@@ -14,7 +14,7 @@ from app.reference import Reference
 from app.schemas.answers import Shown
 from templates.core.errors import FaultyText
 from templates.core.language.spec import Choice, Input
-from templates.core.units.quantity import Typed, read, read_any
+from templates.core.units.quantity import TypedQuantity, read, read_any
 
 
 def columns(plain: JsonObject, catalogues: Catalogues) -> list[VariantColumn]:
@@ -65,7 +65,7 @@ def _nominal(cell: Cell | None) -> Shown | None:
     return Shown(value=typed.value, unit=typed.unit) if typed else None
 
 
-def _typed(cell: Cell) -> Typed | None:
+def _typed(cell: Cell) -> TypedQuantity | None:
     try:
         return read(cell.raw, cell.declared.meaning.accepted) if cell.declared else read_any(cell.raw)
     except FaultyText:  # an older program took it

@@ -25,7 +25,7 @@ import httpx
 from app.imported_models.creo.manifest import MM, Manifest
 from app.workers.errors import DeadlineExceeded, JobCancelled
 from cad.errors import GeometryError, ProgramMissing
-from cad.imported_models import Description, Drawn
+from cad.imported_models import Description, ProgramResult
 
 Fields = Mapping[str, object]
 """An object of JSON, whose values are checked where they are used."""
@@ -128,7 +128,7 @@ class CreoDrawing:
 
     def draw_manifest(
         self, manifest: Manifest, described: Description, values: dict[str, float], cancelled: threading.Event
-    ) -> Drawn:
+    ) -> ProgramResult:
         """Set every value, regenerate, read the mass properties, and export; see `Drawing.draw`."""
         with self._session(cancelled) as session:
             file = {"file": manifest.file}
@@ -143,7 +143,7 @@ class CreoDrawing:
             session.ask("file", "regenerate", file, "creo_regenerate", names)
             volume = _volume(session.ask("file", "massprops", file, "creo_mass_properties", names), names)
             step = self._exported(session, manifest, names)
-        return Drawn(step=step, mass_volume=volume * MM[manifest.length_unit] ** 3)
+        return ProgramResult(step=step, mass_volume=volume * MM[manifest.length_unit] ** 3)
 
     def _exported(self, session: CreoSession, manifest: Manifest, names: tuple[str, ...]) -> bytes:
         wanted = f"{f'crankwright_{uuid4().hex}'[:LONGEST_NAME]}.stp"
@@ -169,7 +169,7 @@ class CreoDrawing:
 
     @contextmanager
     def _session(self, cancelled: threading.Event) -> Iterator[CreoSession]:
-        """A session, once nobody else has one; it is closed in the end, and what was changed is not saved."""
+        """Open a session once nobody else has one; close it in the end without saving changes."""
         end = time.monotonic() + self.seconds
         while not self._turn.acquire(timeout=_GLANCE):
             if cancelled.is_set():

@@ -1,4 +1,4 @@
-"""`/worksheets/import`: sheets of Mathcad as drafts, and what became of their regions."""
+"""`/worksheets/import`: import Mathcad sheets as drafts, and report the outcome of each region."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.http.strict_requests import SHEET_TYPES, StrictRoute, require_sheet
 from app.schemas.problems import refusals
 from app.storage.errors import NotFound
 from app.worksheets.bodies import ID, NAME
-from app.worksheets.importing.views import imported
+from app.worksheets.imports.views import imported
 from app.worksheets.routes.worksheets import Id
 from app.worksheets.schemas.imports import SheetImport
 

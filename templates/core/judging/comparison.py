@@ -24,7 +24,7 @@ Codes = int | NDArray[np.int8]
 
 
 @dataclass(slots=True)  # frozen, each would cost four times as much
-class Compared:
+class Comparison:
     """Both sides of a criterion [SI] with their bands, and the verdict at every point and place."""
 
     value: Value
@@ -34,7 +34,7 @@ class Compared:
     codes: Codes
     axes: int
 
-    def filled(self, rows: Codes) -> Compared:
+    def filled(self, rows: Codes) -> Comparison:
         """With other verdicts at the points where a side has no value; of a curve nothing changes."""
         if self.axes:
             return self
@@ -51,7 +51,7 @@ class Compared:
 
 def compare(
     criterion: Criterion, estimates: Mapping[str, Estimate], shifts: Sequence[Shift] = ()
-) -> Compared:
+) -> Comparison:
     """Compare the sides of a criterion whose names all have estimates; NaN is not checked.
 
     `shifts` are the values of all names, with something upstream shifted to either end of its band.
@@ -71,7 +71,7 @@ def compare(
     except ValueError:
         message = f"{criterion.require!r} compares arrays of different lengths"
         raise FaultyText("shape", message) from None
-    return Compared(value, limit, value_bounds, limit_bounds, codes, axes)
+    return Comparison(value, limit, value_bounds, limit_bounds, codes, axes)
 
 
 def _spread(values: Mapping[str, Value], estimates: Mapping[str, Estimate], axes: int) -> Mapping[str, Value]:

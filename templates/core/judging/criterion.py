@@ -41,7 +41,7 @@ _RADIAN = registry.Unit("radian")
 
 
 @dataclass(frozen=True, slots=True)
-class Described:
+class NameDescription:
     """The declared unit and the words of a name in a criterion."""
 
     unit: str
@@ -78,7 +78,7 @@ class Limit:
 
 
 @dataclass(frozen=True, slots=True)
-class Missing:
+class MissingValue:
     """Why a name has no value although another one, `beside`, has.
 
     `instead` is a comparison that says the same as the criterion, and has values where the name has none.
@@ -108,7 +108,7 @@ class Criterion:
     source: str | None = None
     unverified: str | None = None
     warning: str | None = None
-    absent: Mapping[str, Missing] = field(default_factory=dict)
+    absent: Mapping[str, MissingValue] = field(default_factory=dict)
 
     @cached_property
     def limits_by_name(self) -> dict[str, Limit]:
@@ -160,7 +160,7 @@ def is_angle(name: str) -> bool:
     return bool(unit(name).base == _RADIAN)
 
 
-def read_criterion(name: str, raw: Any, meanings: Mapping[str, Described]) -> Criterion:
+def read_criterion(name: str, raw: Any, meanings: Mapping[str, NameDescription]) -> Criterion:
     """Read a criterion as it is declared: its `require` alone, or an object that holds it.
 
     Parameters
@@ -180,7 +180,7 @@ def read_criterion(name: str, raw: Any, meanings: Mapping[str, Described]) -> Cr
     parts = {"require": raw} if isinstance(raw, str) else raw
     _check_keys(parts, _KEYS, "require")
     limits = tuple(_limit(n, part, meanings) for n, part in _mapping(parts.get("limits", {})).items())
-    names = {**meanings, **{limit.name: Described(limit.unit, limit.words) for limit in limits}}
+    names = {**meanings, **{limit.name: NameDescription(limit.unit, limit.words) for limit in limits}}
     value, sign, limit_side = read_comparison(parts["require"])
     used = _ordered(parts["require"], value.names | limit_side.names)
     for used_name in used:
@@ -257,7 +257,7 @@ def _mapping(raw: Any) -> Mapping[str, Any]:
     return raw
 
 
-def _limit(name: str, raw: Any, meanings: Mapping[str, Described]) -> Limit:
+def _limit(name: str, raw: Any, meanings: Mapping[str, NameDescription]) -> Limit:
     if name in meanings:
         raise FaultyText("twice", f"{name} is already an input or output; give the limit another name")
     _check_keys(raw, _LIMIT_KEYS, "unit")
@@ -266,7 +266,7 @@ def _limit(name: str, raw: Any, meanings: Mapping[str, Described]) -> Limit:
     return Limit(name, raw["unit"], raw.get("words") or name.replace("_", " "), raw.get("from"), default)
 
 
-def _default(text: str, meanings: Mapping[str, Described], wanted: str) -> tuple[str, str]:
+def _default(text: str, meanings: Mapping[str, NameDescription], wanted: str) -> tuple[str, str]:
     """Return the function and the name of a default such as `min(speed_range)`."""
     match = _DEFAULT.fullmatch(text)
     if match is None or match[2] not in meanings:
@@ -275,14 +275,16 @@ def _default(text: str, meanings: Mapping[str, Described], wanted: str) -> tuple
     return match[1], match[2]
 
 
-def _missing(name: str, raw: Any, used: tuple[str, ...], meanings: Mapping[str, Described]) -> Missing:
+def _missing(
+    name: str, raw: Any, used: tuple[str, ...], meanings: Mapping[str, NameDescription]
+) -> MissingValue:
     _check_keys(raw, _ABSENT_KEYS, "reason")
     beside = raw.get("with", "")
     for candidate, candidates in ((name, used), (beside, meanings)):
         if candidate not in candidates:
             raise FaultyText("unknown_name", unknown_name(candidate, candidates, "name").detail)
     instead = read_criterion(name, raw["instead"], meanings) if "instead" in raw else None
-    return Missing(beside, raw["reason"], instead)
+    return MissingValue(beside, raw["reason"], instead)
 
 
 def _ordered(text: str, names: frozenset[str]) -> tuple[str, ...]:
@@ -323,7 +325,7 @@ def _in_kind(name: str, kind: Kind) -> str:
     return difference_in(name) if kind.is_difference and not unit(name).difference else name
 
 
-def _shown_unit(kind: Kind, declared: list[Described]) -> str:
+def _shown_unit(kind: Kind, declared: list[NameDescription]) -> str:
     """Return the unit of the first name that measures what the sides do, else the SI base unit."""
     fitting = (one.unit for one in declared if _is_alike(one.measured, kind))
     return next(fitting, None) or kind.unit
@@ -333,10 +335,10 @@ def _is_alike(one: Kind, kind: Kind) -> bool:
     return compatible(one, kind) and (not kind.is_difference or one.is_difference)
 
 
-def _in_words(value: Relation, sign: Sign, limit: Relation, names: Mapping[str, Described]) -> str:
+def _in_words(value: Relation, sign: Sign, limit: Relation, names: Mapping[str, NameDescription]) -> str:
     return f"{_side(value, names)} {_SIGNS[sign]} {_side(limit, names)}"
 
 
-def _side(relation: Relation, names: Mapping[str, Described]) -> str:
+def _side(relation: Relation, names: Mapping[str, NameDescription]) -> str:
     name = relation.only_name
     return names[name].words if name else relation.text

@@ -18,7 +18,7 @@ from templates.core.judging.comparison import (
     NOT_MET,
     WORST_FIRST,
     Codes,
-    Compared,
+    Comparison,
     compare,
     side_of,
 )
@@ -143,7 +143,7 @@ def _lack(absent: tuple[Absent, ...]) -> Mapping[str, Any]:
 
 def _compared(
     criterion: Criterion,
-    compared: Compared,
+    compared: Comparison,
     estimates: Mapping[str, Estimate],
     along: Along | None,
     is_shifted: bool,

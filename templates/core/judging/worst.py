@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from templates.core.arrays import Array, Mask
-from templates.core.judging.comparison import NOT_CHECKED, Compared
+from templates.core.judging.comparison import NOT_CHECKED, Comparison
 from templates.core.judging.criterion import Criterion
 
 
@@ -41,7 +41,7 @@ class Worst:
         return self.limit_low == self.limit_high
 
 
-def worst_of(criterion: Criterion, compared: Compared) -> Worst:
+def worst_of(criterion: Criterion, compared: Comparison) -> Worst:
     """Return the worst point and place of a comparison."""
     sides = (compared.value, compared.limit, *compared.value_bounds, *compared.limit_bounds)
     codes = compared.codes
@@ -57,7 +57,7 @@ def worst_of(criterion: Criterion, compared: Compared) -> Worst:
     return Worst(place, int(codes[place]), *(float(side[place]) for side in whole))
 
 
-def worst_of_rows(criterion: Criterion, compared: Compared, count: int) -> tuple[Array, list[Array]]:
+def worst_of_rows(criterion: Criterion, compared: Comparison, count: int) -> tuple[Array, list[Array]]:
     """Return the verdict of each row, and both sides and their bands at its worst place.
 
     Parameters

@@ -38,7 +38,7 @@ _WRITTEN = {  # functions that a formula on paper may have
 }
 
 
-class _Recording(NDArrayOperatorsMixin):
+class _RecordingValue(NDArrayOperatorsMixin):
     """A value of numpy that records; all its operators become ufuncs, and those come to `__array_ufunc__`."""
 
     value: Any
@@ -70,7 +70,7 @@ class _Recording(NDArrayOperatorsMixin):
         return getattr(self.value, name)
 
 
-class Operand(_Recording):
+class Operand(_RecordingValue):
     """A value and how it was calculated: a syntax tree, or None where it cannot be written as a formula."""
 
     def __init__(self, value: Any, node: ast.expr | None = None) -> None:
@@ -124,7 +124,7 @@ class Comparison:
 
     @property
     def share(self) -> float | None:
-        """The side that must be smaller over the one that must be larger, at the worst point that counts.
+        """Return the side that must be smaller over the other, at the worst point that counts.
 
         None where it has no meaning: a side is the constant 0, or is not an amount at one of the points.
         """
@@ -148,7 +148,7 @@ def worst_share(small: Any, large: Any, where: Truth = True) -> float | None:
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome(_Recording):
+class Outcome(_RecordingValue):
     """A truth and what it follows from: one comparison, all or any of several outcomes, or unknown causes.
 
     An equality is not a comparison, because nothing is close to its limit; `equated` are its two sides.
@@ -203,14 +203,14 @@ def outcome(template: Calculation, rule: Requirement) -> Outcome:
     """
     truth = rule.function(template)
     try:
-        recorded = rule.function(_Recorded(template))
+        recorded = rule.function(_RecordedTemplate(template))
     except (TypeError, ValueError, AttributeError, LookupError):  # it needs true arrays or numbers
         return Outcome(truth)
     agrees = isinstance(recorded, Outcome) and np.array_equal(recorded.value, truth)
     return recorded if agrees else Outcome(truth)
 
 
-class _Recorded:
+class _RecordedTemplate:
     """A template whose values are operands, for the time of one rule."""
 
     def __init__(self, template: Calculation) -> None:
@@ -233,7 +233,7 @@ def _read(attribute: str, value: Any) -> Any:
 
 def plain(value: Any) -> Any:
     """Return a value without what was recorded about it."""
-    if isinstance(value, _Recording):
+    if isinstance(value, _RecordingValue):
         return value.value
     return type(value)(map(plain, value)) if type(value) in (list, tuple) else value
 

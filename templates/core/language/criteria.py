@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from templates.core.judging.bands import Estimate
-from templates.core.judging.criterion import Criterion, Limit, Missing, is_angle
+from templates.core.judging.criterion import Criterion, Limit, MissingValue, is_angle
 from templates.core.judging.judgement import Judgement, not_judged, sentence
 from templates.core.judging.judging import Absent, Along, Instead, judge
 from templates.core.judging.limits import GivenLimit
@@ -29,7 +29,7 @@ RIGHT_ANGLE = math.pi / 2  # to which the errors of angles are relative [rad]
 
 
 @dataclass(frozen=True)
-class Evaluated:
+class EvaluatedValues:
     """The evaluated values, as criteria see them.
 
     Attributes
@@ -74,18 +74,18 @@ class Evaluated:
         return np.where(np.isnan(answer.value), np.nan, si)
 
 
-def judged(evaluated: Evaluated) -> list[Judgement]:
+def judged(evaluated: EvaluatedValues) -> list[Judgement]:
     """Return the criteria of a template whose outputs were evaluated, worst first."""
     template = evaluated.template
     return worst_first(judged_alone(evaluated, c) for c in template.declared_criteria if is_due(evaluated, c))
 
 
-def is_due(evaluated: Evaluated, criterion: Criterion) -> bool:
+def is_due(evaluated: EvaluatedValues, criterion: Criterion) -> bool:
     """Return whether judging computes no output beyond those evaluated."""
     return evaluated.computed.intersection(criterion.names) <= evaluated.answers.keys()
 
 
-def missing_of(evaluated: Evaluated, criterion: Criterion) -> Missing | None:
+def missing_of(evaluated: EvaluatedValues, criterion: Criterion) -> MissingValue | None:
     """The criterion's rule for a value that is missing, where another comparison can be judged instead.
 
     It computes no output beyond those evaluated.
@@ -103,7 +103,7 @@ def _is_missing(value: Any) -> bool:
     return value is None or (np.ndim(value) > 0 and bool(np.isnan(value).any()))
 
 
-def _instead(evaluated: Evaluated, criterion: Criterion) -> Instead | None:
+def _instead(evaluated: EvaluatedValues, criterion: Criterion) -> Instead | None:
     missing = missing_of(evaluated, criterion)
     if missing is None or missing.instead is None:
         return None
@@ -111,7 +111,7 @@ def _instead(evaluated: Evaluated, criterion: Criterion) -> Instead | None:
     return Instead(judge(missing.instead, estimates, absent), missing.reason)
 
 
-def judged_alone(evaluated: Evaluated, criterion: Criterion) -> Judgement:
+def judged_alone(evaluated: EvaluatedValues, criterion: Criterion) -> Judgement:
     """Return one criterion whose outputs were evaluated."""
     estimates, absent = estimates_of(evaluated, criterion)
     subject = criterion.subject or ""
@@ -123,19 +123,21 @@ def judged_alone(evaluated: Evaluated, criterion: Criterion) -> Judgement:
     return judge(criterion, estimates, absent, along, shown, noted=more, instead=instead)
 
 
-def notes(evaluated: Evaluated, criterion: Criterion) -> dict[str, str | None]:
+def notes(evaluated: EvaluatedValues, criterion: Criterion) -> dict[str, str | None]:
     """Return the notes of a judgement on its level, on the truth of its error, and on its sources."""
     source = _with_those_of_limits(evaluated, criterion) if evaluated.limits else criterion.source
     return {**level_and_truth(evaluated, criterion.subject), "source": source}
 
 
-def level_and_truth(evaluated: Evaluated, output: str | None) -> dict[str, str | None]:
+def level_and_truth(evaluated: EvaluatedValues, output: str | None) -> dict[str, str | None]:
     """Return the level of an evaluation, and the truth against which an output's error was measured."""
     level, table = evaluated.level if isinstance(evaluated.level, str) else None, evaluated.measured
     return {"level": level, "truth": table.truth(level or "", output) if table and output else None}
 
 
-def estimates_of(evaluated: Evaluated, criterion: Criterion) -> tuple[dict[str, Estimate], dict[str, Absent]]:
+def estimates_of(
+    evaluated: EvaluatedValues, criterion: Criterion
+) -> tuple[dict[str, Estimate], dict[str, Absent]]:
     """Return the values of the names of a criterion with their errors, and why some have none."""
     estimates: dict[str, Estimate] = {}
     absent: dict[str, Absent] = {}
@@ -153,14 +155,14 @@ def estimates_of(evaluated: Evaluated, criterion: Criterion) -> tuple[dict[str, 
     return estimates, absent
 
 
-def _with_those_of_limits(evaluated: Evaluated, criterion: Criterion) -> str | None:
+def _with_those_of_limits(evaluated: EvaluatedValues, criterion: Criterion) -> str | None:
     """Return the source of the criterion, and those of the limits that a library gave."""
     given = [evaluated.limits[limit.name] for limit in criterion.limits if limit.name in evaluated.limits]
     sources = [criterion.source, *(limit.source for limit in given)]
     return "; ".join(dict.fromkeys(filter(None, sources))) or None
 
 
-def estimate_of(evaluated: Evaluated, name: str) -> Estimate | Absent:
+def estimate_of(evaluated: EvaluatedValues, name: str) -> Estimate | Absent:
     """Return the value of an input or output with its error, or why there is none."""
     estimate = evaluated.estimates.get(name)
     if estimate is None:
@@ -169,7 +171,7 @@ def estimate_of(evaluated: Evaluated, name: str) -> Estimate | Absent:
     return estimate
 
 
-def _estimate_of_input(evaluated: Evaluated, name: str) -> Estimate | Absent:
+def _estimate_of_input(evaluated: EvaluatedValues, name: str) -> Estimate | Absent:
     template = evaluated.template
     declared = template.inputs[name]
     si = vars(template).get(declared.attribute)
@@ -183,7 +185,7 @@ def _estimate_of_input(evaluated: Evaluated, name: str) -> Estimate | Absent:
     return Estimate(si, axes=1 if isinstance(declared, Curve) and np.ndim(si) else 0)
 
 
-def _limit(evaluated: Evaluated, limit: Limit, others: Mapping[str, Estimate]) -> Estimate | Absent:
+def _limit(evaluated: EvaluatedValues, limit: Limit, others: Mapping[str, Estimate]) -> Estimate | Absent:
     """Return a limit of the user: one for all, one for each point, or a curve beside a curve."""
     given = evaluated.limits.get(limit.name)
     if given is None:
@@ -199,7 +201,7 @@ def _limit(evaluated: Evaluated, limit: Limit, others: Mapping[str, Estimate]) -
     )
 
 
-def _default(evaluated: Evaluated, limit: Limit) -> Estimate | Absent:
+def _default(evaluated: EvaluatedValues, limit: Limit) -> Estimate | Absent:
     """Return a limit that nobody gave.
 
     An end of an input that is a list, where that is declared and given.
@@ -218,7 +220,7 @@ def _not_given(limit: Limit) -> Absent:
     return Absent((limit.name,), limit.remedy)
 
 
-def _stated_reason(evaluated: Evaluated, missing: Missing) -> Absent | None:
+def _stated_reason(evaluated: EvaluatedValues, missing: MissingValue) -> Absent | None:
     """Return why an output has no value, where the criterion says so and the output beside it has one."""
     beside = evaluated.answers.get(missing.beside)
     return Absent((), missing.reason) if beside and beside.value is not None else None
@@ -232,7 +234,7 @@ def _fits(shape: tuple[int, ...], wanted: tuple[int, ...]) -> bool:
         return False
 
 
-def _estimate_of_output(evaluated: Evaluated, name: str) -> Estimate | Absent:
+def _estimate_of_output(evaluated: EvaluatedValues, name: str) -> Estimate | Absent:
     template, formula = evaluated.template, evaluated.template.formulas[name]
     answer = evaluated.answers[name]
     if formula.attribute in template.ledger.absent and not np.ndim(answer.value):
@@ -252,7 +254,7 @@ def _where_it_has_a_scale(error: Any, scale: Value) -> tuple[Any, bool, Value | 
     return np.where(np.isnan(scale), np.nan, error), False, scale
 
 
-def _scale(evaluated: Evaluated, name: str) -> Value | None:
+def _scale(evaluated: EvaluatedValues, name: str) -> Value | None:
     """Return what an output's error is relative to [SI], as its table says; None if to the output itself.
 
     The largest of several outputs, such as the four stiffnesses, counts; NaN stands for a size that is no
@@ -276,7 +278,7 @@ def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Ab
     return Absent(give, reason or absence(template, formula))
 
 
-def error_of(evaluated: Evaluated, name: str) -> tuple[Any, bool]:
+def error_of(evaluated: EvaluatedValues, name: str) -> tuple[Any, bool]:
     """Return the relative error of an output, and whether any was stated.
 
     A template of which no errors were measured, or one without levels whose table does not name the output,

@@ -36,7 +36,7 @@ class Leap:
 
 
 @dataclass
-class Meetings:
+class Crossings:
     """All places where a curve meets its target, each kind in ascending order."""
 
     roots: list[Place] = field(default_factory=list)
@@ -46,9 +46,9 @@ class Meetings:
     """Crossings that were not closed in."""
 
 
-def meetings(curve: SampledCurve, samples: Samples) -> Meetings:
+def meetings(curve: SampledCurve, samples: Samples) -> Crossings:
     """Find where the curve meets its target."""
-    result = Meetings()
+    result = Crossings()
     if np.isnan(samples.miss).all():
         return result
     for place in _exact(samples):

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from templates.core.errors import FaultyText
-from templates.core.judging.criterion import Criterion, Described, read_criterion
+from templates.core.judging.criterion import Criterion, NameDescription, read_criterion
 from templates.core.language.spec import Choice, Curve, Formula, Input, Table, Text
 
 
@@ -43,14 +43,18 @@ def _check_defaults(criterion: Criterion, inputs: Mapping[str, Input]) -> None:
             raise FaultyText("syntax", f"the default of {limit.name} is of an input that is a list")
 
 
-def meanings_of(inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]) -> dict[str, Described]:
+def meanings_of(
+    inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]
+) -> dict[str, NameDescription]:
     """Return what the names that a criterion may use measure: neither words nor tables.
 
     Who writes a template knows that a speed is in rad/s: of its criteria no two readings are reported.
     """
     declared = {**inputs, **formulas}
     return {
-        name: Described(one.meaning.unit, one.meaning.words, replace(one.meaning.kind, turned=frozenset()))
+        name: NameDescription(
+            one.meaning.unit, one.meaning.words, replace(one.meaning.kind, turned=frozenset())
+        )
         for name, one in declared.items()
         if not isinstance(one, (Choice, Table, Text))
     }

@@ -18,7 +18,7 @@ from templates.core.language import tolerances
 from templates.core.language.admission import absence
 from templates.core.language.answer import Answer, UsedInput
 from templates.core.language.climbing import Rung, climb
-from templates.core.language.criteria import Evaluated, judged, warned
+from templates.core.language.criteria import EvaluatedValues, judged, warned
 from templates.core.language.intake import remarks
 from templates.core.language.ledger import Notice
 from templates.core.language.levels import accuracy, at_level
@@ -26,7 +26,7 @@ from templates.core.language.request import read_request
 from templates.core.language.spec import Choice, Derived, Formula, Given, Input, Profile, Text
 from templates.core.language.template import Template
 from templates.core.language.unmet import unmet
-from templates.core.units.quantity import Typed, Unit
+from templates.core.units.quantity import TypedQuantity, Unit
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ def _judged(
     template, is_joined = rungs[0].template, rungs[0].where is not None
     measured = accuracy(type(template))
     return judged(
-        Evaluated(
+        EvaluatedValues(
             template, whole.answers, whole.error, measured, limits, shown_in, whole.level, is_joined=is_joined
         )
     )
@@ -252,7 +252,7 @@ def echoes_of(template: Template) -> dict[str, UsedInput]:
     echoes, given = {}, template.ledger.typed
     for name, declared in template.inputs.items():
         typed = given.get(name)
-        if isinstance(typed, Typed):
+        if isinstance(typed, TypedQuantity):
             echoes[name] = UsedInput(typed.value, typed.unit, "given", typed.extra)
         elif typed is None and isinstance(declared, Given) and declared.default and not declared.optional:
             echoes[name] = default_of(declared)
@@ -346,7 +346,7 @@ def criterion_warnings(
         return []
     measured, level = accuracy(type(template)), template.level or None
     with np.errstate(all="ignore"):
-        judgements = judged(Evaluated(template, answers, errors, measured, level=level))
+        judgements = judged(EvaluatedValues(template, answers, errors, measured, level=level))
     return list(warned(type(template), judgements))
 
 

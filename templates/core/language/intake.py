@@ -19,20 +19,22 @@ from templates.core.language.calculation import Calculation
 from templates.core.language.causes import BROKEN, suspects
 from templates.core.language.ledger import Mask, Notice
 from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Input, Requirement, Table
-from templates.core.units.quantity import Typed, read
+from templates.core.units.quantity import TypedQuantity, read
 from templates.core.units.tolerance import LONGEST_TEXT, Tolerance
 from templates.core.units.units import Value, unit
 
 
-def read_inputs(cls: type[Calculation], raw: Mapping[str, Any]) -> tuple[dict[str, Typed | str], list[Fault]]:
+def read_inputs(
+    cls: type[Calculation], raw: Mapping[str, Any]
+) -> tuple[dict[str, TypedQuantity | str], list[Fault]]:
     """Return every input that was given, read in its unit, and what is wrong with the others."""
-    typed: dict[str, Typed | str] = {}
+    typed: dict[str, TypedQuantity | str] = {}
     faults = unknown_names(filterfalse(cls.inputs.__contains__, raw), cls.inputs, "input")
     for name, declared in cls.inputs.items():
         if name in raw:
             try:
                 given = raw[name]
-                typed[name] = given if isinstance(given, Typed) else _read_one(declared, given)
+                typed[name] = given if isinstance(given, TypedQuantity) else _read_one(declared, given)
             except FaultyText as error:
                 faults.append(error.fault(name))
         elif declared.required:
@@ -40,7 +42,7 @@ def read_inputs(cls: type[Calculation], raw: Mapping[str, Any]) -> tuple[dict[st
     return typed, faults
 
 
-def _read_one(declared: Input, raw: Any) -> Typed | str:
+def _read_one(declared: Input, raw: Any) -> TypedQuantity | str:
     if isinstance(declared, Choice):
         option = (
             raw["value"] if isinstance(raw, dict) and raw.keys() == {"value"} else raw
@@ -69,12 +71,12 @@ class Intake:
     missing: set[str] = field(default_factory=set)
 
 
-def admitted(cls: type[Calculation], typed: Mapping[str, Typed | str]) -> Intake:
+def admitted(cls: type[Calculation], typed: Mapping[str, TypedQuantity | str]) -> Intake:
     """Return the SI values of inputs that were given or have a constant default, and their faults."""
     intake = Intake()
     for name, declared in cls.inputs.items():
         source = typed.get(name) or (None if isinstance(declared, Derived) else declared.default)
-        if isinstance(source, Typed):
+        if isinstance(source, TypedQuantity):
             si, plain = source.si, declared.plain
             if plain and isinstance(si, float) and source.tolerance is None and plain[0] <= si <= plain[1]:
                 value = np.float64(si)  # most inputs are one number within its bounds
@@ -96,7 +98,7 @@ def admitted(cls: type[Calculation], typed: Mapping[str, Typed | str]) -> Intake
 class Plain(NamedTuple):
     """Inputs of which nothing is wrong, or to be noted: single values and options."""
 
-    typed: dict[str, Typed | str]
+    typed: dict[str, TypedQuantity | str]
     values: dict[str, Any]
     missing: set[str]
 
@@ -104,14 +106,14 @@ class Plain(NamedTuple):
 class PlainText(NamedTuple):
     """An input as typed, and its value [SI] or option."""
 
-    typed: Typed | str
+    typed: TypedQuantity | str
     value: Any
 
 
 def plain(cls: type[Calculation], raw: Mapping[str, Any]) -> Plain | None:
     """Return the inputs of most requests, read and admitted at once; None if any needs a further look."""
     left_out = _defaults.get(cls) or _left_out(cls)
-    typed: dict[str, Typed | str] = {}
+    typed: dict[str, TypedQuantity | str] = {}
     values = left_out.values.copy()
     missing: set[str] = set()
     for name, declared in cls.inputs.items():
@@ -123,7 +125,7 @@ def plain(cls: type[Calculation], raw: Mapping[str, Any]) -> Plain | None:
                 missing.add(declared.attribute)
         elif type(given) is str and len(given) <= LONGEST_TEXT and (text := plain_text(declared, given)):
             typed[name], values[declared.attribute] = text
-        elif isinstance(given, Typed) and (value := _plain_value(declared, given)) is not None:
+        elif isinstance(given, TypedQuantity) and (value := _plain_value(declared, given)) is not None:
             typed[name], values[declared.attribute] = given, value
         else:
             return None
@@ -171,7 +173,7 @@ def plain_text(declared: Input, text: str) -> PlainText | None:
     return None if value is None else PlainText(typed, value)
 
 
-def _plain_value(declared: Input, typed: Typed) -> np.float64 | None:
+def _plain_value(declared: Input, typed: TypedQuantity) -> np.float64 | None:
     """Return one number within its bounds and the published range."""
     si, bounds = typed.si, declared.plain
     if bounds and isinstance(si, float) and typed.tolerance is None and bounds[0] <= si <= bounds[1]:
@@ -188,7 +190,7 @@ def _note_missing(declared: Input, intake: Intake) -> None:
         intake.values[declared.attribute] = () if isinstance(declared, Table) else np.float64(np.nan)
 
 
-def _bounded(declared: Input, typed: Typed) -> tuple[Any, Fault | Mask | None]:
+def _bounded(declared: Input, typed: TypedQuantity) -> tuple[Any, Fault | Mask | None]:
     """Return the value and what is wrong with it.
 
     A faulty point of an array is masked, and is not a fault.
@@ -221,7 +223,7 @@ def _end_outside(declared: Declaration, si: Value, tolerance: Tolerance) -> Faul
     return Fault(declared.name, "out_of_range", detail)
 
 
-def _along_a_cycle(declared: Curve, typed: Typed) -> tuple[Any, Fault | None]:
+def _along_a_cycle(declared: Curve, typed: TypedQuantity) -> tuple[Any, Fault | None]:
     """Return a curve means something as a whole: one point out of its domain refuses it."""
     meaning, value = declared.meaning, typed.si
     if not isinstance(value, np.ndarray):
@@ -242,7 +244,7 @@ def _rows(declared: Table, value: Any) -> tuple[tuple[tuple[float, ...], ...], F
     return tuple(map(tuple, rows.tolist())), None
 
 
-def _out_of_bounds(declared: Declaration, typed: Typed, inside: Any) -> Fault:
+def _out_of_bounds(declared: Declaration, typed: TypedQuantity, inside: Any) -> Fault:
     meaning = declared.meaning
     first = np.atleast_1d(typed.si)[~np.atleast_1d(inside)][0]
     scale = unit(typed.unit)
@@ -269,7 +271,9 @@ def as_typed(cls: type[Calculation], name: str, value: Any) -> Any:
         return value
     si = np.asarray(value, dtype=float) if np.ndim(value) else float(value)
     shown = declared.meaning.scale.from_si(si)
-    return Typed(shown.tolist() if isinstance(shown, np.ndarray) else shown, declared.meaning.unit, si, {})
+    return TypedQuantity(
+        shown.tolist() if isinstance(shown, np.ndarray) else shown, declared.meaning.unit, si, {}
+    )
 
 
 def check_shapes(self: Calculation) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.units.quantity import Typed
+from templates.core.units.quantity import TypedQuantity
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Mask:
 class Ledger:
     """Notes taken while a template was made and evaluated."""
 
-    typed: dict[str, Typed | str] = field(default_factory=dict)
+    typed: dict[str, TypedQuantity | str] = field(default_factory=dict)
     warnings: list[Notice] = field(default_factory=list)
     masks: list[Mask] = field(default_factory=list)
     missing: set[str] = field(default_factory=set)  # attributes of optional inputs that were not given

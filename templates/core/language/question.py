@@ -12,7 +12,7 @@ from templates.core.language.intake import is_single
 from templates.core.language.request import read_options
 from templates.core.language.spec import Choice, Curve, Formula, Input, Profile, Table, Text
 from templates.core.language.template import Template
-from templates.core.units.quantity import Typed, read, read_beside
+from templates.core.units.quantity import TypedQuantity, read, read_beside
 from templates.core.units.units import Value
 
 
@@ -86,7 +86,7 @@ def _ends(declared: Input, bounds: Sequence[Any], faults: list[Fault]) -> tuple[
 
 
 def _scalar(
-    read_as: Callable[[Any, str], Typed], raw: Any, unit: str, name: str, faults: list[Fault]
+    read_as: Callable[[Any, str], TypedQuantity], raw: Any, unit: str, name: str, faults: list[Fault]
 ) -> float:
     try:
         typed = read_as(raw, unit)
@@ -123,6 +123,6 @@ def _is_array(value: Any) -> bool:
     return isinstance(value, list) or (isinstance(value, Mapping) and isinstance(value.get("value"), list))
 
 
-def typed_values(declared: Input, si: Value) -> Typed:
+def typed_values(declared: Input, si: Value) -> TypedQuantity:
     """Return values of the unknown [SI] as if they had been typed."""
-    return Typed(None, declared.meaning.unit, si, {})
+    return TypedQuantity(None, declared.meaning.unit, si, {})

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from templates.core.arrays import Array
 from templates.core.errors import Unreachable
 from templates.core.language.confirming import POLISHES, Root, confirmed
-from templates.core.language.crossings import Leap, Meetings, meetings
+from templates.core.language.crossings import Crossings, Leap, meetings
 from templates.core.language.ledger import Notice
 from templates.core.language.scan import SampledCurve, Samples
 
@@ -90,7 +90,7 @@ def roots_of(requested: SampledCurve, cheap: SampledCurve, bounds: tuple[float, 
 
 
 def _warnings(
-    curve: SampledCurve, samples: Samples, met: Meetings, roots: list[Root], lowest: Root
+    curve: SampledCurve, samples: Samples, met: Crossings, roots: list[Root], lowest: Root
 ) -> list[Notice]:
     return [
         *_not_monotone(curve, samples.miss),

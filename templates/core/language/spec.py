@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from templates.core.arrays import Array
 from templates.core.language.meaning import Meaning
 from templates.core.language.syntax import attributes_used, inputs_read_as_given, returned
-from templates.core.units.quantity import Typed, read
+from templates.core.units.quantity import TypedQuantity, read
 
 T = TypeVar("T")
 _NUMBER = np.float64
@@ -52,7 +52,7 @@ class Given(Declaration):
         single: bool = False,
     ) -> None:  # fmt: skip
         super().__init__(meaning)
-        self.default: Typed | None = None if default is None else read(default, meaning.unit)
+        self.default: TypedQuantity | None = None if default is None else read(default, meaning.unit)
         self.optional, self.alternative = optional or alternative, alternative
         self.single = single
         self.required = self.default is None and not self.optional

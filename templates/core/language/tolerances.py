@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from templates.core.language.ledger import Notice
-from templates.core.units.quantity import Typed
+from templates.core.units.quantity import TypedQuantity
 from templates.core.units.tolerance import is_toleranced
 
 UNUSED = "tolerance_unused"
@@ -19,6 +19,6 @@ DETAIL = (
 def unused(given: Mapping[str, Any]) -> Iterator[Notice]:
     """Yield a warning for every quantity, as typed or as read, that has a tolerance."""
     for name, value in given.items():
-        has_one = value.tolerance is not None if isinstance(value, Typed) else is_toleranced(value)
+        has_one = value.tolerance is not None if isinstance(value, TypedQuantity) else is_toleranced(value)
         if has_one:
             yield Notice(UNUSED, name, DETAIL)

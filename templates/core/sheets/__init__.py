@@ -5,11 +5,11 @@
 """
 
 from templates.core.sheets.faults import SheetFault, SheetRefused
-from templates.core.sheets.names import Named
+from templates.core.sheets.names import KnownName
 from templates.core.sheets.sheet import Sheet, Statement, read
 from templates.core.sheets.testing import SheetTest, TestResult, run_tests
 
 __all__ = [
-    "Named", "Sheet", "SheetFault", "SheetRefused", "SheetTest", "Statement", "TestResult", "read",
+    "KnownName", "Sheet", "SheetFault", "SheetRefused", "SheetTest", "Statement", "TestResult", "read",
     "run_tests",
 ]  # fmt: skip

@@ -29,7 +29,7 @@ from templates.core.sheets.expecting import test_of
 from templates.core.sheets.expressions import Reader
 from templates.core.sheets.faults import FollowsFromFault, Refusal
 from templates.core.sheets.functions import function_of
-from templates.core.sheets.grammar import Parsed, declared_by, name_of, parsed
+from templates.core.sheets.grammar import ParsedStatement, declared_by, name_of, parsed
 from templates.core.sheets.linear import MOST_UNKNOWNS, LinearBody, system_of
 from templates.core.sheets.lines import Chunk
 from templates.core.sheets.names import FUEL, Names, sort_of
@@ -78,13 +78,13 @@ class Builder:
                 break
         self.names.fuel = fuel
 
-    def _in_kelvin(self, statement: Parsed) -> bool:
+    def _in_kelvin(self, statement: ParsedStatement) -> bool:
         if statement.kind not in ("formula", "given") or statement.parts[3] is None:
             return False
         sort = self.names.sorts.get(str(statement.parts[0]))
         return sort is not None and sort.kind.temperatures == EITHER
 
-    def _finds_kind(self, statement: Parsed) -> bool:
+    def _finds_kind(self, statement: ParsedStatement) -> bool:
         """Return whether the formula of a name in K says more of its kind than was known."""
         name = str(statement.parts[0])
         try:
@@ -97,11 +97,11 @@ class Builder:
         self.names.sorts[name] = replace(own, kind=declared_kind(got.kind, own.kind))
         return self.names.sorts[name].kind != own.kind
 
-    def _goes_on(self, statement: Parsed) -> bool:
+    def _goes_on(self, statement: ParsedStatement) -> bool:
         """Return whether to go on with a statement: one fault of it is enough, or a worksheet too large."""
         return statement.chunk.line not in self.refused and self.names.fuel >= 0
 
-    def _try(self, step: Callable[[Any], None], statement: Parsed | Chunk) -> None:
+    def _try(self, step: Callable[[Any], None], statement: ParsedStatement | Chunk) -> None:
         """Take a step, and note the fault that it meets."""
         try:
             step(statement)
@@ -111,8 +111,8 @@ class Builder:
             pass
         else:
             return
-        chunk = statement.chunk if isinstance(statement, Parsed) else statement
-        if isinstance(statement, Parsed):
+        chunk = statement.chunk if isinstance(statement, ParsedStatement) else statement
+        if isinstance(statement, ParsedStatement):
             self.names.broken.update(declared_by(statement))
         else:
             self.names.broken.add(name_of(chunk))
@@ -121,7 +121,7 @@ class Builder:
     def _parse(self, chunk: Chunk) -> None:
         self.built.statements.append(parsed(chunk))
 
-    def _announce(self, statement: Parsed) -> None:
+    def _announce(self, statement: ParsedStatement) -> None:
         """Let other statements use a name before the formula behind it is read."""
         match statement.kind:
             case "given" | "formula":
@@ -137,29 +137,29 @@ class Builder:
                 name, options = statement.parts[0], statement.parts[3].children
                 self._name(statement, name, Sort(words=tuple(map(str, options))))
 
-    def _name(self, statement: Parsed, name: lark.Token, sort: Sort) -> None:
+    def _name(self, statement: ParsedStatement, name: lark.Token, sort: Sort) -> None:
         self._check_new(statement, name, str(name))
         self.names.sorts[str(name)] = sort
 
-    def _sort(self, statement: Parsed, name: lark.Token, unit_text: lark.Token, axis: str) -> Sort:
+    def _sort(self, statement: ParsedStatement, name: lark.Token, unit_text: lark.Token, axis: str) -> Sort:
         text = self.reader.declared_unit(statement, unit_text)
         self.names.units.setdefault(str(name), text)
         return replace(sort_of(text, str(name)), axis=axis)
 
-    def _check_new(self, statement: Parsed, at: lark.Token, name: str) -> None:
+    def _check_new(self, statement: ParsedStatement, at: lark.Token, name: str) -> None:
         try:
             self.names.check_new(name)
         except FaultyText as error:
             remedy = "choose another name, as in p_max"
             raise statement.refuse(error.code, str(error), at, remedy) from None
 
-    def _function(self, statement: Parsed) -> None:
+    def _function(self, statement: ParsedStatement) -> None:
         self._check_new(statement, statement.parts[0], statement.parts[0][:-1])
         function = function_of(statement, self.reader)
         self.names.functions[function.name] = function.call
         self.built.note(statement, function.name, function.unit, "", function.node)
 
-    def _curve(self, statement: Parsed) -> None:
+    def _curve(self, statement: ParsedStatement) -> None:
         called, parameter, unit_text, words, clauses, *rest = statement.parts
         name = str(called)[:-1]
         self._check_new(statement, called, name)
@@ -173,7 +173,7 @@ class Builder:
         self.names.functions[name] = call
         self.built.note(statement, name, of, words_of(statement, words))
 
-    def _choice(self, statement: Parsed) -> None:
+    def _choice(self, statement: ParsedStatement) -> None:
         name, default, words, options, *clauses = statement.parts
         names = tuple(map(str, options.children))
         if len(set(names)) < len(names) or any("." in option for option in names):
@@ -191,7 +191,7 @@ class Builder:
         self._make(statement, str(name), Choice(meant, names, str(default) if default else None), None)
 
     def _choose(
-        self, statement: Parsed, clause: Any, options: tuple[str, ...], parts: dict[str, Any]
+        self, statement: ParsedStatement, clause: Any, options: tuple[str, ...], parts: dict[str, Any]
     ) -> None:
         """Sort a clause of a choice: an option as its example, or words."""
         if clause.data != "example":
@@ -205,7 +205,7 @@ class Builder:
             )
         parts["example"] = word
 
-    def _given(self, statement: Parsed) -> None:
+    def _given(self, statement: ParsedStatement) -> None:
         name, unit_text, axis, tree, words, clauses = statement.parts
         meant = self._meant(statement, self.reader.declared_unit(statement, unit_text), words, clauses)
         node, default = None, None
@@ -220,7 +220,7 @@ class Builder:
         declaration = Given(meant, default) if axis is None else Curve(meant, default, along=str(axis))
         self._make(statement, str(name), declaration, node)
 
-    def _formula(self, statement: Parsed) -> None:
+    def _formula(self, statement: ParsedStatement) -> None:
         name, unit_text, axis, tree, words, clauses = statement.parts
         meant = self._meant(statement, self.reader.declared_unit(statement, unit_text), words, clauses)
         node, kind = self._node(statement, str(name), meant, str(axis or ""), tree)
@@ -229,7 +229,7 @@ class Builder:
         declaration = Formula(body, meant) if axis is None else Profile(body, meant, None, str(axis), 1)
         self._make(statement, str(name), declaration, node)
 
-    def _solve(self, statement: Parsed) -> None:
+    def _solve(self, statement: ParsedStatement) -> None:
         name, unit_text, low, high, tree, words, clauses = statement.parts
         meant = self._meant(statement, self.reader.declared_unit(statement, unit_text), words, clauses)
         bounds = tuple(self._node(statement, f"a bound of {name}", meant, "", end)[0] for end in (low, high))
@@ -238,7 +238,7 @@ class Builder:
         body = SolveBody(str(name), equation, bounds, statement.chunk.line, meant.words, lists)
         self._make(statement, str(name), Formula(body, meant), equation)
 
-    def _system(self, statement: Parsed) -> None:
+    def _system(self, statement: ParsedStatement) -> None:
         *parts, tree = statement.parts
         unknowns = [str(unknown.children[0]) for unknown in parts]
         if len(unknowns) > MOST_UNKNOWNS:
@@ -259,7 +259,7 @@ class Builder:
         first = next(iter(meanings.values()))  # after which the line is called
         self.built.note(statement, unknowns[0], first.unit, first.words, system.tree)
 
-    def _require(self, statement: Parsed) -> None:
+    def _require(self, statement: ParsedStatement) -> None:
         tree, words, clauses = statement.parts
         node, of_items = self._condition(statement, tree)
         remedy = said_in(statement, clauses, self.reader).keywords.get("remedy")
@@ -272,7 +272,7 @@ class Builder:
         self.built.parts[f"{RULE} {statement.chunk.line}"] = rule
         self.built.note(statement, f"{RULE} {statement.chunk.line}", "", rule.sentence, node)
 
-    def _check(self, statement: Parsed) -> None:
+    def _check(self, statement: ParsedStatement) -> None:
         tree, words, clauses = statement.parts
         node, _ = self._condition(statement, tree)
         said, text = said_in(statement, clauses, self.reader), words_of(statement, words)
@@ -282,12 +282,12 @@ class Builder:
         self.built.criteria[name] = criterion
         self.built.note(statement, name, "", text, node)
 
-    def _test(self, statement: Parsed) -> None:
+    def _test(self, statement: ParsedStatement) -> None:
         test = test_of(statement, self.reader, self.built.parts)
         self.built.tests.append(test)
         self.built.note(statement, "", "", test.words)
 
-    def _condition(self, statement: Parsed, tree: lark.Tree[Any]) -> tuple[Any, bool]:
+    def _condition(self, statement: ParsedStatement, tree: lark.Tree[Any]) -> tuple[Any, bool]:
         node, sort = self.reader.part(statement, tree)
         if not sort.truth:
             remedy = "write it like p <= 30 MPa"
@@ -295,13 +295,13 @@ class Builder:
         return node, bool(sort.axis)
 
     def _node(
-        self, statement: Parsed, name: str, meant: Meaning, axis: str, tree: lark.Tree[Any]
+        self, statement: ParsedStatement, name: str, meant: Meaning, axis: str, tree: lark.Tree[Any]
     ) -> tuple[Any, Kind]:
         """Return the tree and kind of a value that is a list over an axis exactly where that is declared."""
         part = self.reader.part(statement, tree)
         return self.reader.fitting(statement, part, meant.unit, name, tree, axis), part[1].kind
 
-    def _meant(self, statement: Parsed, unit_text: str, words: lark.Token, clauses: Any) -> Meaning:
+    def _meant(self, statement: ParsedStatement, unit_text: str, words: lark.Token, clauses: Any) -> Meaning:
         """Return the meaning of a declaration whose API name is no other's; its example is noted."""
         if missing := [name for name in declared_by(statement) if name not in self.names.sorts]:
             raise FollowsFromFault(missing[0])
@@ -314,7 +314,7 @@ class Builder:
             self.built.example[meant.name] = said.example
         return self._in_kind(statement, meant)
 
-    def _in_kind(self, statement: Parsed, meant: Meaning) -> Meaning:
+    def _in_kind(self, statement: ParsedStatement, meant: Meaning) -> Meaning:
         """Return what is declared in K by the kind of its formula: a difference, or a temperature."""
         sort = self.names.sorts[str(statement.parts[0])] if statement.kind in ("formula", "given") else None
         if sort is None or sort.kind == kind_of(meant.unit) or sort.kind.unit not in ("degC", "delta_degC"):
@@ -323,6 +323,6 @@ class Builder:
             return replace(meant, unit=difference_in(meant.unit))
         return replace(meant, read_as="degC")
 
-    def _make(self, statement: Parsed, name: str, declaration: Declaration, node: Any) -> None:
+    def _make(self, statement: ParsedStatement, name: str, declaration: Declaration, node: Any) -> None:
         self.built.parts[name] = declaration
         self.built.note(statement, name, declaration.meaning.unit, declaration.meaning.words, node)

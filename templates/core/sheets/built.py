@@ -8,8 +8,8 @@ from typing import Any
 
 from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given, Requirement
 from templates.core.sheets.faults import SheetFault
-from templates.core.sheets.grammar import Parsed
-from templates.core.sheets.names import Named
+from templates.core.sheets.grammar import ParsedStatement
+from templates.core.sheets.names import KnownName
 from templates.core.sheets.testing import SheetTest
 
 Part = Declaration | Requirement
@@ -37,20 +37,20 @@ class Built:
         By line: the name that a statement declares, its words, and the tree that is written on paper.
     """
 
-    statements: list[Parsed] = field(default_factory=list)
+    statements: list[ParsedStatement] = field(default_factory=list)
     faults: list[SheetFault] = field(default_factory=list)
     parts: dict[str, Part] = field(default_factory=dict)
     criteria: dict[str, dict[str, str]] = field(default_factory=dict)
     example: dict[str, Any] = field(default_factory=dict)
     tests: list[SheetTest] = field(default_factory=list)
-    named: dict[str, Named] = field(default_factory=dict)
+    named: dict[str, KnownName] = field(default_factory=dict)
     lines: dict[str, int] = field(default_factory=dict)
     called: dict[int, str] = field(default_factory=dict)
     places: dict[str, int] = field(default_factory=dict)
     said: dict[int, str] = field(default_factory=dict)
     trees: dict[int, Any] = field(default_factory=dict)
 
-    def note(self, statement: Parsed, name: str, unit: str, words: str, node: Any = None) -> None:
+    def note(self, statement: ParsedStatement, name: str, unit: str, words: str, node: Any = None) -> None:
         """Note what a statement declares, for the editor."""
         line = statement.chunk.line
         self.called[line], self.said[line] = name, words
@@ -58,7 +58,7 @@ class Built:
         if node is not None:
             self.trees[line] = node
         if statement.kind not in ("require", "check", "test"):
-            self.named[name] = Named(name, unit, words, statement.kind)
+            self.named[name] = KnownName(name, unit, words, statement.kind)
 
     def declarations(self) -> dict[str, Part]:
         """Return declarations and rules for another class.

@@ -10,7 +10,7 @@ import lark
 
 from templates.core.language.meaning import Keywords, Meaning, meaning
 from templates.core.sheets.expressions import Reader
-from templates.core.sheets.grammar import Parsed
+from templates.core.sheets.grammar import ParsedStatement
 
 LONGEST_WORDS = 200
 _BOUNDS = {"<": "lt", "<=": "le", ">": "gt", ">=": "ge"}
@@ -33,7 +33,7 @@ class Said:
 
 
 def meaning_of(
-    statement: Parsed, unit_text: str, words: lark.Token, clauses: lark.Tree[Any], reader: Reader
+    statement: ParsedStatement, unit_text: str, words: lark.Token, clauses: lark.Tree[Any], reader: Reader
 ) -> tuple[Meaning, Said]:
     """Return the meaning of a declared number, and its example.
 
@@ -46,7 +46,7 @@ def meaning_of(
     return _meaning(statement, unit_text, words, said), said
 
 
-def _meaning(statement: Parsed, unit_text: str, words: lark.Token, said: Said) -> Meaning:
+def _meaning(statement: ParsedStatement, unit_text: str, words: lark.Token, said: Said) -> Meaning:
     text = words_of(statement, words)
     try:
         return meaning(unit_text, text, **said.keywords)
@@ -55,7 +55,7 @@ def _meaning(statement: Parsed, unit_text: str, words: lark.Token, said: Said) -
         raise statement.refuse("name", message, words, 'write words like "bearing diameter"') from None
 
 
-def words_of(statement: Parsed, words: lark.Token) -> str:
+def words_of(statement: ParsedStatement, words: lark.Token) -> str:
     """Return the words between quotation marks.
 
     Raises
@@ -73,7 +73,7 @@ def words_of(statement: Parsed, words: lark.Token) -> str:
 
 
 def said_in(
-    statement: Parsed, clauses: lark.Tree[Any] | None, reader: Reader, unit_text: str | None = None
+    statement: ParsedStatement, clauses: lark.Tree[Any] | None, reader: Reader, unit_text: str | None = None
 ) -> Said:
     """Read clauses; bounds need the unit of the declaration."""
     said, keys = Said(), set[str]()
@@ -99,7 +99,7 @@ def clause_name(clause: lark.Tree[Any]) -> str:
 
 
 def _clause(
-    statement: Parsed, clause: lark.Tree[Any], reader: Reader, unit_text: str | None
+    statement: ParsedStatement, clause: lark.Tree[Any], reader: Reader, unit_text: str | None
 ) -> tuple[str, Any]:
     if clause.data == "said":
         return _said(statement, clause)
@@ -125,7 +125,7 @@ def _clause(
     return _BOUNDS[sign], limits[0]
 
 
-def _said(statement: Parsed, clause: lark.Tree[Any]) -> tuple[str, Any]:
+def _said(statement: ParsedStatement, clause: lark.Tree[Any]) -> tuple[str, Any]:
     key, *texts = cast(list[lark.Token], clause.children)
     said = [words_of(statement, text) for text in texts]
     if key == "also":

@@ -11,7 +11,7 @@ from templates.core.language.declared_criteria import meanings_of
 from templates.core.language.meaning import api_name
 from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given
 from templates.core.sheets.clauses import Said
-from templates.core.sheets.grammar import Parsed
+from templates.core.sheets.grammar import ParsedStatement
 from templates.core.units.lists import OVER_LISTS, TRAILING
 from templates.core.units.operations import CONSTANTS, FUNCTIONS, Apply, Constant, Name
 
@@ -20,7 +20,7 @@ _OPERATORS = frozenset({"+", "-", "*", "/", "**"})
 
 
 def criterion_of(
-    statement: Parsed, node: Any, words: str, said: Said, declared: Mapping[str, Any]
+    statement: ParsedStatement, node: Any, words: str, said: Said, declared: Mapping[str, Any]
 ) -> tuple[str, dict[str, str]]:
     """Return the name and content of a criterion, as templates declare them.
 

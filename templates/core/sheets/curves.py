@@ -13,7 +13,7 @@ from templates.core.errors import FaultyText
 from templates.core.sheets.clauses import Said
 from templates.core.sheets.expressions import Reader
 from templates.core.sheets.functions import taken
-from templates.core.sheets.grammar import Parsed
+from templates.core.sheets.grammar import ParsedStatement
 from templates.core.sheets.names import Call
 from templates.core.sheets.partial import Partial
 from templates.core.units.nodes import kind_of
@@ -22,7 +22,12 @@ from templates.core.units.units import unit
 
 
 def curve_of(
-    statement: Parsed, reader: Reader, name: str, units: tuple[str, str], points: Sequence[Any], said: Said
+    statement: ParsedStatement,
+    reader: Reader,
+    name: str,
+    units: tuple[str, str],
+    points: Sequence[Any],
+    said: Said,
 ) -> Call:
     """Return the function that a curve is, from the unit of its argument to that of its value.
 

@@ -14,14 +14,14 @@ from templates.core.sheets.body import TreeBody
 from templates.core.sheets.clauses import words_of
 from templates.core.sheets.expressions import Reader
 from templates.core.sheets.faults import FollowsFromFault
-from templates.core.sheets.grammar import Parsed
-from templates.core.sheets.testing import Expected, SheetTest
+from templates.core.sheets.grammar import ParsedStatement
+from templates.core.sheets.testing import ExpectedResult, SheetTest
 from templates.core.units.rules import is_number
 
 Parts = Mapping[str, Any]
 
 
-def test_of(statement: Parsed, reader: Reader, every: Parts) -> SheetTest:
+def test_of(statement: ParsedStatement, reader: Reader, every: Parts) -> SheetTest:
     """Return the test that a statement describes.
 
     Raises
@@ -43,7 +43,12 @@ def test_of(statement: Parsed, reader: Reader, every: Parts) -> SheetTest:
 
 
 def _declared(
-    statement: Parsed, reader: Reader, every: Parts, name: lark.Token, kinds: tuple[type, ...], wanted: str
+    statement: ParsedStatement,
+    reader: Reader,
+    every: Parts,
+    name: lark.Token,
+    kinds: tuple[type, ...],
+    wanted: str,
 ) -> Any:
     declared = every.get(str(name))
     if declared is None and (str(name) in reader.names.broken or str(name) in reader.names.sorts):
@@ -59,7 +64,9 @@ def _declared(
     return declared
 
 
-def _set(statement: Parsed, reader: Reader, declared: Declaration, tree: lark.Tree[Any], name: str) -> Any:
+def _set(
+    statement: ParsedStatement, reader: Reader, declared: Declaration, tree: lark.Tree[Any], name: str
+) -> Any:
     if isinstance(declared, Choice):
         word = str(tree.children[0]) if tree.data == "name" else ""
         if word not in declared.options:
@@ -69,7 +76,9 @@ def _set(statement: Parsed, reader: Reader, declared: Declaration, tree: lark.Tr
     return _value(statement, reader, declared, tree, name)
 
 
-def _value(statement: Parsed, reader: Reader, declared: Declaration, tree: lark.Tree[Any], name: str) -> Any:
+def _value(
+    statement: ParsedStatement, reader: Reader, declared: Declaration, tree: lark.Tree[Any], name: str
+) -> Any:
     """Return the SI value of an expression without names."""
     part = reader.part(statement, tree)
     body = TreeBody(reader.fitting(statement, part, declared.meaning.unit, name, tree), statement.chunk.line)
@@ -84,8 +93,13 @@ def _value(statement: Parsed, reader: Reader, declared: Declaration, tree: lark.
 
 
 def _expected(
-    statement: Parsed, reader: Reader, declared: Declaration, tree: lark.Tree[Any], within: Any, name: str
-) -> Expected:
+    statement: ParsedStatement,
+    reader: Reader,
+    declared: Declaration,
+    tree: lark.Tree[Any],
+    within: Any,
+    name: str,
+) -> ExpectedResult:
     value = _value(statement, reader, declared, tree, name)
     tolerance, sort = reader.part(statement, within)
     size = TreeBody(tolerance, statement.chunk.line)
@@ -105,4 +119,4 @@ def _expected(
     if not 0 <= number < np.inf:
         message = f"{text} is not a tolerance: it is finite, and not below 0"
         raise statement.refuse("limit", message, within, "write within 0.2 %")
-    return Expected(declared.name, value, number, f"{statement.text_of(tree)} within {text}")
+    return ExpectedResult(declared.name, value, number, f"{statement.text_of(tree)} within {text}")

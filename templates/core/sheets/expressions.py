@@ -9,7 +9,7 @@ import numpy as np
 
 from templates.core.errors import FaultyText
 from templates.core.sheets.body import TreeBody
-from templates.core.sheets.grammar import Parsed
+from templates.core.sheets.grammar import ParsedStatement
 from templates.core.sheets.names import Names, sort_of
 from templates.core.sheets.remedies import declared_in, remedy_at
 from templates.core.units.conformity import misfit
@@ -28,7 +28,7 @@ class Reader:
 
     sort_of = staticmethod(sort_of)
 
-    def part(self, statement: Parsed, tree: lark.Tree[Any]) -> Part:
+    def part(self, statement: ParsedStatement, tree: lark.Tree[Any]) -> Part:
         """Return an expression and what it gives.
 
         Raises
@@ -54,7 +54,13 @@ class Reader:
         return part
 
     def fitting(
-        self, statement: Parsed, part: Part, unit_text: str, name: str, at: Any, axis: str | None = None
+        self,
+        statement: ParsedStatement,
+        part: Part,
+        unit_text: str,
+        name: str,
+        at: Any,
+        axis: str | None = None,
     ) -> Any:
         """Return the tree of an expression that gives what is declared; the `axis` is any, if None.
 
@@ -77,7 +83,7 @@ class Reader:
             self._along(statement, got, axis, name, at)
         return tree
 
-    def _along(self, statement: Parsed, got: Sort, axis: str, name: str, at: Any) -> None:
+    def _along(self, statement: ParsedStatement, got: Sort, axis: str, name: str, at: Any) -> None:
         """Refuse a list where a single value is declared, and the other way round."""
         if got.axis and not axis:
             message = f"{name} is a single value, but this is a list over {got.axis}"
@@ -88,7 +94,7 @@ class Reader:
             message = f"{name} is declared over {axis}, but this is {what}"
             raise statement.refuse("axis_mismatch", message, at, _along_of(got.axis))
 
-    def limit(self, statement: Parsed, tree: lark.Tree[Any], unit_text: str) -> float:
+    def limit(self, statement: ParsedStatement, tree: lark.Tree[Any], unit_text: str) -> float:
         """Return a limit in the declared unit: typed in it without a unit, or in any other with one.
 
         Raises
@@ -105,7 +111,7 @@ class Reader:
         value = self.fitting(statement, part, unit_text, "a limit", tree).value
         return float(unit(unit_text).from_si(value))
 
-    def typed(self, statement: Parsed, tree: lark.Tree[Any], unit_text: str, name: str) -> Any:
+    def typed(self, statement: ParsedStatement, tree: lark.Tree[Any], unit_text: str, name: str) -> Any:
         """Return a value without names as a user types it.
 
         A text where it is one number, else a list or a number.
@@ -121,7 +127,9 @@ class Reader:
         node = self.fitting(statement, part, unit_text, name, tree)
         return self.number(statement, node, tree, unit_text, name)
 
-    def number(self, statement: Parsed, node: Any, tree: lark.Tree[Any], unit_text: str, name: str) -> Any:
+    def number(
+        self, statement: ParsedStatement, node: Any, tree: lark.Tree[Any], unit_text: str, name: str
+    ) -> Any:
         """Return a checked tree without names as a user types it.
 
         Raises
@@ -142,7 +150,7 @@ class Reader:
         shown = np.asarray(unit(unit_text).from_si(value))
         return {"value": shown.tolist(), "unit": unit_text}
 
-    def declared_unit(self, statement: Parsed, text: lark.Token) -> str:
+    def declared_unit(self, statement: ParsedStatement, text: lark.Token) -> str:
         """Return the unit between brackets.
 
         Raises

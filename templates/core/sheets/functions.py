@@ -9,7 +9,7 @@ import lark
 
 from templates.core.errors import FaultyText
 from templates.core.sheets.expressions import Reader
-from templates.core.sheets.grammar import Parsed
+from templates.core.sheets.grammar import ParsedStatement
 from templates.core.sheets.names import Names, sort_of
 from templates.core.units.conformity import declared_kind, misfit
 from templates.core.units.expressions import FaultyPlace, checked
@@ -86,7 +86,7 @@ def taken(parameter: str, unit_text: str, part: Part, takes: str) -> Kind:
     return declared_kind(got.kind, wanted)
 
 
-def function_of(statement: Parsed, reader: Reader) -> Function:
+def function_of(statement: ParsedStatement, reader: Reader) -> Function:
     """The function that a statement declares, its formula checked by what its parameters are declared in.
 
     Raises

@@ -32,7 +32,7 @@ _DECLARED = re.compile(r"(?:(?:given|choice|curve|solve)[ \t]+)?([A-Za-z][A-Za-z
 
 
 @dataclass(frozen=True)
-class Parsed:
+class ParsedStatement:
     """A statement and its tree; `words` are those that calculate, without layout, for the digest."""
 
     chunk: Chunk
@@ -68,7 +68,7 @@ class Parsed:
         return Refusal(SheetFault(line, column, code, message, end, remedy))
 
 
-def parsed(chunk: Chunk) -> Parsed:
+def parsed(chunk: Chunk) -> ParsedStatement:
     """Return the tree of a statement.
 
     Raises
@@ -84,7 +84,7 @@ def parsed(chunk: Chunk) -> Parsed:
         message = f"a statement has at most {MOST_PARTS} parts, {MOST_DEPTH} deep"
         remedy = "give its parts names of their own"
         raise Refusal(SheetFault(chunk.line, 1, "too_large", message, remedy=remedy))
-    return Parsed(chunk, tree, words)
+    return ParsedStatement(chunk, tree, words)
 
 
 @lru_cache(maxsize=REMEMBERED)
@@ -105,7 +105,7 @@ def name_of(chunk: Chunk) -> str:
     return match[1] if match else ""
 
 
-def declared_by(statement: Parsed) -> list[str]:
+def declared_by(statement: ParsedStatement) -> list[str]:
     """Return the names that a statement declares, if it does."""
     if statement.kind == "system":
         return [str(unknown.children[0]) for unknown in statement.parts[:-1]]

@@ -18,7 +18,7 @@ from templates.core.language.ledger import Mask
 from templates.core.paper.expressions import latex
 from templates.core.sheets.body import names_in, unequal_lengths
 from templates.core.sheets.expressions import Reader
-from templates.core.sheets.grammar import Parsed
+from templates.core.sheets.grammar import ParsedStatement
 from templates.core.units.closures import closure
 from templates.core.units.operations import OPERATORS, Apply, Constant, Kind, Name
 
@@ -140,7 +140,9 @@ def _sizes(matrices: NDArray[Any], axis: int) -> NDArray[Any]:
     return np.ldexp(1.0, np.frexp(most)[1] - 1)
 
 
-def system_of(statement: Parsed, reader: Reader, tree: lark.Tree[Any], unknowns: Sequence[str]) -> System:
+def system_of(
+    statement: ParsedStatement, reader: Reader, tree: lark.Tree[Any], unknowns: Sequence[str]
+) -> System:
     """Return the equations behind `so that`, joined by `and`.
 
     Raises

@@ -9,7 +9,7 @@ from templates.core.paper.expressions import latex
 from templates.core.paper.mathml import named_symbol, symbols
 from templates.core.sheets.body import names_in
 from templates.core.sheets.built import Built
-from templates.core.sheets.grammar import Parsed, declared_by
+from templates.core.sheets.grammar import ParsedStatement, declared_by
 
 
 def latex_of(cls: type[Template], built: Built) -> dict[int, str]:
@@ -18,7 +18,7 @@ def latex_of(cls: type[Template], built: Built) -> dict[int, str]:
     return {s.chunk.line: _written(s, built, letters) for s in built.statements}
 
 
-def _written(statement: Parsed, built: Built, letters: Mapping[str, str]) -> str:
+def _written(statement: ParsedStatement, built: Built, letters: Mapping[str, str]) -> str:
     line = statement.chunk.line
     node, name = built.trees.get(line), built.called.get(line, "")
     right = ""
@@ -36,7 +36,7 @@ def _written(statement: Parsed, built: Built, letters: Mapping[str, str]) -> str
     return "=".join(filter(None, (_left(statement, name, letters), right)))
 
 
-def _left(statement: Parsed, name: str, letters: Mapping[str, str]) -> str:
+def _left(statement: ParsedStatement, name: str, letters: Mapping[str, str]) -> str:
     if statement.kind != "function":
         return letters.get(name, "")
     parameters = statement.parts[1:-2]

@@ -20,7 +20,7 @@ from templates.core.sheets.faults import SheetRefused
 from templates.core.sheets.grammar import LANGUAGE
 from templates.core.sheets.lines import Chunk, chunks_of, normal
 from templates.core.sheets.loops import faults_of_loops
-from templates.core.sheets.names import Named
+from templates.core.sheets.names import KnownName
 from templates.core.sheets.paper import latex_of
 from templates.core.sheets.prose import documentation_of, markdown_of, title_of
 from templates.core.sheets.testing import SheetTest
@@ -72,7 +72,7 @@ class Sheet:
         return tuple(self.built.tests)
 
     @cached_property
-    def names(self) -> tuple[Named, ...]:
+    def names(self) -> tuple[KnownName, ...]:
         """Return the names that formulas may use, for completion."""
         return tuple(self.built.named.values())
 

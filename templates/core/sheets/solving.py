@@ -18,7 +18,7 @@ from templates.core.language.ledger import Mask
 from templates.core.paper.expressions import latex
 from templates.core.sheets.body import names_in, operations_seconds, unequal_lengths
 from templates.core.sheets.expressions import Reader
-from templates.core.sheets.grammar import Parsed
+from templates.core.sheets.grammar import ParsedStatement
 from templates.core.units.closures import closure
 from templates.core.units.operations import Apply
 from templates.core.units.walking import nodes_of
@@ -130,7 +130,7 @@ def _is_number(value: Any) -> bool:
     return not isinstance(value, str)
 
 
-def equation_of(statement: Parsed, reader: Reader, tree: lark.Tree[Any], name: str) -> Apply:
+def equation_of(statement: ParsedStatement, reader: Reader, tree: lark.Tree[Any], name: str) -> Apply:
     """Return the equation behind `so that`: two sides that are equal.
 
     Raises

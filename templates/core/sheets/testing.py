@@ -15,7 +15,7 @@ from templates.core.units.units import Unit
 
 
 @dataclass(frozen=True)
-class Expected:
+class ExpectedResult:
     """One expected result: its value [SI], and the largest difference of a result from it [SI]."""
 
     name: str
@@ -31,7 +31,7 @@ class SheetTest:
     line: int
     words: str
     given: Mapping[str, Any]
-    expected: tuple[Expected, ...]
+    expected: tuple[ExpectedResult, ...]
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def _run(cls: type[Template], test: SheetTest) -> TestResult:
     return TestResult(test.line, test.words, True, "; ".join(_met(template, one) for one in test.expected))
 
 
-def _met(template: Template, one: Expected) -> str:
+def _met(template: Template, one: ExpectedResult) -> str:
     """Return a sentence on the results that are as expected."""
     declared = template.formulas[one.name]
     shown = _shown(getattr(template, declared.attribute), declared.meaning.scale)

@@ -96,7 +96,7 @@ def checked(tree: lark.Tree[Any], scope: Scope) -> Part:
         With code `unknown_name`, `unknown_function`, `unknown_unit`, `unit_mismatch`, `no_truth`,
         `axis_mismatch`, `index`, `syntax`, `not_finite` or `too_large`.
     """
-    return _Checked(scope).part(tree)
+    return _CheckedBuilder(scope).part(tree)
 
 
 def built(tree: lark.Tree[Any]) -> Any:
@@ -206,7 +206,7 @@ class _Builder:
         return Apply(operation, tuple(node for node, _ in parts)), Sort()
 
 
-class _Checked(_Builder):
+class _CheckedBuilder(_Builder):
     """Builds a tree whose names are known, and checks each node."""
 
     def __init__(self, scope: Scope) -> None:

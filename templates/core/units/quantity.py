@@ -41,7 +41,7 @@ from templates.core.units.units import (
 )
 
 __all__ = [
-    "Tolerance", "Typed", "Unit", "Value", "beside", "compatible", "read", "read_any", "read_beside",
+    "Tolerance", "TypedQuantity", "Unit", "Value", "beside", "compatible", "read", "read_any", "read_beside",
     "registry", "require_same_kind", "unit",
 ]  # fmt: skip
 
@@ -51,7 +51,7 @@ _DEEPEST = 4  # axes of an array
 
 
 @dataclass(frozen=True)
-class Typed:
+class TypedQuantity:
     """A quantity as its user typed it, and what it is in SI.
 
     `extra` is its tolerance as an answer states it, `tolerance` what that means; `si` is the value alone.
@@ -64,7 +64,7 @@ class Typed:
     tolerance: Tolerance | None = None
 
 
-def read(raw: Any, declared: str) -> Typed:
+def read(raw: Any, declared: str) -> TypedQuantity:
     """Read a quantity in any of its written forms, for something declared in the unit `declared`.
 
     Forms: `"25 kN"`, `{"value": 25, "unit": "kN"}` (value may be a list), a list of such, and a bare number
@@ -92,7 +92,7 @@ def read(raw: Any, declared: str) -> Typed:
     raise _no_quantity(raw, declared)
 
 
-def read_beside(raw: Any, declared: str) -> Typed:
+def read_beside(raw: Any, declared: str) -> TypedQuantity:
     """Read a limit or a target, which takes the kind of what it belongs to.
 
     Beside a difference of temperatures `30 degC` is one of 30 K.
@@ -120,7 +120,7 @@ def _as_difference(match: re.Match[str]) -> str:
     return difference_of(match[0])
 
 
-def read_any(raw: Any) -> Typed:
+def read_any(raw: Any) -> TypedQuantity:
     """Read a quantity of whatever kind its own unit says.
 
     Raises
@@ -146,7 +146,7 @@ def _own_unit(raw: Any) -> str:
 
 
 @lru_cache(maxsize=4096)  # who varies one input sends the others again
-def _read_text(text: str, declared: str) -> Typed:
+def _read_text(text: str, declared: str) -> TypedQuantity:
     if not (parts := _parted(text)):
         raise _no_quantity(text, declared)
     number, name = parts
@@ -159,7 +159,7 @@ def _read_text(text: str, declared: str) -> Typed:
     return _quantity(_finite(float(number)), name, declared)
 
 
-def _toleranced(number: float, written: Written, declared: str) -> Typed:
+def _toleranced(number: float, written: Written, declared: str) -> TypedQuantity:
     """Return a quantity whose text holds a tolerance."""
     if written.unit == "1" != declared:
         raise FaultyText("missing_unit", f'the unit is missing; write it at the end, as in "… {declared}"')
@@ -175,7 +175,7 @@ def _parted(text: str) -> tuple[str, str] | None:
     return (match[1], match[2]) if match else None
 
 
-def _read_object(raw: dict[str, Any], declared: str) -> Typed:
+def _read_object(raw: dict[str, Any], declared: str) -> TypedQuantity:
     if "value" not in raw or not raw.keys() <= {"value", "unit", *KEYS}:
         raise _no_quantity(raw, declared)
     if "unit" not in raw and declared != "1":
@@ -191,10 +191,10 @@ def _read_object(raw: dict[str, Any], declared: str) -> Typed:
     extra = {key: raw[key] for key in KEYS if key in raw}
     if tolerance is not None and tolerance.zone is not None:
         extra = {**stated(tolerance, unit(name)), **extra}
-    return Typed(value, typed.unit, typed.si, extra, tolerance)
+    return TypedQuantity(value, typed.unit, typed.si, extra, tolerance)
 
 
-def _read_list(raw: list[Any], declared: str) -> Typed:
+def _read_list(raw: list[Any], declared: str) -> TypedQuantity:
     if raw and all(isinstance(item, (str, dict)) for item in raw):
         return _read_each(raw, declared)
     if declared != "1" and raw:
@@ -202,31 +202,31 @@ def _read_list(raw: list[Any], declared: str) -> Typed:
     return _quantity(_array(raw), "1", declared)
 
 
-def _read_each(raw: list[Any], declared: str) -> Typed:
+def _read_each(raw: list[Any], declared: str) -> TypedQuantity:
     """Return a list of quantities, each in its own unit; shown in the declared one."""
     parts = [read(item, declared) for item in raw]
     if len({np.shape(part.si) for part in parts}) > 1:
         raise FaultyText("uneven", "the items of an array must be of one length; give each a single value")
     si = np.array([part.si for part in parts], dtype=float)
     tolerance = joined([part.tolerance for part in parts])
-    return Typed(np.asarray(unit(declared).from_si(si)).tolist(), declared, si, {}, tolerance)
+    return TypedQuantity(np.asarray(unit(declared).from_si(si)).tolist(), declared, si, {}, tolerance)
 
 
-def _read_bare(raw: float, declared: str) -> Typed:
+def _read_bare(raw: float, declared: str) -> TypedQuantity:
     number = _number(raw)
     if declared != "1":
         raise FaultyText("missing_unit", f'{number:.15g} has no unit; write it as "{number:.15g} {declared}"')
     return _quantity(number, "1", declared)
 
 
-def _quantity(magnitude: Value, name: str, declared: str) -> Typed:
+def _quantity(magnitude: Value, name: str, declared: str) -> TypedQuantity:
     si = _in_si(magnitude, require_same_kind(name, declared))
     if not (math.isfinite(si) if isinstance(si, float) else np.isfinite(si).all()):
         raise FaultyText(
             "not_finite", f"the value is too large in {name}; give one below 1.8e308 in SI units"
         )
     shown = magnitude.tolist() if isinstance(magnitude, np.ndarray) else magnitude
-    return Typed(shown, name, si, {})
+    return TypedQuantity(shown, name, si, {})
 
 
 def _in_si(magnitude: Value, scale: Unit) -> Value:

@@ -241,7 +241,7 @@ def angle(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -
 
 
 def whole(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    """A quantity has no whole part of its own: 3.7 mm are 0.0037 m."""
+    """Return a pure number; refuse a quantity, whose whole part depends on its unit: 3.7 mm are 0.0037 m."""
     if kinds[0].base != Kind().base:
         hint = f"divide by a unit, as in {operation.sign}(d / 1 mm)"
         raise FaultyText(

@@ -41,7 +41,6 @@ from templates.physics.supplied.fed_cycle import (
     fed_duty,
     fed_film,
     fed_orbit,
-    relieved_duty,
 )
 from templates.physics.supplied.feeding import AROUND, Feeding
 
@@ -109,15 +108,11 @@ class CycleBearing:
     """Supply pressure, NaN without a groove [Pa]."""
     clearance: Array
     """Radial clearance [m]."""
-    relieved: bool = False
-    """Whether the film is that of `oil_film_cycle` 1: with the supply's pressure (`relieved_duty`)."""
 
     def fed(self, eta: Array) -> FedDuty:
         """Return the duty at a viscosity [Pa s]."""
-        if not self.relieved:
-            return warmed_duty(self.duty, self.feeding, eta)
         P = self.pressure * (2 * self.clearance / self.feeding.D) ** 2 / (eta * self.duty.Omega)
-        return relieved_duty(replace(self.duty, scale=self.duty.scale / eta), self.feeding, P)
+        return fed_duty(replace(self.duty, scale=self.duty.scale / eta), self.feeding, P)
 
 
 @dataclass(frozen=True)
@@ -332,11 +327,6 @@ def side_flow_of(heat: CycleHeat, eta: Array) -> Array:
 def feed_flow_of(heat: CycleHeat, eta: Array) -> Array:
     """Return the flow that the supply pressure drives [m³/s]; NaN where the viscosity is."""
     return _where_known(eta, heat.feed_flow)
-
-
-def warmed_duty(duty: Duty, feeding: Feeding, eta: Array) -> FedDuty:
-    """Return the duty, whose scale is that of 1 Pa s, at a viscosity [Pa s]."""
-    return fed_duty(replace(duty, scale=duty.scale / eta), feeding, np.full(2, np.nan))
 
 
 @units(None, "1", "1", "Pa*s", "K", "K", None, "kg/m**3", "K", returns="Pa*s")

@@ -9,9 +9,8 @@ Orbit, pressure, loss and flow:
                       nowhere else; knows no groove, hole or supply pressure; one case at a time
     supplied          mass-conserving cavities in time, fed by grooves and holes; one case at a time
 
-Two things go beyond `oil_film_cycle` 1 and are asked for by a duty (`FedDuty`): `lift`, what the supply
-pressure bears at rest in a groove, which level mobility_grooved takes from the load; and `near_holes`, meshes
-of level supplied that follow a hole under the load.
+Level mobility_grooved takes from the load what the supply pressure bears at rest in a groove, the `lift` of a
+duty. Level supplied goes on, on finer meshes, where every hole stays under the load.
 
 Everything is dimensionless: P = p psi²/(eta Omega), load S = F psi²/(B D eta Omega), psi the diametral
 clearance over the diameter, Omega the speed of the crank. The load is what the journal pushes with, in a
@@ -54,17 +53,14 @@ LEVELS = ("mobility_short", "mobility", "mobility_grooved", "flooded", "supplied
 BOUNDARY = {
     "mobility_short": "half film: p = 0 at the ends and wherever the gap widens; always full, no supply",
     "mobility": "p = 0 at the ends alone; rupture where p = dp/dn = 0; always full, no supply",
-    "mobility_grooved": "as mobility; where the load passes the groove, p = 0 at the groove's edges too",
+    "mobility_grooved": "as mobility; where the load passes the groove, p = 0 at the groove's edges too; "
+    "less load, by what the supply bears there at rest",
     "flooded": "Jakobsson-Floberg-Olsson: ambient pressure at the ends, in the cavities and along the "
     "widest gap, where oil is fed",
     "supplied": "Jakobsson-Floberg-Olsson: ambient pressure at the ends and in the cavities, supply pressure "
     "in grooves and holes; oil in a cavity stays where it is",
 }
 """What each level takes for the pressure at the film's borders."""
-BOUNDARY_RELIEVED = BOUNDARY | {
-    "mobility_grooved": BOUNDARY["mobility_grooved"] + "; less load, by what the supply bears there at rest"
-}
-"""The same where a duty has a lift."""
 WIDTHS = {"mobility_short": (0.01, 100.0), **dict.fromkeys(LEVELS[1:], (NARROWEST, WIDEST))}
 """Width ratios B/D that each level takes [-]."""
 UNREPEATED = (Verdict.STARVED, Verdict.UNSETTLED)
@@ -83,13 +79,11 @@ class FedDuty:
     """Where it begins, from the sleeve's axis, (...) [rad]."""
     groove_extent: Array
     """Extent in the sense x to y, (...) [rad]."""
-    supply: Supply | None = None
+    supply: Supply | None
     """Grooves and holes and their pressure, of the one point of level supplied."""
-    lift: Array | None = None
+    lift: Array
     """What the supply pressure bears at rest in the groove and over its lands, as a load number, (...); level
-    mobility_grooved takes it from the load. None leaves the load as it is [-]."""
-    near_holes: bool = False
-    """Whether level supplied goes on, on finer meshes, where every hole stays under the load."""
+    mobility_grooved takes it from the load [-]."""
 
 
 @dataclass(frozen=True)
@@ -195,9 +189,8 @@ def fed_orbit(level: str, fed: FedDuty) -> FedOrbit:
         return _shaped(_periodic(level, cases), cases)
     if fed.supply is None or not np.isfinite(cases.load.w).all():
         return _shaped(_nowhere(cases.load), cases)
-    further = NEAR_HOLES if fed.near_holes else ()
     marched = supplied_orbit(
-        cases.load, cases.sliding[0], float(cases.ratio[0]), fed.supply, near_holes=further
+        cases.load, cases.sliding[0], float(cases.ratio[0]), fed.supply, near_holes=NEAR_HOLES
     )
     if marched.verdict in UNREPEATED:
         return _filmless(_shaped(_nowhere(cases.load), cases, marched))
@@ -242,19 +235,14 @@ def fed_duty(duty: Duty, feeding: Feeding, pressure: Array) -> FedDuty:
     """Return a duty with what feeds it, at a supply pressure P = p psi²/(eta Omega) [-]."""
     share = np.where(feeding.grooved, feeding.groove_width / feeding.W, 0.0)
     supply = supply_of(feeding, pressure) if np.size(pressure) == 1 else None
-    return FedDuty(duty, share, feeding.groove_start, feeding.groove_extent, supply)
-
-
-def relieved_duty(duty: Duty, feeding: Feeding, pressure: Array) -> FedDuty:
-    """The same with what the supply pressure bears in a groove, and with meshes for holes under the load."""
-    fed = fed_duty(duty, feeding, pressure)
-    return replace(fed, lift=lift_of(fed.groove_share, fed.groove_extent, pressure), near_holes=True)
+    lift = lift_of(share, feeding.groove_extent, pressure)
+    return FedDuty(duty, share, feeding.groove_start, feeding.groove_extent, supply, lift)
 
 
 def _cases(level: str, fed: FedDuty) -> _Cases:
     """Make the points of a duty dimensionless; NaN speeds where the level does not take the width."""
     duty, period = fed.duty, cycle_of(fed.duty.angle)
-    lifted = level == "mobility_grooved" and fed.lift is not None
+    lifted = level == "mobility_grooved"
     of_groove = (fed.groove_share, fed.groove_start, fed.groove_extent, fed.lift if lifted else 0.0)
     single = (duty.Omega, duty.scale, duty.ratio, *of_groove)
     Omega, scale, *flat = (np.asarray(v)[..., None] for v in single)

@@ -16,7 +16,7 @@ from app.workers.pool import WarmProcesses
         ("posix", True),
         ("app.calculations.operations", True),
         ("templates.core.language.evaluate", True),
-        ("app.designs.engine.net", False),
+        ("app.designs.engine.design_engine", False),
         ("app.studies.chunks", False),
     ],
 )

@@ -20,7 +20,7 @@ from row_designs import (
 
 from app.designs.document import Document
 from app.designs.engine.columns import Column, aligned, scattered
-from app.designs.engine.net import Net
+from app.designs.engine.design_engine import DesignEngine
 from templates.core.errors import InvalidInputs
 from templates.door import built_in
 
@@ -293,7 +293,7 @@ def test_columns_align_rows_first():
 def test_faulty_documents_are_refused():
     raw = changed(BEARING, film={"radial_load": "= lod"})
     with pytest.raises(InvalidInputs, match="lod"):
-        Net.of(Document.model_validate(raw), CATALOGUES, [ref("clearance")])
+        DesignEngine.of(Document.model_validate(raw), CATALOGUES, [ref("clearance")])
 
 
 def test_no_rows_give_empty_columns():

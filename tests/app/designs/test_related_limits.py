@@ -10,7 +10,7 @@ from app.designs.document import Document, merge
 from app.designs.drives import network_of
 from app.designs.engine.calculate import calculate
 from app.designs.engine.columns import RowEstimate
-from app.designs.engine.net import Net
+from app.designs.engine.design_engine import DesignEngine
 from app.designs.engine.shifts import Upstream
 from app.designs.engine.verdicts import _operations
 from app.reference import Reference
@@ -128,7 +128,7 @@ def test_rows_are_judged_as_designs_of_their_own():
     raw = document(parameters=PARAMETERS, steps=steps)
     load, share = Reference("film", None, "radial_load"), Reference("share")
     rows = {load: np.array([1e3, 6e3, 25e3, 60e3]), share: np.array([0.5, 0.6, 0.8, 0.9])}
-    table = Net.of(Document.model_validate(raw), CATALOGUES, rows)(rows, [], judge=True)
+    table = DesignEngine.of(Document.model_validate(raw), CATALOGUES, rows)(rows, [], judge=True)
     words = {name: [WORST_FIRST[code] for code in codes] for name, codes in table.verdicts.items()}
     assert set(words["film.own_film"]) == {"met", "not_met"}
     for row in range(4):

@@ -10,7 +10,7 @@ from app.imported_models.descriptions import described_freecad
 from app.imported_models.freecad_process import FreeCadAnswer
 from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded
-from cad.imported_models import Drawn
+from cad.imported_models import ProgramResult
 
 LENGTHS = [[f"Sheet{n}", "cell", f"length{n}", 10.0 + n, "mm", "Sheet"] for n in range(30)]
 
@@ -29,7 +29,7 @@ class SlowWarm:
         time.sleep(min(self.takes, seconds))
         if self.takes > seconds:
             raise DeadlineExceeded(seconds)
-        return FreeCadAnswer({"parameters": LENGTHS, "program": "FreeCAD 1"}, Drawn())
+        return FreeCadAnswer({"parameters": LENGTHS, "program": "FreeCAD 1"}, ProgramResult())
 
 
 class Context:

@@ -29,11 +29,11 @@ from mathcad_files import (
     words,
 )
 
-from app.worksheets.importing.errors import SheetNotRead
-from app.worksheets.importing.job import imported
-from app.worksheets.importing.package import MOST_BYTES, MOST_PARTS
-from app.worksheets.importing.regions import MOST_REGIONS
-from app.worksheets.importing.trees import DEEPEST
+from app.worksheets.imports.errors import SheetNotRead
+from app.worksheets.imports.job import imported
+from app.worksheets.imports.package import MOST_BYTES, MOST_PARTS
+from app.worksheets.imports.regions import MOST_REGIONS
+from app.worksheets.imports.trees import DEEPEST
 
 SMALL = parts_of(math(define("x", real(1))))
 SHEET_XML = "mathcad/worksheet.xml"

@@ -29,8 +29,8 @@ from mathcad_files import (
 )
 from seeds import seeded
 
-from app.worksheets.importing.errors import SheetNotRead
-from app.worksheets.importing.job import imported
+from app.worksheets.imports.errors import SheetNotRead
+from app.worksheets.imports.job import imported
 from templates.core.sheets import read
 
 COUNT = int(os.environ.get("CRANKWRIGHT_TEST_FUZZ", "2000"))

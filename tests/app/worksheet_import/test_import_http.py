@@ -8,8 +8,8 @@ from serving import faults
 
 from app.client import Problem
 from app.retention.rows import referenced_files
-from app.worksheets.importing import service
-from app.worksheets.importing.record import unresolved
+from app.worksheets.imports import service
+from app.worksheets.imports.record import unresolved
 from app.worksheets.names import RESERVED
 
 BINARY = {"Content-Type": "application/octet-stream"}

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from app.worksheets.importing.job import imported
+from app.worksheets.imports.job import imported
 from templates.core.sheets import read
 
 FOLDER = os.environ.get("CRANKWRIGHT_MATHCAD_SHEETS", "")

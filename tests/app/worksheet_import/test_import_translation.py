@@ -26,7 +26,7 @@ from mathcad_files import (
     words,
 )
 
-from app.worksheets.importing.job import imported
+from app.worksheets.imports.job import imported
 from templates.core.sheets import read
 
 

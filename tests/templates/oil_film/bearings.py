@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from templates.core.language.evaluate import evaluate
-from templates.core.units.quantity import Typed
+from templates.core.units.quantity import TypedQuantity
 from templates.oil_film.oil_film_v2 import OilFilm
 
 REFERENCES = Path(__file__).parents[2] / "references"
@@ -23,7 +23,7 @@ def table(name):
 
 def si(value, unit):
     """An SI value as if typed, in a unit of its kind."""
-    return Typed(None, unit, value if np.ndim(value) == 0 else np.asarray(value, float), {})
+    return TypedQuantity(None, unit, value if np.ndim(value) == 0 else np.asarray(value, float), {})
 
 
 def bearing(So, b, **others):

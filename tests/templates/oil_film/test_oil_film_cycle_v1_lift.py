@@ -89,7 +89,7 @@ class TestLift:
         assert lift > 0.02
         found = outputs(inputs(X, Y, **HALF))
         fed = OilFilmCycle.from_quantities(inputs(X - lift, Y, **HALF)).at("mobility_grooved").fed
-        orbit = fed_orbit("mobility_grooved", replace(fed, lift=None))
+        orbit = fed_orbit("mobility_grooved", replace(fed, lift=np.array(0.0)))
         clearance = D * PSI / 2 * 1e6
         assert found["film_thickness"] == pytest.approx(clearance * orbit.gap, rel=1e-9)
         assert found["minimum_film_thickness"] == pytest.approx(clearance * (1 - orbit.eps_max), rel=1e-9)

@@ -5,7 +5,7 @@ import pytest
 
 from templates.core.language.evaluate import evaluate
 from templates.core.language.levels import accuracy
-from templates.core.units.quantity import Typed
+from templates.core.units.quantity import TypedQuantity
 from templates.oil_film.oil_film_v1 import OilFilm as Paper
 from templates.oil_film.oil_film_v2 import OilFilm
 from templates.physics.films.film_map import mapped_load
@@ -23,7 +23,7 @@ def bearing(So, b):
         "bearing_diameter": (D, "m"), "diametral_clearance": (PSI * D, "m"),
         "dynamic_viscosity": (ETA, "Pa*s"), "speed": (OMEGA, "rad/s"),
     }  # fmt: skip
-    return {name: Typed(None, unit, value, {}) for name, (value, unit) in given.items()}
+    return {name: TypedQuantity(None, unit, value, {}) for name, (value, unit) in given.items()}
 
 
 def drawn(rng, n):
@@ -86,11 +86,11 @@ class TestTolerance:
 
     def test_property_points_without_a_film_do_not_raise_the_level(self):
         raw = bearing(np.array([1.0, -1.0, 2.0]), np.full(3, 0.5))
-        raw["speed"] = Typed(None, "rad/s", OMEGA * np.array([1.0, -1.0, 1.0]), {})
-        raw["radial_load"] = Typed(None, "N", np.abs(raw["radial_load"].si), {})
+        raw["speed"] = TypedQuantity(None, "rad/s", OMEGA * np.array([1.0, -1.0, 1.0]), {})
+        raw["radial_load"] = TypedQuantity(None, "N", np.abs(raw["radial_load"].si), {})
         evaluation = evaluate(OilFilm, raw, outputs=[FILM], tolerance=0.05)
         assert np.isfinite(evaluation.outputs[FILM].value).all()
-        raw["speed"] = Typed(None, "rad/s", OMEGA * np.array([1.0, 0.0, 1.0]), {})
+        raw["speed"] = TypedQuantity(None, "rad/s", OMEGA * np.array([1.0, 0.0, 1.0]), {})
         still = evaluate(OilFilm, raw, outputs=[FILM], tolerance=0.05)
         assert (still.level, still.warnings) == ("map", [])
         assert np.isnan(still.outputs[FILM].value).tolist() == [False, True, False]

@@ -16,7 +16,7 @@ from templates.core.judging.comparison import (
     WORST_FIRST,
     compare,
 )
-from templates.core.judging.criterion import Described, read_criterion
+from templates.core.judging.criterion import NameDescription, read_criterion
 from templates.core.judging.judgement import sentence
 from templates.core.judging.judging import Absent, Along, judge
 from templates.core.judging.summary import summarised, worst_first
@@ -24,11 +24,11 @@ from templates.core.judging.worst import worst_of_rows
 
 NAN = math.nan
 KNOWN = {
-    "film": Described("um", "smallest film"),
-    "limit": Described("um", "permissible film"),
-    "load": Described("kN", "load"),
-    "temperature": Described("degC", "film temperature"),
-    "angle": Described("deg", "attitude angle"),
+    "film": NameDescription("um", "smallest film"),
+    "limit": NameDescription("um", "permissible film"),
+    "load": NameDescription("kN", "load"),
+    "temperature": NameDescription("degC", "film temperature"),
+    "angle": NameDescription("deg", "attitude angle"),
 }
 FILM = read_criterion("film", "film >= 3 um", KNOWN)
 LOAD = read_criterion("load", "load <= 25 kN", KNOWN)
@@ -85,7 +85,7 @@ def test_analytic_verdict_of_an_upper_limit(load, error, verdict):
     ],
 )
 def test_analytic_limit_at_an_end_of_the_band(text, value, verdict):
-    criterion = read_criterion("ratio", text, {"ratio": Described("1", "ratio")})
+    criterion = read_criterion("ratio", text, {"ratio": NameDescription("1", "ratio")})
     assert judge(criterion, {"ratio": Estimate(value, 0.5)}).verdict == verdict
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 
-from app.worksheets.importing.trees import Node
+from app.worksheets.imports.trees import Node
 
 LONGEST = 40
 GREEK = {

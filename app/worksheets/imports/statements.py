@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from app.worksheets.importing.declarations import Declarations, sort_of, unit_for
-from app.worksheets.importing.errors import Untranslatable
-from app.worksheets.importing.expressions import Expressions
-from app.worksheets.importing.names import Names, key_of, look, symbol
-from app.worksheets.importing.outcome import Outcome
-from app.worksheets.importing.quantities import ScaledNumber, is_infinite, result_of, scaled
-from app.worksheets.importing.regions import OriginalSheet
-from app.worksheets.importing.scope import Function, Scope, Value, Written
-from app.worksheets.importing.terms import Axis, Term, number
-from app.worksheets.importing.trees import Node
+from app.worksheets.imports.declarations import Declarations, sort_of, unit_for
+from app.worksheets.imports.errors import Untranslatable
+from app.worksheets.imports.expressions import Expressions
+from app.worksheets.imports.names import Names, key_of, look, symbol
+from app.worksheets.imports.outcome import Outcome
+from app.worksheets.imports.quantities import ScaledNumber, is_infinite, result_of, scaled
+from app.worksheets.imports.regions import OriginalSheet
+from app.worksheets.imports.scope import Function, Scope, Value, Written
+from app.worksheets.imports.terms import Axis, Term, number
+from app.worksheets.imports.trees import Node
 from templates.core.language.template import Template
 from templates.core.units.expressions import Sort, constant
 from templates.core.units.units import registry, unit

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from app.worksheets.importing.errors import Untranslatable
-from app.worksheets.importing.names import key_of
-from app.worksheets.importing.terms import PRODUCT, SUM, Term, binary, called, negative, number, reduced
-from app.worksheets.importing.terms import power as raised
-from app.worksheets.importing.trees import Node
-from app.worksheets.importing.writer import Writer
+from app.worksheets.imports.errors import Untranslatable
+from app.worksheets.imports.names import key_of
+from app.worksheets.imports.terms import PRODUCT, SUM, Term, binary, called, negative, number, reduced
+from app.worksheets.imports.terms import power as raised
+from app.worksheets.imports.trees import Node
+from app.worksheets.imports.writer import Writer
 
 
 class Arithmetic(Writer):

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from app.worksheets.importing import functions
-from app.worksheets.importing.errors import Unnamed, Untranslatable
-from app.worksheets.importing.names import key_of
-from app.worksheets.importing.scope import Choice, FailedName, Function, Range, Scope, Value, Written
-from app.worksheets.importing.terms import ATOM, LOOSE, PRODUCT, SUM, Term, binary, called, number, reduced
-from app.worksheets.importing.trees import Node
-from app.worksheets.importing.writer import MOST_INLINED, Writer
+from app.worksheets.imports import functions
+from app.worksheets.imports.errors import Unnamed, Untranslatable
+from app.worksheets.imports.names import key_of
+from app.worksheets.imports.scope import Choice, FailedName, Function, Range, Scope, Value, Written
+from app.worksheets.imports.terms import ATOM, LOOSE, PRODUCT, SUM, Term, binary, called, number, reduced
+from app.worksheets.imports.trees import Node
+from app.worksheets.imports.writer import MOST_INLINED, Writer
 
 
 class Calls(Writer):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from app.worksheets.importing.errors import SheetNotRead
-from app.worksheets.importing.regions import MOST_REGIONS, Kind, Original, OriginalSheet, Tag, coordinate
-from app.worksheets.importing.trees import Node, read
+from app.worksheets.imports.errors import SheetNotRead
+from app.worksheets.imports.regions import MOST_REGIONS, Kind, Original, OriginalSheet, Tag, coordinate
+from app.worksheets.imports.trees import Node, read
 
 _KINDS: Mapping[str, Kind] = {
     "math": "math", "text": "text", "plot": "plot", "picture": "picture", "area": "area",

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.worksheets.importing.legacy import read_legacy
-from app.worksheets.importing.outcome import Outcome, one_line
-from app.worksheets.importing.package import is_package
-from app.worksheets.importing.prime import read_prime
-from app.worksheets.importing.record import SheetRecord, recorded
-from app.worksheets.importing.regions import OriginalSheet
-from app.worksheets.importing.translation import translated
-from app.worksheets.importing.verification import verified
+from app.worksheets.imports.legacy import read_legacy
+from app.worksheets.imports.outcome import Outcome, one_line
+from app.worksheets.imports.package import is_package
+from app.worksheets.imports.prime import read_prime
+from app.worksheets.imports.record import SheetRecord, recorded
+from app.worksheets.imports.regions import OriginalSheet
+from app.worksheets.imports.translation import translated
+from app.worksheets.imports.verification import verified
 
 LONGEST_TITLE = 100
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from app.worksheets.importing.errors import SheetNotRead
+from app.worksheets.imports.errors import SheetNotRead
 
 DEEPEST = 200
 MOST_NODES = 150_000

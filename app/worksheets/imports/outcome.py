@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-from app.worksheets.importing.quantities import Result
-from app.worksheets.importing.regions import Original
+from app.worksheets.imports.quantities import Result
+from app.worksheets.imports.regions import Original
 
 State = Literal["verified", "differs", "unverified", "shown", "refused", "blocked"]
 

@@ -30,11 +30,11 @@ from templates.core.errors import unknown_names
 from templates.core.units.quantity import read_any
 from templates.core.units.units import Value
 
-__all__ = ["MOST_ROWS", "JudgedColumn", "Net", "Refusal", "Rows", "Table"]
+__all__ = ["MOST_ROWS", "DesignEngine", "JudgedColumn", "Refusal", "Rows", "Table"]
 
 
 @dataclass(frozen=True)
-class Net:
+class DesignEngine:
     """A design of which some places vary.
 
     Attributes
@@ -70,7 +70,7 @@ class Net:
         measured: Mapping[Reference, float] | None = None,
         pending: bool = False,
         set_aside: Collection[Reference] = (),
-    ) -> Net:
+    ) -> DesignEngine:
         """Return a design whose places `varied` differ from row to row.
 
         Parameters

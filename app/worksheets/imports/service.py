@@ -18,9 +18,9 @@ from app.workers.base import Limits
 from app.worksheets import repository
 from app.worksheets.bodies import SheetIn
 from app.worksheets.errors import IdTaken, WorksheetError
-from app.worksheets.importing.errors import SheetNotRead
-from app.worksheets.importing.job import imported
-from app.worksheets.importing.record import ImportRecord
+from app.worksheets.imports.errors import SheetNotRead
+from app.worksheets.imports.job import imported
+from app.worksheets.imports.record import ImportRecord
 from app.worksheets.names import require_free
 from app.worksheets.service import Worksheets
 from templates.core.errors import TemplateError
@@ -46,7 +46,7 @@ class Imports:
         self.catalogues, self.worksheets = catalogues, worksheets
 
     def begin(self, content: bytes, id: str, file: str, once: Once) -> str:
-        """Queue the import of a file as a worksheet; the id of the job.
+        """Queue the import of a file as a worksheet and return the id of the job.
 
         Raises
         ------

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from app.worksheets.importing.errors import Unnamed, Untranslatable
-from app.worksheets.importing.expressions import Expressions
-from app.worksheets.importing.list_definitions import ListDefinitions
-from app.worksheets.importing.names import key_of, legal, look
-from app.worksheets.importing.outcome import Outcome, one_line
-from app.worksheets.importing.quantities import scaled, unit_named
-from app.worksheets.importing.regions import Original
-from app.worksheets.importing.scope import FailedName, Function, Scope, Value, Written
-from app.worksheets.importing.statements import without_result
-from app.worksheets.importing.terms import Term
-from app.worksheets.importing.trees import Node
+from app.worksheets.imports.errors import Unnamed, Untranslatable
+from app.worksheets.imports.expressions import Expressions
+from app.worksheets.imports.list_definitions import ListDefinitions
+from app.worksheets.imports.names import key_of, legal, look
+from app.worksheets.imports.outcome import Outcome, one_line
+from app.worksheets.imports.quantities import scaled, unit_named
+from app.worksheets.imports.regions import Original
+from app.worksheets.imports.scope import FailedName, Function, Scope, Value, Written
+from app.worksheets.imports.statements import without_result
+from app.worksheets.imports.terms import Term
+from app.worksheets.imports.trees import Node
 
 
 class Definitions(ListDefinitions):
@@ -144,7 +144,7 @@ class Definitions(ListDefinitions):
             self.now = before
 
     def _result(self, outcome: Outcome, math: Node) -> None:
-        """A region that shows a result: of a name, or of a formula, which gets a line."""
+        """Translate a region that shows the result of a name, or of a formula, which gets a line."""
         inner = math.parts[0]
         at = Expressions(self, self.scope)
         while inner.tag == "parens" and inner.parts:

@@ -9,8 +9,8 @@ from functools import lru_cache
 
 import lark
 
-from app.worksheets.importing.errors import Untranslatable
-from app.worksheets.importing.quantities import ScaledNumber
+from app.worksheets.imports.errors import Untranslatable
+from app.worksheets.imports.quantities import ScaledNumber
 from templates.core.errors import FaultyText
 from templates.core.units.conformity import misfit
 from templates.core.units.expressions import GRAMMAR, Sort, checked

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from app.worksheets.importing.errors import Untranslatable
+from app.worksheets.imports.errors import Untranslatable
 
 LOOSE, SUM, PRODUCT, SIGNED, POWER, ATOM = range(6)
 """Precedence of each expression; a condition or an `if` binds least."""

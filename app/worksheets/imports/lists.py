@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from app.worksheets.importing.errors import Untranslatable
-from app.worksheets.importing.names import key_of
-from app.worksheets.importing.scope import Scope, Written
-from app.worksheets.importing.terms import PRODUCT, Term, binary, listed, number, reduced
-from app.worksheets.importing.trees import Node
-from app.worksheets.importing.writer import MOST_ITEMS, Writer
+from app.worksheets.imports.errors import Untranslatable
+from app.worksheets.imports.names import key_of
+from app.worksheets.imports.scope import Scope, Written
+from app.worksheets.imports.terms import PRODUCT, Term, binary, listed, number, reduced
+from app.worksheets.imports.trees import Node
+from app.worksheets.imports.writer import MOST_ITEMS, Writer
 
 
 class Lists(Writer):

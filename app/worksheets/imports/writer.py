@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol, Self
 
-from app.worksheets.importing.quantities import scaled
-from app.worksheets.importing.scope import Function, Scope
-from app.worksheets.importing.terms import POWER, Axis, Term, number
-from app.worksheets.importing.trees import Node
+from app.worksheets.imports.quantities import scaled
+from app.worksheets.imports.scope import Function, Scope
+from app.worksheets.imports.terms import POWER, Axis, Term, number
+from app.worksheets.imports.trees import Node
 
 MOST_INLINED = 12
 """Functions within functions that are written out."""

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from app.worksheets.importing.errors import Untranslatable
-from app.worksheets.importing.names import key_of
-from app.worksheets.importing.trees import Node
+from app.worksheets.imports.errors import Untranslatable
+from app.worksheets.imports.names import key_of
+from app.worksheets.imports.trees import Node
 from templates.core.errors import FaultyText
 from templates.core.units.units import unit
 

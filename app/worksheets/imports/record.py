@@ -12,8 +12,8 @@ from typing import TypedDict, cast
 
 from app.storage.tables import WorksheetVersionRow as Row
 from app.worksheets.errors import UnresolvedRegions
-from app.worksheets.importing.outcome import UNRESOLVED, Outcome, State
-from app.worksheets.importing.regions import MATHEMATICAL, OriginalSheet
+from app.worksheets.imports.outcome import UNRESOLVED, Outcome, State
+from app.worksheets.imports.regions import MATHEMATICAL, OriginalSheet
 
 STATES: tuple[State, ...] = ("verified", "differs", "unverified", "shown", "refused", "blocked")
 

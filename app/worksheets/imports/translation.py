@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from app.worksheets.importing.definitions import Definitions
-from app.worksheets.importing.errors import Unnamed, Untranslatable
-from app.worksheets.importing.names import key_of, look
-from app.worksheets.importing.outcome import Outcome, one_line
-from app.worksheets.importing.regions import OriginalSheet
-from app.worksheets.importing.trees import Node
+from app.worksheets.imports.definitions import Definitions
+from app.worksheets.imports.errors import Unnamed, Untranslatable
+from app.worksheets.imports.names import key_of, look
+from app.worksheets.imports.outcome import Outcome, one_line
+from app.worksheets.imports.regions import OriginalSheet
+from app.worksheets.imports.trees import Node
 
 _SHOWN = {"plot": "plot", "picture": "picture", "page break": "page break", "area": "area",
           "solve block": "solve block", "other": "control"}  # fmt: skip
@@ -61,7 +61,7 @@ def _calculating(outcome: Outcome, work: Definitions) -> None:
 
 
 def _solving(outcome: Outcome, work: Definitions) -> None:
-    """A region of a solve block: only its solver defines anything."""
+    """Translate a region of a solve block: only its solver defines anything."""
     region = outcome.original
     assert region.math is not None
     if region.role != "solver":

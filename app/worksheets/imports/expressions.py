@@ -10,16 +10,16 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from app.worksheets.importing.arithmetic import Arithmetic
-from app.worksheets.importing.calls import Calls
-from app.worksheets.importing.conditions import COMPARED, Conditions
-from app.worksheets.importing.errors import Unnamed, Untranslatable
-from app.worksheets.importing.lists import Lists
-from app.worksheets.importing.names import key_of, look
-from app.worksheets.importing.quantities import CONSTANTS, unit_named
-from app.worksheets.importing.scope import Choice, FailedName, Meant, Range, Value, Written
-from app.worksheets.importing.terms import POWER, Term, number
-from app.worksheets.importing.trees import Node
+from app.worksheets.imports.arithmetic import Arithmetic
+from app.worksheets.imports.calls import Calls
+from app.worksheets.imports.conditions import COMPARED, Conditions
+from app.worksheets.imports.errors import Unnamed, Untranslatable
+from app.worksheets.imports.lists import Lists
+from app.worksheets.imports.names import key_of, look
+from app.worksheets.imports.quantities import CONSTANTS, unit_named
+from app.worksheets.imports.scope import Choice, FailedName, Meant, Range, Value, Written
+from app.worksheets.imports.terms import POWER, Term, number
+from app.worksheets.imports.trees import Node
 
 REFUSED = {
     "integral": ("integral", "give its closed form, or a sum"),

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from app.worksheets.importing.errors import SheetNotRead
-from app.worksheets.importing.package import Budget, Package, is_package
-from app.worksheets.importing.regions import MOST_REGIONS, Kind, Original, OriginalSheet, Tag, coordinate
-from app.worksheets.importing.trees import Node, read
+from app.worksheets.imports.errors import SheetNotRead
+from app.worksheets.imports.package import Budget, Package, is_package
+from app.worksheets.imports.regions import MOST_REGIONS, Kind, Original, OriginalSheet, Tag, coordinate
+from app.worksheets.imports.trees import Node, read
 
 WORKSHEET, RESULTS = "mathcad/worksheet.xml", "mathcad/result.xml"
 RELATIONS, TAGS = "mathcad/_rels/worksheet.xml.rels", "mathcad/integration.xml"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-from app.worksheets.importing.trees import Node
+from app.worksheets.imports.trees import Node
 
 Kind = Literal["math", "text", "plot", "picture", "table", "solve block", "area", "page break", "other"]
 Tag = Literal["", "input", "output"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.storage.errors import NotFound
 from app.storage.tables import WorksheetVersionRow as Row
-from app.worksheets.importing.record import ImportRecord, counted, record_of, unresolved
+from app.worksheets.imports.record import ImportRecord, counted, record_of, unresolved
 from app.worksheets.schemas.imports import SheetImport, SheetOrigin
 
 

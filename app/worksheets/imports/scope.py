@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from app.worksheets.importing.terms import Axis, Term
-from app.worksheets.importing.trees import Node
+from app.worksheets.imports.terms import Axis, Term
+from app.worksheets.imports.trees import Node
 
 
 @dataclass(frozen=True)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from app.worksheets.importing.errors import Untranslatable
-from app.worksheets.importing.names import key_of
-from app.worksheets.importing.scope import Choice, Scope, Written
-from app.worksheets.importing.terms import ATOM, LOOSE, SUM, Term
-from app.worksheets.importing.trees import Node
-from app.worksheets.importing.writer import Writer
+from app.worksheets.imports.errors import Untranslatable
+from app.worksheets.imports.names import key_of
+from app.worksheets.imports.scope import Choice, Scope, Written
+from app.worksheets.imports.terms import ATOM, LOOSE, SUM, Term
+from app.worksheets.imports.trees import Node
+from app.worksheets.imports.writer import Writer
 
 COMPARED = {"lessThan": "<", "lessOrEqual": "<=", "greaterThan": ">", "greaterOrEqual": ">=",
             "equal": "==", "notEqual": "!="}  # fmt: skip

@@ -12,8 +12,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from app.worksheets.importing.outcome import Outcome
-from app.worksheets.importing.quantities import close
+from app.worksheets.imports.outcome import Outcome
+from app.worksheets.imports.quantities import close
 from templates.core.errors import TemplateError
 from templates.core.language.template import Template
 from templates.core.sheets import Sheet, SheetFault, SheetRefused, read
