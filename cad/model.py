@@ -179,7 +179,9 @@ class CadModel(TolerancedTemplate):
         return None
 
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> Mapping[str, Dimension]:
-        """Parameters by API name [mm, a count as 1], as far as the parts seen in the file show them."""
+        """Return parameters by API name [mm, a count as 1], as far as the parts seen in the file show
+        them.
+        """
         raise NotImplementedError
 
     @classmethod

@@ -91,7 +91,9 @@ class DimensionLayout:
         return placed
 
     def within(self, one: Dimension, along: float, high: float) -> PlacedDimension:
-        """An upright dimension whose line runs within a view, as across a web; its words stand above that.
+        """Return an upright dimension whose line runs within a view, as across a web.
+
+        Its words stand above that.
 
         Parameters
         ----------
@@ -260,7 +262,9 @@ class DimensionLayout:
 
 
 def _middle(low: float, high: float, width: float, others: list[float]) -> float:
-    """The middle of words on a dimension line: between its ends, or beyond that which fewer lines cross."""
+    """Return the middle of words on a dimension line: between its ends, or beyond that which fewer lines
+    cross.
+    """
     half = width / 2
     if width + 1.0 <= high - low:
         return (low + high) / 2

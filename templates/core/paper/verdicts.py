@@ -50,7 +50,9 @@ class Check:
 
 
 def checks(template: Template) -> Iterator[Check]:
-    """Every bound that says more than a sign, and every rule, as far as their values were calculated."""
+    """Yield every bound that says more than a sign, and every rule, as far as their values were
+    calculated.
+    """
     for declared in template.declarations.values():
         value = vars(template).get(declared.attribute)
         if isinstance(value, (float, np.ndarray)) and _has_number(value):

@@ -135,7 +135,9 @@ def solved(matrices: NDArray[Any], right: NDArray[Any]) -> tuple[NDArray[Any], N
 
 
 def _sizes(matrices: NDArray[Any], axis: int) -> NDArray[Any]:
-    """The largest number of each row or column, a power of 2, so that dividing by it rounds nothing."""
+    """Return the largest number of each row or column, a power of 2, so that dividing by it rounds
+    nothing.
+    """
     most = np.abs(matrices).max(axis=axis, keepdims=True)
     return np.ldexp(1.0, np.frexp(most)[1] - 1)
 
