@@ -105,8 +105,7 @@ def check_clearances(model: CadModel, between: Sequence[Clearance]) -> None:
 
 
 def between_parts(model: CadModel, between: Sequence[Clearance]) -> dict[str, float]:
-    """Return the least distance [mm] of each fixed part from all other parts, and the space that it shares
-    [mm³].
+    """Return each fixed part's least distance [mm] from all other parts, and the shared space [mm³].
 
     The distance is 0 where it touches or overlaps one. A part that is compared with none has neither.
     """

@@ -17,9 +17,7 @@ def plain_name(text: str) -> str:
 
 
 def name(text: str) -> str:
-    """Return a text as part of a file's name: letters and digits of any alphabet stay, other signs become
-    `_`.
-    """
+    """A text as part of a file's name: letters and digits of any alphabet stay, other signs become `_`."""
     signs = (sign if _stays(sign) else "_" for sign in unicodedata.normalize("NFC", text))
     return _ends(re.sub("_+", "_", "".join(signs)))
 

@@ -179,9 +179,7 @@ class CadModel(TolerancedTemplate):
         return None
 
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> Mapping[str, Dimension]:
-        """Return parameters by API name [mm, a count as 1], as far as the parts seen in the file show
-        them.
-        """
+        """Parameters by API name [mm, a count as 1], as far as the parts seen in the file show them."""
         raise NotImplementedError
 
     @classmethod

@@ -39,8 +39,7 @@ def finished(
     names: Sequence[str] = (),
     properties: Sequence[PartProperties] = (),
 ) -> str:
-    """Return the kernel's text with our header, and with colours, one for each product in the order of the
-    file.
+    """Return the kernel's text with our header and the products' colours, in the order of the file.
 
     `names` are the parameters of its dimensions and then of its geometric tolerances, in the order of the
     file; `properties` are those of its parts.
@@ -64,8 +63,7 @@ def without_noise(text: str) -> str:
 
 
 def _usage(start: str, number: int, rest: str) -> str:
-    """Return a usage by its number in the file. Its lines break by widths alone, whatever the kernel's
-    number was.
+    """A usage by its number in the file. Its lines break by widths alone, whatever the kernel's number was.
 
     The kernel's writer may break before a comma; here a comma stays with what is before it.
     """
@@ -83,9 +81,7 @@ def _append(lines: list[str], token: str) -> None:
 
 
 def _annotated(data: str, names: Sequence[str]) -> str:
-    """Return the data with parameters as names of dimensions and tolerances, and with the types of
-    deviations.
-    """
+    """Return the data with parameters as names of dimensions, and with the types of deviations."""
     number = iter(names)
     named = _NAMELESS.sub(lambda match: f"{match[1]}'{next(number)}'", data)
     return _DEVIATION.sub(r"\1LENGTH_MEASURE(\2),", named)

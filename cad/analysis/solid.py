@@ -70,9 +70,7 @@ def read_solid(step: bytes, shaft: Shaft, mirrors: Iterable[str] = ("y", "x")) -
 
 
 def planar(face: Any) -> bool:
-    """Return whether a face is flat: of its principal moments of area the largest is the sum of the
-    others.
-    """
+    """True if a face is flat: of its principal moments of area the largest is the sum of the others."""
     low, middle, high = np.linalg.eigvalsh(_inertia(face))
     return bool(abs(high - low - middle) < _FLAT * high)
 

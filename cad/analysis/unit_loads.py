@@ -121,9 +121,7 @@ class LoadedThrow:
         return Response(self.system, 0.0, displacement, (), (), np.zeros((0, 0)))
 
     def on_surface(self, response: Response) -> tuple[Array, Array]:
-        """Return points [n, 3] [mm] of the free surface and the recovered stress tensors [n, 6] [MPa]
-        there.
-        """
+        """Points [n, 3] [mm] of the free surface and the recovered stress tensors [n, 6] [MPa] there."""
         mesh = self.system.grid.mesh
         where = mesh.MapToAllElements(
             ng.IntegrationRule(ng.TRIG, 2 * self.system.order), mesh.Boundaries(FREE)

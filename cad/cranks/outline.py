@@ -73,9 +73,7 @@ class Outline:
         return [first, *upper, last, *lower]
 
     def _round(self) -> tuple[Run, list[Run], Run]:
-        """Return a round web: its end beyond the pin, its side up to the flank, its other end if there is
-        none.
-        """
+        """Return a round web: the end beyond the pin, the side up to the flank, and any other end."""
         h, R = self.half_width, self.throw
         first, last = ((R, -h), (self.tip, 0.0), (R, h)), ((0.0, h), (-h, 0.0), (0.0, -h))
         side: Run = ((R, h), (0.0, h))
@@ -96,9 +94,7 @@ class Outline:
         return first, [side, ((-h, h), (-h, h * tan(a)))] if self.counterweight > 0 else [side], last
 
     def _flank(self, foot: Point) -> tuple[Run, Run]:
-        """Return the flank of the counterweight at +y, outwards from its foot, and the rim from flank to
-        flank.
-        """
+        """The flank of the counterweight at +y, outwards from its foot, and the rim from flank to flank."""
         rim = tuple(
             _on_circle(self.counterweight, angle) for angle in (self.half_angle, 0.0, -self.half_angle)
         )

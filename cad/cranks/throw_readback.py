@@ -42,9 +42,7 @@ class Webs:
 
 
 def pin(seen: PartSurfaces, webs: Webs) -> dict[str, float]:
-    """Return the pin diameter, bore and throw: the pin stands between the webs, its bore goes through
-    both.
-    """
+    """Return the pin diameter, bore and throw; the pin stands between the webs."""
     _, front, rear, _ = webs.faces
     beside = [c.turned(Z) for c in seen.cylinders if c.along(Z) and not c.about(Z)]
     pin_surface = next(c for c in beside if front - _CLEAR < c.reach[0] and c.reach[1] < rear + _CLEAR)

@@ -262,9 +262,7 @@ class DimensionLayout:
 
 
 def _middle(low: float, high: float, width: float, others: list[float]) -> float:
-    """Return the middle of words on a dimension line: between its ends, or beyond that which fewer lines
-    cross.
-    """
+    """The middle of words on a dimension line: between its ends, or beyond that which fewer lines cross."""
     half = width / 2
     if width + 1.0 <= high - low:
         return (low + high) / 2

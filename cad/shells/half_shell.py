@@ -159,9 +159,7 @@ class HalfShell:
         return body
 
     def _leg(self, body: Shape, side: int) -> Shape:
-        """Return the joint's own face drawn out: vertices of another one, 1e-15 mm off, make bytes that
-        differ.
-        """
+        """The joint's own face drawn out: vertices of another one, 1e-15 mm off, make bytes that differ."""
         normal = Vector(side * sin(self.lift), -cos(self.lift), 0)
         feet = [f for f in body.Faces() if f.geomType() == "PLANE" and f.normalAt().dot(normal) > 1 - 1e-12]
         foot = min(feet, key=lambda f: abs(f.Center().dot(normal)))

@@ -190,9 +190,7 @@ class _Search:
         return met
 
     def _wanted(self, rung: Template, name: str, where: Mask | None) -> Mask:
-        """Return the mask of where an output has a value at the starting level, of the shape of the points
-        of a rung.
-        """
+        """Return the mask of where an output has a value at the starting level, shaped as a rung's points."""
         if rung.level == self.start:
             return np.zeros((), dtype=bool)
         try:

@@ -112,9 +112,7 @@ class Meaning:
         return f"{self.scale.from_si(float(si)):.6g}{'' if self.unit == '1' else ' ' + self.unit}"
 
     def admits(self, value: Any) -> Any:
-        """Return the mask of SI values (scalar or array) that are finite, in the domain, and whole if they
-        must be.
-        """
+        """Return the mask of SI values that are finite, in the domain, and whole if they must be."""
         if isinstance(value, float):
             low, high = self.interval
             return low <= value <= high and not (self.integer and value != round(value))

@@ -150,9 +150,7 @@ class SampledCurve(ABC):
         return float(outputs.values[0]) - self.wanted
 
     def scan(self, low: float, high: float) -> tuple[Self, Samples, Samples]:
-        """Return the curve at its level, the samples between the bounds, and those with all that was
-        divided.
-        """
+        """The curve at its level, the samples between the bounds, and those with all that was divided."""
         curve, even = self.at_one_level(evenly(low, high))
         samples = even
         for turn in range(ROUNDS):

@@ -50,9 +50,7 @@ class Check:
 
 
 def checks(template: Template) -> Iterator[Check]:
-    """Yield every bound that says more than a sign, and every rule, as far as their values were
-    calculated.
-    """
+    """Every bound that says more than a sign, and every rule, as far as their values were calculated."""
     for declared in template.declarations.values():
         value = vars(template).get(declared.attribute)
         if isinstance(value, (float, np.ndarray)) and _has_number(value):

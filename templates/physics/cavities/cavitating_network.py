@@ -100,9 +100,7 @@ def fed_network(ring: Ring, grooves: list[Groove], ambient: float) -> tuple[Netw
 
 
 def perturbed_flows(ring: Ring, change: Array, change_mid: Array) -> tuple[csc_array, csc_array]:
-    """Return the derivatives of A and T of the network for a change of the gap at (n + 1) and between (n)
-    nodes.
-    """
+    """The derivatives of A and T of the network for a change of the gap at (n + 1) and between (n) nodes."""
     H, H_mid = gap(ring.phi, ring.eps), gap(midpoints(ring.phi), ring.eps)
     return _flows(ring, 3 * H_mid**2 * change_mid, 3 * H**2 * change, change_mid)
 

@@ -46,8 +46,7 @@ class Network:
 
     @cached_property
     def free(self) -> NDArray[np.intp]:
-        """Return nodes whose pressure is unknown, from the end of the longest run of fixed ones around the
-        ring.
+        """Nodes whose pressure is unknown, from the end of the longest run of fixed ones around the ring.
 
         Where a groove is as long as the bearing is wide, neighbours are then near each other.
         """

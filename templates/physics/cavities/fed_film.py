@@ -102,8 +102,7 @@ class Lack:
 
 
 def fed_coefficients(eps: float, ratio: float, attitude: float, feed: Feed) -> tuple[Array, Array]:
-    """Return the stiffness and damping in axes of the load, psi²/(B D eta omega_h) times those in c and
-    omega_h, (2, 2).
+    """Return the stiffness and damping (2, 2) in axes of the load, in psi²/(B D eta omega_h).
 
     Parameters
     ----------
@@ -227,8 +226,7 @@ class Search:
         return missing, np.array([max(along, -0.9 * place.eps), 0.0])
 
     def extrapolated(self, place: Place, ring: SolvedRing) -> FedFilm:
-        """Return the film there by Richardson from that on the coarse mesh, and the place for what it still
-        lacks.
+        """The film there by Richardson from that on the coarse mesh, and the place for what it still lacks.
 
         Load and peak converge with order 2, shear and flow, which see the front, with 1.
         """

@@ -113,9 +113,7 @@ class ShapedFilm:
 
     @cached_property
     def linear(self) -> tuple[Array, Array]:
-        """Return the stiffness and damping in the units of So by displacement over c and velocity over c
-        omega_h.
-        """
+        """Stiffness and damping in the units of So by displacement over c and velocity over c omega_h."""
         P, fill = self.solution.P, 1 - self.solution.void
         cells = 12 * np.outer(self.nodes.around, self.nodes.across)
         respond = self._response()

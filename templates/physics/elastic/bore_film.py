@@ -114,9 +114,7 @@ class BoreFilm(SoftFilm):
 
     @cached_property
     def _by_gap(self) -> tuple[Array, Array]:
-        """Return the derivatives of the flows around (n, m + 1) and across (n + 1, m) by the gap where they
-        pass.
-        """
+        """Derivatives of the flows around (n, m + 1) and across (n + 1, m) by the gap where they pass."""
         H, eta, _, rise = self.around
         H_side, eta_side, _, rise_side = self.across
         width, cells = dual_widths(self.mesh.zeta), dual_widths(self.mesh.phi)[:, None] / self.ratio**2

@@ -48,9 +48,7 @@ def modes_around(theta: Array) -> Array:
 
 
 def modes_along(zeta: Array) -> Array:
-    """Return the modes' factors (..., 2) [-] along the bore, at places (...) from its middle, 0, to its end,
-    1.
-    """
+    """The modes' factors (..., 2) [-] along the bore, at places (...) from its middle, 0, to its end, 1."""
     zeta = np.asarray(zeta, float)
     return np.stack([np.ones_like(zeta), np.sqrt(5) * (3 * zeta**2 - 1) / 2], axis=-1)
 

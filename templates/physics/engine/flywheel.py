@@ -12,9 +12,7 @@ from templates.physics.numerics.crank_grid import CrankGrid
 
 
 def cylinder_motion(theta: Array, strokes: Array, count: Array, n: Array) -> Motion:
-    """Return the motion of all cylinders, one after the other as they fire, (…, N K), for each ratio n
-    [1].
-    """
+    """The motion of all cylinders, one after the other as they fire, (…, N K), for each ratio n [1]."""
     angles = theta[..., None, :] - firing_angles(strokes, count)[:, None]
     return crank_motion(angles.reshape(*angles.shape[:-2], -1), n)
 

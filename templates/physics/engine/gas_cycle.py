@@ -220,9 +220,7 @@ def gas_cycle(
 
 
 def ideal(name: str, charge: Charge) -> Charge:
-    """Return the ideal cycle: Otto burns at top dead centre, Diesel at the end pressure of its
-    compression.
-    """
+    """An ideal Otto cycle burns at top dead centre, a Diesel cycle at the end pressure of its compression."""
     if name == "otto":
         return replace(charge, cutoff=np.asarray(1.0))
     return replace(charge, combustion=charge.suction * charge.compression_ratio**charge.compression_exponent)

@@ -97,8 +97,7 @@ class Running:
         return np.fmin(self.T_supply, np.where(np.isfinite(self.kA), self.T_ambient, np.nan))
 
     def heat(self, rise: Array) -> tuple[Array, Array, Array]:
-        """Return the power, and heat that oil and air carry off, at a rise above the coldest surrounding
-        [K], each [W].
+        """Power, and heat that oil and air carry off, at a rise above the coldest surrounding [K], each [W].
 
         Differences are taken before the rise is added: a small one would drown in the rounding of T.
         """
@@ -114,9 +113,7 @@ class Running:
         return 1 - (by_oil + by_air) / power
 
     def residual(self, rise: Array) -> Array:
-        """Return the power less what is carried off, over the largest of power and what oil or air carry off
-        [-].
-        """
+        """Return the heat imbalance over the largest of power and heat to oil and air [-]."""
         power, by_oil, by_air = self.heat(rise)
         largest = np.maximum(power, np.maximum(np.abs(by_oil), np.abs(by_air)))
         return (power - by_oil - by_air) / largest

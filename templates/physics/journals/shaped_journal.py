@@ -215,8 +215,7 @@ def _unborne() -> dict[str, Array | float]:
 
 
 def _measured(balanced: Balance, bore: Bore, tilt: Array, share: float) -> dict[str, Array | float]:
-    """Return values extrapolated by Richardson, with order 2, or 1 where they see a front or the ends'
-    pressure.
+    """Values extrapolated by Richardson, with order 2, or 1 where they see a front or the ends' pressure.
 
     The share is that of the load wanted: below 1 the journal lies as much nearer to the middle.
     """
@@ -273,8 +272,7 @@ def linear_of(
 
 
 def _turning(K: Array, film: StaticFilm, So: Array) -> Array:
-    """Return the stiffness with the second column, across the line of centres, that of a film turned as a
-    whole.
+    """The stiffness with the second column, across the line of centres, that of a film turned as a whole.
 
     A displacement across by eps d(gamma) turns the force by d(gamma): it changes by So/eps at right angles.
     """

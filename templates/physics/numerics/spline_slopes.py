@@ -16,9 +16,7 @@ _OFFSETS = np.arange(4)
 
 
 def at_thirds(coefficients: Array, third: Axis, places: Array) -> Array:
-    """Return the coefficients of the surfaces that are left of a volume at places of its third axis,
-    (places, ...).
-    """
+    """Coefficients of the surfaces that are left of a volume at places of its third axis, (places, ...)."""
     cells, weights = third.weights(places)
     pieces = coefficients[:, :, cells[:, None] + _OFFSETS]
     return np.asarray(np.einsum("ijpkf,pk->pijf", pieces, weights))

@@ -171,9 +171,7 @@ def coordinates(xi: Array, eta: Array) -> tuple[Array, Array]:
 
 
 def encode(xi: float, eta: float, ratio: float, motion: Motion) -> Array:
-    """Return the smooth values that are interpolated, (4,), of a solution with its velocity along the
-    load.
-    """
+    """The smooth values that are interpolated, (4,), of a solution with its velocity along the load."""
     h = 1 - xi
     along, ahead = motion.velocity
     return np.array([

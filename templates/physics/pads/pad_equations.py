@@ -57,9 +57,7 @@ def cell_lengths(nodes: Array) -> Array:
 
 
 def _modes(zeta: Array) -> tuple[Array, Array, Array]:
-    """Return eigenvalues of the flow across (N, m), what of a constant each mode holds, and its mid-width
-    value.
-    """
+    """Eigenvalues of the flow across (N, m), what of a constant each mode holds, and its mid-width value."""
     step, cells = 1 / np.diff(zeta), cell_lengths(zeta)[:, :-1]
     stiff = np.zeros((*cells.shape, cells.shape[-1]))
     i = np.arange(cells.shape[-1])

@@ -57,9 +57,7 @@ def solved_sectors(a: Array, angle: Array, reach: Array, along: int, across_half
 
 
 def _modes(zeta: Array, logarithm: Array, reach: Array) -> tuple[Array, Array, Array]:
-    """Return eigenvalues of the flow across (N, m), and what each mode holds of a constant and of
-    (r/r_m)².
-    """
+    """Eigenvalues of the flow across (N, m), and what each mode holds of a constant and of (r/r_m)²."""
     step, cells = 1 / np.diff(zeta), cell_lengths(zeta)[:, 1:-1]
     stiff = np.zeros((*cells.shape, cells.shape[-1]))
     i = np.arange(cells.shape[-1])

@@ -112,9 +112,7 @@ def collar_temperature(collar: Collar, film: CollarFilm) -> Array:
 
 
 def _excess(law: Law, logarithm: Array, collar: Collar, oil: tuple[Array, ...]) -> Array:
-    """Return the logarithm of the oil's viscosity over what the load needs, at a film ratio of 1 + e to
-    `logarithm`.
-    """
+    """Logarithm of the oil's viscosity over what the load needs, at a film ratio of 1 + e to `logarithm`."""
     wedge = np.exp(logarithm)
     film = collar_film(1 + wedge, collar.angle, collar.reach)
     T = np.minimum(collar_temperature(collar, film), HOTTEST)

@@ -67,8 +67,7 @@ def manageable(J: Array, k: Array, orders: Array) -> bool:
 @on_paper("solved numerically by singular values of the chain's bidiagonal matrix")
 @units("kg*m**2", "N*m/rad", None, returns="rad/s", latex=r"\sqrt{{\lambda_m\left({1},{0}\right)}}")
 def angular_frequencies(J: Array, k: Array, ends: str) -> Array:
-    """Return natural angular frequencies [rad/s], ascending [..., mode], of a chain of J [kg m²] and k [N
-    m/rad].
+    """Return the natural angular frequencies [rad/s], ascending [..., mode], of J [kg m²], k [N m/rad].
 
     With free ends the first is exactly 0, and k[i] joins J[i] and J[i+1]; with a fixed end k[0] joins J[0] to
     the ground and k[i] joins J[i-1] and J[i]. NaN where numbers overflow.
@@ -80,9 +79,7 @@ def angular_frequencies(J: Array, k: Array, ends: str) -> Array:
 @on_paper("solved numerically by singular values of the chain's bidiagonal matrix")
 @units("kg*m**2", "N*m/rad", None, returns="1", latex=r"\varphi_m\left({1},{0}\right)")
 def mode_shapes(J: Array, k: Array, ends: str) -> Array:
-    """Return mode shapes [..., mode, inertia] in the order of the frequencies, each with 1 as its largest
-    entry.
-    """
+    """Return the mode shapes [..., mode, inertia], each with 1 as its largest entry."""
     reduced = _reduced(J, k, ends)
     vectors = _left_vectors(reduced.dense)
     if ends == FIXED:
@@ -104,8 +101,7 @@ def _reduced(J: Array, k: Array, ends: str) -> _Bidiagonal:
 
 
 def _turned(first: Array, second: Array) -> _Bidiagonal:
-    """Return the square bidiagonal of a chain with free ends: column i holds first[i] and, below it,
-    -second[i].
+    """The square bidiagonal of a chain with free ends: column i holds first[i] and, below it, -second[i].
 
     Each rotation is a product of positive numbers, so that no digit is lost.
     """
@@ -122,9 +118,7 @@ def _turned(first: Array, second: Array) -> _Bidiagonal:
 
 
 def _turned_back(turned: _Bidiagonal, vectors: Array) -> Array:
-    """Return vectors [..., mode, row] of the square matrix as vectors of the chain, which has one row
-    more.
-    """
+    """Vectors [..., mode, row] of the square matrix as vectors of the chain, which has one row more."""
     rows = np.concatenate([vectors, np.zeros((*vectors.shape[:-1], 1))], axis=-1)
     for i in reversed(range(vectors.shape[-1])):
         cosine, sine = turned.cosines[..., i, None], turned.sines[..., i, None]

@@ -75,9 +75,7 @@ class Feeding:
         return np.asarray(self.grooved & (self.groove_extent < AROUND))
 
     def parts(self) -> Iterator[tuple[Mask, Array, Array, Array, bool]]:
-        """Yield the existence of each, its middle, half extent [rad] and length [m], and whether it is in
-        the pin.
-        """
+        """Existence of each, its middle, half extent [rad] and length [m], and whether it is in the pin."""
         half = self.groove_extent / 2
         yield self.grooved, self.groove_start + half, half, self.groove_width, False
         yield self.sleeve_holed, self.sleeve_angle, self.sleeve_arc / self.D, self.sleeve_length, False
