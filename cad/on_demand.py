@@ -154,7 +154,7 @@ class StandIn:
     def __instancecheck__(self, instance: object) -> bool:
         """Return whether something is an instance of the class.
 
-        Of a kernel that is not loaded there is none.
+        A kernel that is not loaded has no instances.
         """
         return not is_postponed() and isinstance(instance, cast(type, self.real()))
 

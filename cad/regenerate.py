@@ -64,7 +64,7 @@ MADE_BY = f"{KERNEL}, recipe {RECIPE}"
 def made_by(cls: type[CadModel]) -> str:
     """Return the part of a build's key beside model and parameters, for people.
 
-    Of a team's model its code too.
+    For a team's model, include its code.
     """
     return ", code ".join([MADE_BY, *(code[:12] for code in _code(cls))])
 

@@ -117,7 +117,7 @@ class System:
 def _by_order(form: Any, space: Any) -> Any:
     """Return an approximate inverse of an assembled form: exact in second order.
 
-    Of the rest by edges and faces.
+    The rest is inverted by edges and faces.
 
     The basis is hierarchical: the unknowns of second order are those of vertices and the first of each edge.
     """

@@ -61,7 +61,7 @@ def stubs(seen: PartSurfaces, webs: Webs) -> tuple[list[Surface], list[Surface]]
 def journal_bore(seen: PartSurfaces, webs: Webs) -> float:
     """Return the diameter of the cylinder about the shaft that goes on through the web.
 
-    0 if there is none.
+    Return 0 if there is none.
     """
     low, high = webs.faces[3] - _CLEAR, webs.faces[3] + _CLEAR
     through = (c.diameter for c in seen.about(Z) if c.reach[0] < low and high < c.reach[1])

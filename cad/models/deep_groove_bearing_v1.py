@@ -210,7 +210,7 @@ class DeepGrooveBearing(CadModel):
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
         """Return every length and the count of balls, as the parts show them.
 
-        Those of the cage if there is one.
+        Include those of the cage if there is one.
         """
         inner, outer, ball = seen["inner_ring"], seen["outer_ring"], seen["ball"]
         sizes = {

@@ -39,7 +39,7 @@ def drawable(length: Array) -> Truth:
 def half_pitch(washer: str, grooves: Array) -> Array:
     """Return half the angle [rad] from groove to groove.
 
-    Of a half washer also that from its joint to the first.
+    For a half washer it is also the angle from the joint to the first groove.
     """
     turn = {"full": 2 * pi, "half": pi}[washer]
     return np.minimum(turn / (2 * np.maximum(grooves, 1)), pi / 2)

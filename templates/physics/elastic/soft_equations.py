@@ -205,7 +205,7 @@ def _gathered(onward: Array, outward: Array) -> Array:
 def _assembled(around: tuple[Array, Array], across: tuple[Array, Array], film: Mask) -> csc_array:
     """Return the matrix from the slopes of each flow over the pressures at its two ends.
 
-    The unit matrix outside.
+    Outside it is the unit matrix.
     """
     number = np.arange(film.size).reshape(film.shape)
     ends = ((number[:-1], number[1:], *around), (number[:, :-1], number[:, 1:], *across))
