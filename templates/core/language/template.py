@@ -214,7 +214,7 @@ class Template(Calculation):
 
     @classmethod
     def _waits(cls, rule: Requirement, pending: Collection[str]) -> bool:
-        """True if a rule is about any of the inputs that are pending, by name or beneath what it uses."""
+        """Return whether a rule depends on any of the pending inputs."""
         beneath = {name for used in rule.uses for name in cls.dependencies(used)}.union(rule.uses_as_given)
         attributes = {cls.inputs[name].attribute for name in pending}
         return not (attributes.isdisjoint(beneath) and frozenset(pending).isdisjoint(rule.names))

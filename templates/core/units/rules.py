@@ -122,7 +122,7 @@ def as_compared(sign: str, other: Kind, node: Any, beside: Any) -> str:
 
 
 def summed(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> Kind:
-    """Return a sum, a difference, or a value with the other sign."""
+    """Return the kind of a sum, a difference or a negated value."""
     if len(kinds) == 1:
         (kind,) = kinds
         counts = None if kind.temperatures is None else frozenset(-n for n in kind.temperatures)

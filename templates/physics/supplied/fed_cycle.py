@@ -375,7 +375,7 @@ def _periodic(level: str, cases: _Cases) -> Orbit:
 
 
 def _of_map(level: str, cases: _Cases, eps: Array) -> tuple[Array, Array, Array, Array]:
-    """Pressure, side flow, shear and the load's work on the film at the mobility levels, (C, N) each."""
+    """Return the pressure, side flow, shear and work on the film at the mobility levels, (C, N) each."""
     S, ratio = cases.load.S, cases.ratio
     size = np.hypot(*S)
     c, s = np.where(size > 0, S / np.where(size > 0, size, 1.0), 0.0)
