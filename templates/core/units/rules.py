@@ -131,7 +131,7 @@ def as_compared(sign: str, other: Kind, node: Any, beside: Any) -> str:
 
 
 def summed(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> Kind:
-    """Return a sum, a difference, or a value with the other sign."""
+    """Return the kind of a sum, a difference or a negated value."""
     if len(kinds) == 1:
         (kind,) = kinds
         counts = None if kind.temperatures is None else frozenset(-n for n in kind.temperatures)
@@ -250,7 +250,7 @@ def angle(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -
 
 
 def whole(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    """A quantity has no whole part of its own: 3.7 mm are 0.0037 m."""
+    """Return a pure number; refuse a quantity, whose whole part depends on its unit: 3.7 mm are 0.0037 m."""
     if kinds[0].base != Kind().base:
         hint = f"divide by a unit, as in {operation.sign}(d / 1 mm)"
         raise FaultyText(
