@@ -302,7 +302,7 @@ def read_demands(document: Document, blocks: Mapping[str, Block]) -> tuple[dict[
 
 
 def _is_unread(name: str, document: Document, blocks: Mapping[str, Block]) -> bool:
-    """True if a criterion is one of a step whose template is not known, which is a fault of its own."""
+    """Return whether a criterion belongs to a step of an unknown template, which is a fault of its own."""
     criterion = Reference.parse(name)
     is_of_step = criterion.output is not None and criterion.block in document.steps
     return is_of_step and criterion.block not in blocks

@@ -61,7 +61,7 @@ class FixedPart(Bounded):
 
     @model_validator(mode="after")
     def is_one_thing(self) -> Self:
-        """The entry as it is.
+        """Require exactly one source with its own fields, and valid numbers.
 
         Raises
         ------
@@ -115,7 +115,7 @@ class AssemblyManifest(Bounded):
 
     @model_validator(mode="after")
     def names_are_distinct(self) -> Self:
-        """The manifest as it is.
+        """Require distinct names.
 
         Raises
         ------

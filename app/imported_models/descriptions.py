@@ -48,7 +48,7 @@ class Deadline:
 
     @contextmanager
     def kept(self) -> Iterator[None]:
-        """Whatever does not end in what is left has exceeded the whole."""
+        """Raise `DeadlineExceeded` with the deadline of the whole import, not with the time that was left."""
         try:
             yield
         except DeadlineExceeded:

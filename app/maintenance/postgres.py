@@ -29,7 +29,7 @@ class Snapshot(Rows):
 
 @contextmanager
 def snapshot(url: str) -> Iterator[Snapshot]:
-    """A moment of the database that stays readable; no server collects files meanwhile.
+    """Open a snapshot of the database; no server deletes unused files meanwhile.
 
     Raises
     ------

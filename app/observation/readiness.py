@@ -98,7 +98,7 @@ def _look_at(writing: asyncio.Future[None]) -> None:
 
 
 def _touch(session: Session) -> None:
-    """A write that is synced and changes nothing."""
+    """Write a row that changes nothing, synced to disk."""
     session.execute(update(CounterRow).where(CounterRow.name == "operation").values(value=CounterRow.value))
 
 

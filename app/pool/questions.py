@@ -166,7 +166,7 @@ class Questions(Generic[Q, A]):
         return reply.answer, None if reply.rest is None else self._queued(reply.rest, key, client)
 
     def in_parts(self, question: Q, client: str) -> tuple[A, str | None]:
-        """As `answer`, of a kind whose answer has parts: it is never empty.
+        """Answer as `answer` does, for a kind whose answer has parts and is never empty.
 
         Raises
         ------

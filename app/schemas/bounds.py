@@ -20,7 +20,7 @@ class Bounded(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def few_fields(cls, raw: object) -> object:
-        """The object as it is.
+        """Refuse an object with too many names before its values are read.
 
         Raises
         ------

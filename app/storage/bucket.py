@@ -149,7 +149,7 @@ class BucketStore:
                 yield StoredFile(sha, entry.size, entry.modified, is_discarded=sha != key)
 
     def claim(self, owner: str) -> str:
-        """Have the bucket belong to an owner, if it has none; return whose it is."""
+        """Claim the bucket for an owner, if it has none; return its owner."""
         while self._bucket.create(OWNER, owner.encode()) is None:
             if answer := self._bucket.get(OWNER):  # nobody has deleted it meanwhile
                 return answer[0].decode(errors="replace").strip()
@@ -161,7 +161,7 @@ class BucketStore:
         return None if answer is None else answer[0].decode(errors="replace")
 
     def write_note(self, name: str, text: str) -> None:
-        """Have the bucket say something under a name."""
+        """Write a note of the bucket under a name."""
         self._bucket.replace(name, text.encode())
 
     def probe(self) -> None:

@@ -22,7 +22,7 @@ class OwnLock:
 
     @contextmanager
     def putting(self) -> Iterator[None]:
-        """While a file is put or renewed."""
+        """Hold the lock while a file is put or renewed."""
         with self._lock:
             yield
 
@@ -41,13 +41,13 @@ class SharedLock:
 
     @contextmanager
     def putting(self) -> Iterator[None]:
-        """While a file is put or renewed."""
+        """Hold the lock while a file is put or renewed."""
         with self._held(fcntl.LOCK_SH):
             yield
 
     @contextmanager
     def removing(self) -> Iterator[None]:
-        """While a file is looked at and then deleted or set aside."""
+        """Hold the lock while a file is examined and then deleted or set aside."""
         with self._held(fcntl.LOCK_EX):
             yield
 

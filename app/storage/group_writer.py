@@ -202,7 +202,7 @@ class GroupWriter:
 
 @contextmanager
 def _savepoint(connection: Connection) -> Iterator[sqlite3.Connection]:
-    """A savepoint within the transaction of a group; whatever is raised undoes what was written in it."""
+    """Open a savepoint within the transaction of a group; an exception undoes what was written in it."""
     driver: sqlite3.Connection = connection.connection.driver_connection  # type: ignore[assignment]
     if not driver.in_transaction:
         raise rolled_back()

@@ -120,7 +120,7 @@ class Notices:
             pause = min(2 * pause, LONGEST)
 
     def _attend(self, connection: psycopg.Connection) -> None:
-        """Hear what comes, until the connection is lost."""
+        """Receive notices until the connection is lost."""
         looked = -self._poll
         while not self._stopping.is_set():
             if time.monotonic() - looked >= self._poll:

@@ -40,7 +40,7 @@ class Solid:
 
     @cached_property
     def scale(self) -> float:
-        """In what elements are measured [mm]: the loaded end's radius, unless that is small for the solid."""
+        """Return the length that sizes elements [mm]: the radius of the loaded end, unless it is small."""
         low, high = self.shape.bounding_box
         return max(self.radius, 0.5 * sqrt(self.shape.mass * self.parts / pi / (high[2] - low[2])))
 

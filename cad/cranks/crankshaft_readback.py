@@ -153,7 +153,7 @@ class ShaftReadback:
         return alike(map(read, self.throws), what)
 
     def _pin_bore(self, throw: ThrowReadback) -> float:
-        """Diameter of the cylinder beside the shaft that goes on from each pin through its web or webs."""
+        """Return the diameter of the cylinder that goes on from each pin through its web or webs."""
         if self.split:
             inner = throw.faces[1], throw.faces[-2]
             crossing = (
@@ -176,7 +176,7 @@ class ShaftReadback:
 
     @property
     def web_width(self) -> float:
-        """Twice the distance of the sides of webs from the axis: of all planes along it none is nearer."""
+        """Return twice the distance of the sides of webs from the axis, the nearest planes along it."""
         along = [p for p in self.seen.planes if abs(p.direction.dot(Z)) < _CLEAR]
         for normal, distance in self._sides_of_middle_webs() if self.split else ():
             sides = [plane for plane in along if _lies(plane, normal, distance)]
@@ -240,7 +240,7 @@ class ShaftReadback:
         return [wanted + remainder(angle - wanted, 360) for angle, wanted in zip(seen, near, strict=True)]
 
     def counterweights(self) -> list[float]:
-        """The radius of each web's counterweight [mm], 0 for none: as thick as the web, and wider than it."""
+        """Return the radius of each web's counterweight [mm]; 0 for none."""
         width = self.web_width
         rims = ([c.diameter for c in self._about(*web)] for throw in self.throws for web in throw.webs)
         return [max((d for d in rim if d > 1.01 * width), default=0.0) / 2 for rim in rims]

@@ -1,4 +1,4 @@
-"""The places of a design that rows vary: which may be, and of what shape their values are."""
+"""The places of a design that rows vary: which may vary, and the shape of their values."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from templates.core.units.units import Value
 
 
 def with_places(document: Document, graph: Graph, varied: Collection[Reference]) -> Document:
-    """The document with a literal at every varied place that it leaves to its default, or to a relation.
+    """Return the document with a literal at every varied place that has its default or a relation.
 
     Only its shape matters: the rows give its values.
     """

@@ -224,7 +224,7 @@ class _Evaluator:
     is_level_given: bool
 
     def evaluate(self, rows: Indices) -> None:
-        """Answers for some rows; a refusing call is halved down to single rows."""
+        """Evaluate some rows; if a call is refused, evaluate its halves, down to single rows."""
         try:
             part = self._part(rows)
         except InvalidInputs as error:

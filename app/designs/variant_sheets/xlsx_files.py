@@ -171,7 +171,7 @@ def write_xlsx(rows: Sequence[Sequence[Value]], results: Sequence[bool], title: 
 
 
 def _style(sheet: Worksheet, place: int, cells: Sequence[Value], *, is_result: bool) -> None:
-    """Width, headings and ground of a column."""
+    """Set the width, headings and background of a column."""
     from openpyxl.styles import Alignment, Font, PatternFill  # type: ignore[import-untyped]
     from openpyxl.utils import get_column_letter  # type: ignore[import-untyped]
 

@@ -42,7 +42,7 @@ class Driven(Bounded):
 
     @model_validator(mode="after")
     def is_one_number(self) -> Self:
-        """The entry as it is.
+        """Require a dimension or a parameter, with a value within its range.
 
         Raises
         ------
@@ -88,7 +88,7 @@ class Manifest(Bounded):
 
     @model_validator(mode="after")
     def names_are_distinct(self) -> Self:
-        """The manifest as it is.
+        """Require distinct names.
 
         Raises
         ------

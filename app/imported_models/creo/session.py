@@ -169,7 +169,7 @@ class CreoDrawing:
 
     @contextmanager
     def _session(self, cancelled: threading.Event) -> Iterator[CreoSession]:
-        """A session, once nobody else has one; it is closed in the end, and what was changed is not saved."""
+        """Open a session once nobody else has one; close it in the end without saving changes."""
         end = time.monotonic() + self.seconds
         while not self._turn.acquire(timeout=_GLANCE):
             if cancelled.is_set():

@@ -243,7 +243,7 @@ class Cluster:
 
     @contextmanager
     def _connected(self) -> Iterator[BoundedClient]:
-        """A client; without its scheduler it is useless, as are its futures, so it is closed then."""
+        """Open a client, and close it when its scheduler is lost: it and its futures are useless then."""
         client = BoundedClient(self.address, self._security)
         try:
             client.subscribe_topic(self._topic, self._hear)

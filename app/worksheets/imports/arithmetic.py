@@ -63,7 +63,7 @@ class Arithmetic(Writer):
         return binary(left, "/", right, PRODUCT)
 
     def power(self, base: Node, exponent: Node) -> Term:
-        """Return a power; of a vector its square alone, which is a scalar product."""
+        """Return a power; a vector can only be squared, which gives a scalar product."""
         over = self.value(exponent)
         if base.tag == "id" and self._is_euler(base):
             return called("exp", over)

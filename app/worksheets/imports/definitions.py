@@ -144,7 +144,7 @@ class Definitions(ListDefinitions):
             self.now = before
 
     def _result(self, outcome: Outcome, math: Node) -> None:
-        """A region that shows a result: of a name, or of a formula, which gets a line."""
+        """Translate a region that shows the result of a name, or of a formula, which gets a line."""
         inner = math.parts[0]
         at = Expressions(self, self.scope)
         while inner.tag == "parens" and inner.parts:

@@ -122,7 +122,7 @@ def is_package(content: bytes) -> bool:
 
 
 def _check_directory(content: bytes) -> None:
-    """Declarations the directory before `zipfile` reads it: it makes an object of every entry."""
+    """Check the directory before `zipfile` reads it: it makes an object of every entry."""
     place = len(content) - _END_SIZE
     if content[place : place + 4] != _END or content[-2:] != b"\0\0":
         place = content.rfind(_END, max(0, place - _LONGEST_COMMENT))

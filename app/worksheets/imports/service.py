@@ -46,7 +46,7 @@ class Imports:
         self.catalogues, self.worksheets = catalogues, worksheets
 
     def begin(self, content: bytes, id: str, file: str, once: Once) -> str:
-        """Queue the import of a file as a worksheet; the id of the job.
+        """Queue the import of a file as a worksheet and return the id of the job.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""`/worksheets/import`: sheets of Mathcad as drafts, and what became of their regions."""
+"""`/worksheets/import`: import Mathcad sheets as drafts, and report the outcome of each region."""
 
 from __future__ import annotations
 

@@ -123,10 +123,10 @@ def request_of(parts):
 def test_a_body_is_read_once_and_joined_once():
     async def read():
         request, _ = request_of([LARGE, b"end"])
-        assert [len(part) for part in await request.pieces()] == [len(LARGE), 3]
+        assert [len(part) for part in await request.parts()] == [len(LARGE), 3]
         assert await request.body() == LARGE + b"end"
         assert await request.body() is await request.body()
-        assert await request.pieces() is await request.pieces()
+        assert await request.parts() is await request.pieces()
 
     asyncio.run(read())
 
