@@ -173,6 +173,10 @@ class Template(Calculation):
         """Return the measured case of such inputs, where errors were measured apart for several."""
         return ""
 
+    def own_error(self, output: str) -> Array:
+        """Return the relative error of an output that the level itself states; NaN without one [-]."""
+        return np.full(self.shape_of_points(), np.nan)[()]
+
     def starting_level(self) -> str:
         """Return the level that is taken when none is requested."""
         ladder = self.ladder()
