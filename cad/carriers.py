@@ -209,7 +209,9 @@ class Carriers:
 
     def _missing(self, one: ToleranceFaces, size: float) -> tuple[int, ...]:
         detail = f"{one.name} has a tolerance, but no face of {one.part} shows its {size:g} mm"
-        raise GeometryError("tolerance", f"{detail}; leave the tolerance out, or give it a size", (one.name,))
+        raise GeometryError(
+            "tolerance", f"{detail}; omit the tolerance, or give the dimension a size above 0", (one.name,)
+        )
 
 
 def _is_beside(other: ToleranceFaces, one: ToleranceFaces) -> bool:

@@ -168,7 +168,7 @@ class ImportedModel(CadModel):
             per_size = _factor(one)
             offered = [size / per_size for size in sizes[_SIZE[one.role]]]
             if not offered:
-                raise LookupError(f"no {one.role} for {one.name}")
+                raise LookupError(f"no {one.role} of the solid can be {one.name}")
             read[one.name] = min((abs(size - wanted), size) for size in offered)[1]
         return read
 
@@ -288,7 +288,9 @@ def _measured(name: str, solid: Any, colour: Colour, **more: Any) -> Part:
 
     volume = measure(Body(name, solid, colour, ())).volume
     if not volume > 0:
-        raise GeometryError("not_finite", f"{name} has a volume of {volume:.6g} mm³")
+        raise GeometryError(
+            "not_finite", f"{name} has a volume of {volume:.6g} mm³; a solid needs a volume above 0"
+        )
     return Part(name, solid, volume, colour, **more)
 
 

@@ -47,7 +47,7 @@ def npy(result: Evaluation) -> bytes:
 def _column(name: str, output: Answer) -> NDArray[np.float64]:
     """Return the values of an output; raises NoArray."""
     if isinstance(output.value, str):
-        raise NoArray(f"{name} is a text; a file of NumPy holds numbers")
+        raise NoArray(f"{name} is a text; a NumPy file holds only numbers")
     if output.value is None:
         raise NoArray(f"{name} has no value: {output.reason}; JSON states the reason")
     if output.reasons is not None:

@@ -65,7 +65,7 @@ def read_curves(body: bytes) -> dict[str, JsonObject]:
     if faults:
         raise InvalidInputs(faults)
     if not rows:
-        raise _wrong("rows", "empty", "there is a header but no row below it")
+        raise _wrong("rows", "empty", "the table has a header but no rows")
     values = zip(*rows, strict=True)
     return {c.name: {"value": list(v), "unit": c.unit} for c, v in zip(columns, values, strict=True)}
 

@@ -150,7 +150,9 @@ def freeze_command(id: str, version: int, folder: Path) -> None:
         cls = snapshot.models.get(id, version) if is_model else snapshot.templates.get(id, version)
         click.echo(f"written: {freeze(cls, folder)}")
     except FileExistsError as error:
-        raise click.ClickException(f"{error}: a released version is not changed; make a new one") from None
+        raise click.ClickException(
+            f"{error}: a released version cannot change; create a new version"
+        ) from None
 
 
 def _find(id: str, version: int | None) -> type[Template]:

@@ -225,7 +225,7 @@ def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
         detail = f"{CHAIN} is of a shaft of throws from main to main, as crankshaft 1 is; {cls.id} is not one"
         return Fault("model", "no_throws", detail)
     detail = f"{cls.id} is not one throw of a crank, from mid-journal to mid-journal, as crank_throw is"
-    return Fault("model", "no_throw", f"{UNIT_LOADS} is of a throw: {detail}")
+    return Fault("model", "no_throw", f"{UNIT_LOADS} analyses one throw: {detail}")
 
 
 def what_can_be_asked(cls: type[CadModel]) -> dict[str, object]:

@@ -141,7 +141,7 @@ def _laid_out(
                 return content, _laid(content, bodies, declared, plan, is_last=is_last)
             except NoRoom:
                 continue
-    raise AssertionError("the last sheet takes everything")
+    raise AssertionError("the largest sheet has room for every drawing")
 
 
 def _laid(

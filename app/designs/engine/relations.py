@@ -199,5 +199,5 @@ def limit_operations(operations: int) -> None:
     if operations > MOST_OPERATIONS:
         message = f"the relations up to here make {operations} operations on single values"
         raise FaultyText(
-            "too_many_values", f"{message}; use shorter arrays, at most {MOST_OPERATIONS} are made"
+            "too_many_values", f"{message}; use shorter arrays, as the limit is {MOST_OPERATIONS}"
         )

@@ -57,7 +57,7 @@ def check_form_token(request: Request, typed: dict[str, str]) -> None:
     """
     token = request.scope.get(FORM_TOKEN)
     if token and not hmac.compare_digest(typed.get(FIELD, "").encode(), token.encode()):
-        raise CrossSite("the form is not of this session: open its page again, and send it from there")
+        raise CrossSite("the form belongs to another session: open its page again, and send it from there")
 
 
 def keep_signed_in(request: Request, response: Response, token: str, hours: float) -> None:

@@ -47,4 +47,4 @@ class Strays:
         if key in self._without_machine:
             raise NeverBegun
         if key in self._lost:
-            raise WorkerLost("the scheduler does not have it")
+            raise WorkerLost("the scheduler does not know the task")

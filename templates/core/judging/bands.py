@@ -197,6 +197,6 @@ def _aligned(estimate: Estimate, axes: int) -> Estimate:
     if estimate.axes == axes or not np.ndim(estimate.value):
         return estimate
     if estimate.axes:
-        raise FaultyText("shape", "curves and tables of different axes are compared")
+        raise FaultyText("shape", "curves and tables over different axes cannot be compared")
     value, error = spread(estimate.value, axes), spread(estimate.error, axes)
     return replace(estimate, value=value, error=error)
