@@ -1,6 +1,6 @@
 """Outputs as a file of NumPy: a column for each, without the echo of inputs, notices and estimated errors.
 
-Of 10⁶ values the JSON text takes 20 MB and most of the time of an answer; the file takes 8 MB and a copy.
+For 10⁶ values, JSON takes 20 MB and most of the response time. The file takes 8 MB and one copy.
 """
 
 from __future__ import annotations

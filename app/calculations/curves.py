@@ -2,8 +2,8 @@
 
 `crank angle [deg], pressure [bar]` or `crank_angle_deg,pressure_bar`. Columns are separated by commas,
 semicolons or tabs, as the header shows; decimal commas are understood where the columns have another
-separator. Blank lines, and lines that begin with #, are skipped. Nothing is stored, nothing is guessed: what
-is not plain is refused with its line.
+separator. Blank lines, and lines that begin with #, are skipped. Nothing is stored and nothing is guessed: an
+unclear cell is refused with its line number.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """`crankwright evaluate | template | freeze`: the templates in this process, without a service.
 
-Where the settings name no folders of a team, `evaluate` imports only the template that it evaluates. The
-settings, the models with the geometry kernel, and the schema are imported by the commands that need them.
+If the settings name no team folders, `evaluate` imports only the template that it evaluates. The settings,
+the models with the geometry kernel, and the schema are imported by the commands that need them.
 """
 
 from __future__ import annotations

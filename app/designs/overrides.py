@@ -1,4 +1,4 @@
-"""Other values for a design in a question about it: nothing of them is saved."""
+"""Temporary values that a question uses instead of those of the design; they are never saved."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Settings of the machines: CRANKWRIGHT_ENGINE chooses where jobs run; export of traces.
 
-What Dask sends is pickle, so whoever can connect can run code: beyond this machine, TLS proves who connects.
+Dask sends pickles, so anybody who can connect can run code. Beyond this machine, TLS authenticates the peers.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Finite-element analyses of a solid, and the cache key of each result.
 
-For the REST interface and for relations of designs. Which analyses exist stands in `cad.analysis.kinds`; that
-module does not import the kernel that computes them.
+For the REST interface and for relations of designs. `cad.analysis.kinds` lists the analyses; it does not
+import the kernel that computes them.
 """
 
 from __future__ import annotations

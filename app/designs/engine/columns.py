@@ -1,4 +1,4 @@
-"""Values of many rows of a design, and how far off they may be.
+"""Values of many rows of a design, with their error bounds.
 
 The row is the first axis, a place along a curve the last. A value that does not follow from the rows has no
 axis for them. So whether the first axis of an array counts rows is part of the column, and 360 rows are not

@@ -1,8 +1,8 @@
 """Decide criteria of a design: steps climb to finer levels only where a criterion is undecided.
 
-Each round calculates one step at its next level: that which takes away most of the error for its cost. It
-ends when all criteria are decided, when no level states a smaller error of the same truth, or when the
-budget is spent. Nothing is saved, and solids stay as they are.
+Each round calculates one step at its next level: the step that removes most of the error for its cost. It
+ends when all criteria are decided, when no level states a smaller error of the same truth, or when the budget
+is spent. Nothing is saved, and solids stay as they are.
 """
 
 from __future__ import annotations

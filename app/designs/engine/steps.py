@@ -1,8 +1,8 @@
 """One step, or one model, over many rows: array calls of its template, and which rows it refuses.
 
-In arrays a template masks the points that it would refuse alone; such rows are refused here with the words
-of the mask. Where it refuses a whole array, the rows are halved until those are found that it refuses. A row
-that is refused has no value in any output of the step, as in a design of its own.
+In an array call, a template masks the points that it would refuse alone. This module refuses those rows, with
+the message of the mask. If a template refuses a whole array, the rows are halved until the faulty ones are
+found. A refused row has no value in any output of the step, as in a design of one row.
 
 A step of which nothing differs from row to row is evaluated once, and its latest evaluations are kept: a
 change of a design recomputes only what depends on it.

@@ -1,6 +1,6 @@
 """Cookies of a browser: one that identifies its requests, and one for a session after sign-in.
 
-The first says not whose the requests are. With the second, every form carries a token of the session, beside
+The first does not identify a principal. With the second, every form carries a token of the session, beside
 the rule of the gate that forms come from the service's own pages.
 """
 
