@@ -1,4 +1,4 @@
-"""Find the faces of a part that carry a dimension: by what the model declares, and by their size.
+"""Find the faces of a part that carry a dimension: from the model's declaration and from their size.
 
 A face never gets the tolerance of another dimension: where none has the parameter's size, or two dimensions
 claim the same face, the build is refused.

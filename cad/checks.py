@@ -1,4 +1,4 @@
-"""Check that a finished solid is the one requested: OpenCASCADE calls wrong solids valid."""
+"""Check that a finished solid is the requested one, because OpenCASCADE calls some wrong solids valid."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 Such a model is a description: which program draws it from which file, and its parameters. The description
 makes a class that stands beside the built-in models. What the program draws is handed to a model by `take`;
-from there on the path is that of every model: a STEP file is written, read again, checked and measured.
+from there on it is treated like every model: a STEP file is written, read again, checked and measured.
 
 There is no closed form of its volume. The volume of the drawn shape stands in for it: this holds the file to
 the drawing, and says nothing about whether the program drew the right thing. A parameter is read back if a

@@ -1,4 +1,4 @@
-"""Whether parts that stand together take the same space, and how far apart they are, by their names."""
+"""Overlaps and distances between the parts of a model, by the names of the parts."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Which faces of a model carry which dimension, and between which limits a user wants that dimension.
+"""The faces of a model that carry each dimension, and the limits that a user sets for it.
 
-A model says it in `toleranced`, by parameter, in plain words:
+A model declares this in `toleranced`, by parameter:
 
     toleranced = {
         "inner_diameter": {"of": "shell", "cylinders": "z", "datum": "A", "cylindricity": 0.5},

@@ -1,4 +1,4 @@
-"""Find the units of expressions by the language of worksheets itself."""
+"""Find the units of expressions with the parser of the worksheet language."""
 
 from __future__ import annotations
 
