@@ -335,3 +335,39 @@ def test_a_sheet_of_mathcad_15_is_read_alike():
         "verified",
         "verified",
     ]
+
+
+class TestRates:
+    """To Mathcad rad, 1/s and Hz are alike; here a frequency in Hz stays one."""
+
+    SPEED = math(define("N", scale(5000, "rpm")))
+
+    def lines(self, *regions):
+        _, written = regions_of(self.SPEED, *regions)
+        return written.splitlines()
+
+    def test_a_frequency_shown_in_hz_stays_in_hz(self):
+        """The case syn_omega.mcdx: 5000 rpm are 83.33 Hz, and no angular speed of 83.33 rad/s."""
+        turned = apply("div", name("N"), apply("mult", real(2), constant("π")))
+        shown_f = math(shown(name("f"), unit("Hz")), real(83.33333333333333))
+        records, written = regions_of(self.SPEED, math(define("f", turned)), shown_f)
+        assert 'f [Hz] = N / (2 * pi) "f"' in written.splitlines()
+        assert records[-1]["state"] == "verified"
+
+    def test_a_frequency_that_is_shown_in_no_unit_is_no_angular_speed(self):
+        turned = apply("div", name("N"), apply("mult", real(2), constant("π")))
+        assert 'f [1/s] = N / (2 * pi) "f"' in self.lines(math(define("f", turned)))
+        assert 'g [Hz] = 2 * f "g"' in self.lines(
+            math(define("f", scale(50, "Hz"))), math(define("g", apply("mult", real(2), name("f"))))
+        )
+
+    @pytest.mark.parametrize("asked", ["rpm", "rad"])
+    def test_a_rate_that_is_shown_as_a_speed_is_one(self, asked):
+        per_second = unit("rpm") if asked == "rpm" else apply("div", unit("rad"), unit("s"))
+        rate = apply("div", scale(10, "m"), apply("mult", scale(2, "m"), scale(1, "s")))
+        lines = self.lines(math(define("w", rate)), math(shown(name("w"), per_second)))
+        assert any(line.startswith("w [rad/s] = ") or line.startswith("given w [rad/s] = ") for line in lines)
+
+    def test_a_number_made_of_a_speed_in_turns_is_a_pure_number(self):
+        product = apply("mult", name("N"), scale(2, "s"))
+        assert 'S [1] = N * 2 s "S"' in self.lines(math(define("S", product)))
