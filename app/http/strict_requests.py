@@ -34,7 +34,13 @@ JSON_TYPES = {"application/json"}
 PATCH_TYPES = {"application/json", "application/merge-patch+json"}
 STEP_TYPES = ("model/step", "application/step", "application/p21")
 """The registered name of STEP's clear text, and two that were in use before it."""
-SHEET_TYPES = {"application/octet-stream", "application/zip", "application/xml", "text/xml"}
+SHEET_TYPES = {
+    "application/octet-stream",
+    "application/zip",
+    "application/gzip",
+    "application/xml",
+    "text/xml",
+}
 """Media types of a sheet of Mathcad: its own ones are not registered."""
 MODEL_TYPES = {"application/octet-stream", "application/zip", "model/step"}
 """Media types of a model: FreeCAD's own one is not registered."""

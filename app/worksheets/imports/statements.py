@@ -15,6 +15,7 @@ from app.worksheets.imports.regions import OriginalSheet
 from app.worksheets.imports.scope import Function, Scope, Value, Written
 from app.worksheets.imports.terms import Axis, Term, number
 from app.worksheets.imports.trees import Node
+from app.worksheets.imports.unit_names import letters_of
 from templates.core.language.template import Template
 from templates.core.units.expressions import Sort, constant
 from templates.core.units.units import is_rate, registry, unit
@@ -32,8 +33,9 @@ class Statements:
 
     def __init__(self, sheet: OriginalSheet) -> None:
         self.sheet = sheet
-        self.origin, self.is_labelled = sheet.origin, sheet.is_labelled
+        self.origin = sheet.origin
         self.scope: Scope = {}
+        self.letters = letters_of(sheet.regions)
         self.declared = Declarations()
         self.names = Names(RESERVED)
         self.outcomes: dict[int, Outcome] = {}
