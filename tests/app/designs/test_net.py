@@ -314,8 +314,8 @@ def torsion(**relations):
 
 def test_curves_of_different_lengths_are_refused_in_words():
     parts = [
-        (np.array([0]), Column(np.zeros((1, 3)), 1, True)),
-        (np.array([1]), Column(np.zeros((1, 4)), 1, True)),
+        (np.array([0]), Column(np.zeros((1, 3)), is_row=True)),
+        (np.array([1]), Column(np.zeros((1, 4)), is_row=True)),
     ]
     with pytest.raises(FaultyText, match="more places in some rows than in others") as refused:
         scattered(2, parts)
