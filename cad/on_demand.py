@@ -152,7 +152,10 @@ class StandIn:
         return -cast(float, self.real())
 
     def __instancecheck__(self, instance: object) -> bool:
-        """True if something is an instance of the class; of a kernel that is not loaded there is none."""
+        """Return whether something is an instance of the class.
+
+        A kernel that is not loaded has no instances.
+        """
         return not is_postponed() and isinstance(instance, cast(type, self.real()))
 
     def __mro_entries__(self, bases: tuple[object, ...]) -> tuple[object, ...]:

@@ -89,7 +89,7 @@ def box_of(solids: Sequence[object]) -> Box:
 
 
 def _axes_of(part: Part, middle: Vector) -> list[tuple[Vector, Vector]]:
-    """The point of every axis nearest to the middle of the part's box, and its direction, each once."""
+    """Return each axis once: its point nearest to the middle of the part's box, and its direction."""
     axes = dict[tuple[float, ...], tuple[Vector, Vector]]()
     for cylinder in look(part.solid.moved(part.places[0])).cylinders:
         along = _forward(cylinder.direction)
@@ -100,7 +100,7 @@ def _axes_of(part: Part, middle: Vector) -> list[tuple[Vector, Vector]]:
 
 
 def _forward(direction: Vector) -> Vector:
-    """A direction or its opposite, so that the largest component, of equal ones the first, is positive."""
+    """Return a direction or its opposite, so that its largest component is positive."""
     components = direction.toTuple()
     largest = max(components, key=lambda number: round(abs(number), _DIGITS))
     return direction if largest > 0 else -direction

@@ -86,7 +86,7 @@ def import_command(files: tuple[Path, ...], author: str | None, url: str | None,
 def import_sheet_command(
     ctx: click.Context, file: Path, id: str | None, url: str | None, data: Path | None
 ) -> None:
-    """Import FILE, a sheet of Mathcad Prime (.mcdx) or Mathcad 11 to 15 (.xmcd), as a draft.
+    """Import FILE, a sheet of Mathcad Prime (.mcdx) or Mathcad 11 to 15 (.xmcd, .xmcdz), as a draft.
 
     Prints what became of its regions. The exit code is 1 if some of them forbid a release.
     """

@@ -16,7 +16,7 @@ from base64 import b64encode
 from collections.abc import Iterator
 from typing import Any
 
-from fastapi import FastAPI
+from fastapi import APIRouter, FastAPI
 from fastapi.openapi.docs import get_swagger_ui_html
 from fastapi.responses import HTMLResponse
 from fastapi.routing import APIRoute
@@ -37,6 +37,18 @@ def operation_id(route: APIRoute) -> str:
         return route.name
     ends = (("/revisions/{number}", "_of_revision"), ("/models/{name}", "_of_model"), (".{kind}", "_as"))
     return route.name + "".join(end for part, end in ends if part in route.path)
+
+
+def include(app: FastAPI, router: APIRouter) -> None:
+    """Serve the routes of a router as routes of the app itself, with the app's responses and names.
+
+    FastAPI keeps a router that it includes whole, and looks through it twice for each request.
+    """
+    for route in router.routes:
+        if isinstance(route, APIRoute):
+            route.responses = {**app.router.responses, **route.responses}
+            route.unique_id = route.operation_id or operation_id(route)
+        app.router.routes.append(route)
 
 
 def describe_interface(app: FastAPI) -> dict[str, Any]:

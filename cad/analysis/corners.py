@@ -56,7 +56,7 @@ def sharp_inner_edges(shape: Any, scale: float) -> Edges:
 
 
 def along(edges: Edges, share: float) -> Iterator[tuple[tuple[float, float, float], float]]:
-    """Points along edges with the distance [mm] between them there: a share of the radius of the edge."""
+    """Yield points along edges, spaced [mm] by a share of the radius of the edge."""
     for (start, end), radius in zip(edges.ends, edges.radius, strict=True):
         step = share * float(radius)
         count = ceil(float(np.linalg.norm(end - start)) / step)
@@ -66,7 +66,7 @@ def along(edges: Edges, share: float) -> Iterator[tuple[tuple[float, float, floa
 
 
 def _radii(faces: Integers, vertices: Integers, ends: Array) -> Array:
-    """The radius [mm] of the edge at each piece: length by turning, where two between the same faces meet."""
+    """Return the radius [mm] of the edge at each piece, from its length and its turn."""
     met = defaultdict(list)
     for piece, (pair, two) in enumerate(zip(faces, vertices, strict=True)):
         for side in (0, 1):

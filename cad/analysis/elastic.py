@@ -115,7 +115,9 @@ class System:
 
 
 def _by_order(form: Any, space: Any) -> Any:
-    """An approximate inverse of an assembled form: exact in second order; of the rest by edges and faces.
+    """Return an approximate inverse of an assembled form: exact in second order.
+
+    The rest is inverted by edges and faces.
 
     The basis is hierarchical: the unknowns of second order are those of vertices and the first of each edge.
     """
@@ -137,7 +139,7 @@ def _by_order(form: Any, space: Any) -> Any:
 
 
 def _of_components(numbers: Integers, count: int) -> Integers:
-    """Unknowns (n, 3 k) of the three components for those (n, k) of one, of which there are so many."""
+    """Return the unknowns (n, 3 k) of three components, from those (n, k) of one."""
     return np.concatenate([numbers + component * count for component in range(3)], axis=1)
 
 
@@ -173,7 +175,7 @@ def respond(system: System, boundary: Boundary) -> Response:
 
 
 def is_antisymmetric(mirror: str, load: Kind) -> bool:
-    """True if the displacement at the image of a point, in the plane of this normal, is minus the image."""
+    """Return whether the displacement at the mirror image of each point is minus the image."""
     return load == "torsion" or mirror == "x"  # a moment about y is odd in x
 
 

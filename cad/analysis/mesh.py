@@ -139,7 +139,7 @@ def curve(mesh: Any, order: int) -> Any:
 
 
 def _straight_coordinates(mesh: Any, space: Any) -> list[Any]:
-    """The coordinates of the points of straight elements: those of their corners, nothing of higher order."""
+    """Return the coordinates of the points of straight elements, which are those of their corners."""
     corners = np.array([vertex.point for vertex in mesh.vertices])
     vectors = []
     for values in corners.T:

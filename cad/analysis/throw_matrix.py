@@ -47,7 +47,7 @@ class ThrowMatrix:
 
 
 def throw_matrix(step: bytes, shaft: Shaft, pin: PinPlace, level: Level = LEVELS[1]) -> ThrowMatrix:
-    """Stiffness and mass of the throw in a STEP file, which reaches from `shaft.held` to `shaft.loaded`."""
+    """Return the stiffness and mass of the throw in a STEP file, from `shaft.held` to `shaft.loaded`."""
     solid = read_solid(step, shaft, mirrors=())
     return matrix_on(make_grid(solid, level.fineness), level.order, shaft, pin)
 

@@ -153,7 +153,7 @@ class ShaftReadback:
         return alike(map(read, self.throws), what)
 
     def _pin_bore(self, throw: ThrowReadback) -> float:
-        """Diameter of the cylinder beside the shaft that goes on from each pin through its web or webs."""
+        """Return the diameter of the cylinder that goes on from each pin through its web or webs."""
         if self.split:
             inner = throw.faces[1], throw.faces[-2]
             crossing = (
@@ -240,7 +240,7 @@ class ShaftReadback:
         return [wanted + remainder(angle - wanted, 360) for angle, wanted in zip(seen, near, strict=True)]
 
     def counterweights(self) -> list[float]:
-        """The radius of each web's counterweight [mm], 0 for none: as thick as the web, and wider than it."""
+        """Return the radius of each web's counterweight [mm]; 0 for none."""
         width = self.web_width
         rims = ([c.diameter for c in self._about(*web)] for throw in self.throws for web in throw.webs)
         return [max((d for d in rim if d > 1.01 * width), default=0.0) / 2 for rim in rims]

@@ -214,7 +214,10 @@ def _tools_of_half(t: Throw) -> Iterator[Shape]:
 
 
 def _journal(t: Throw) -> Shape:
-    """The journal on +z of a throw, up to the next web; its seam lies away from the mouth of the drilling."""
+    """Return the journal on +z of a throw, up to the next web.
+
+    Its seam lies away from the mouth of the drilling.
+    """
     low, high = t.outer, t.journal_end
     edge = t.journal + t.fillet
     root = fillet_run(t.journal, t.fillet, low, 1)

@@ -178,7 +178,7 @@ def _upright(bodies: Sequence[Body]) -> Vector:
         return sum(face.Area() for shape in placed for face in faces_across(shape, normal))
 
     def parts(normal: Vector) -> bool:
-        """True if there is material on both sides: a half shell ends in its joint, or a little beyond."""
+        """Return whether there is material on both sides of the axis."""
         sides = [_sides(body.shape.moved(place), normal) for body in bodies for place in body.places]
         depths = sorted((-min(low for low, _ in sides), max(high for _, high in sides)))
         return depths[0] > max(CLEAR, _LITTLE * depths[1])
@@ -191,7 +191,7 @@ def _upright(bodies: Sequence[Body]) -> Vector:
 
 
 def _surrounds(cylinder: Surface) -> bool:
-    """True if the shaft's axis lies within: in a bore, or in the relief beside the joint of a shell."""
+    """Return whether the shaft's axis lies within a bore or a joint relief."""
     return cylinder.along(Z) and cylinder.point.cross(Z).Length < cylinder.diameter / 2
 
 

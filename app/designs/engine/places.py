@@ -1,4 +1,4 @@
-"""The places of a design that rows vary: which may be, and of what shape their values are."""
+"""The places of a design that rows vary: which may vary, and the shape of their values."""
 
 from __future__ import annotations
 

@@ -90,9 +90,9 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
             return _WELL_KNOWN[key]
         if key == "∞":
             raise Untranslatable("infinity", "give a number")
-        if label == "CONSTANT" or (key == "e" and not self.sheet.is_labelled):
+        if label == "CONSTANT":
             return _constant(key)
-        if key == "%" or (label in ("", "*", "None") and key and unit_named(key)):
+        if key == "%":
             return self._unit(key)
         raise Unnamed(key)
 

@@ -6,6 +6,7 @@ region) is opened once, for its one document, and spends the same budget; nothin
 
 from __future__ import annotations
 
+import gzip
 import io
 import struct
 import zipfile
@@ -94,6 +95,25 @@ class Package:
             what = f"its part {name[:60]!a} is damaged ({error})"
             raise SheetNotRead("package", f"{what}: {AGAIN}") from None
         return b"".join(pieces)
+
+
+def unpacked(content: bytes, budget: Budget) -> bytes:
+    """Return what a file compressed by gzip holds.
+
+    Raises
+    ------
+    SheetNotRead
+        It is damaged, or it holds too much.
+    """
+    pieces: list[bytes] = []
+    try:
+        with gzip.GzipFile(fileobj=io.BytesIO(content)) as file:
+            while piece := file.read(_PIECE):
+                budget.spend(len(piece))
+                pieces.append(piece)
+    except _DAMAGES as error:
+        raise SheetNotRead("package", f"it is a damaged .xmcdz file ({error}): {AGAIN}") from None
+    return b"".join(pieces)
 
 
 def is_package(content: bytes) -> bool:

@@ -20,7 +20,6 @@ class Sheets(Protocol):
     """The sheet that is being written, as an expression sees it."""
 
     origin: int
-    is_labelled: bool
 
     def function(self, function: Function, arguments: Sequence[Term]) -> str | None:
         """Return the name of a function's statement for these arguments.

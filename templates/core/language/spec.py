@@ -172,7 +172,7 @@ class Profile(Formula[T]):
         self.along, self.axes = along, axes
 
     def inside(self, places: NDArray[np.bool_]) -> Any:
-        """Mask of the points all of whose places hold."""
+        """Return the mask of the points all of whose places hold."""
         return np.all(places, axis=tuple(range(-self.axes, 0)))
 
     def spread(self, points: NDArray[np.bool_]) -> NDArray[np.bool_]:
