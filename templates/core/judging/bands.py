@@ -130,6 +130,13 @@ def band_relative_to(value: Value, error: Value, scale: Value) -> Bounds:
         return value - half, value + half
 
 
+def largest_true(size: Value, error: Value) -> Value:
+    """Return the largest size that the truth may have for a size calculated with a relative error."""
+    with np.errstate(all="ignore"):
+        most = np.where(np.asarray(error) < 1, size / (1 - error), np.inf)
+        return np.where(np.isnan(error), np.nan, most)[()]
+
+
 def value_and_bounds(
     side: Relation, estimates: Mapping[str, Estimate], shifts: Sequence[Shift] = ()
 ) -> tuple[Value, Bounds]:

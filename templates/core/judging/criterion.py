@@ -22,6 +22,7 @@ from templates.core.units.units import (
     Unit,
     compatible,
     difference_in,
+    is_rate,
     registry,
     require_same_kind,
     unit,
@@ -310,7 +311,7 @@ def _as_compared(
 def _shared_kind(sign: Sign, value: Relation, limit: Relation, kinds: Mapping[str, Kind]) -> Kind:
     """Return the kind of both sides."""
     one, other = value.kind(kinds), limit.kind(kinds)
-    if not compatible(one, other):
+    if not compatible(one, other) and not (is_rate(one.base) and is_rate(other.base)):
         raise FaultyText(
             "unit_mismatch",
             f"{value.text} gives {in_words(one)}, but {limit.text} gives {in_words(other)}",
