@@ -41,7 +41,7 @@ def front(objectives: Array, worst: AnyArray, *, undecided: bool = False) -> Int
 
 
 def _undominated(sorted_rows: Array) -> Mask:
-    """Return which rows are not dominated by an earlier one; they are sorted by their columns.
+    """Return a mask of the rows that no earlier row dominates; rows are sorted by their columns.
 
     Only rows that are kept are compared with, so that the cost is that of rows times front.
     """

@@ -69,7 +69,7 @@ class StoredRows:
 
     @cached_property
     def is_refused(self) -> Mask:
-        """Return which rows have a reason instead of values."""
+        """Return a mask of the rows that have a reason instead of values."""
         reasons = [reason.astype(np.int32) for reason in self._each("reason", -1)]
         return np.concatenate([np.empty(0, np.int32), *reasons]) >= 0
 

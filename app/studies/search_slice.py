@@ -174,7 +174,7 @@ class _Journal:
     changed: set[str]
 
     def stored(self, name: str) -> Stage | None:
-        """Return the stage of a name, as it was kept last."""
+        """Return the latest stored stage of a name."""
         return self.stages.get(f"{self.level}: {name}")
 
     def keep(self, name: str, stage: Stage) -> None:

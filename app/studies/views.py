@@ -29,7 +29,7 @@ Where = Literal["met", "not_met", "undecided", "not_checked", "refused"]
 
 
 def study(session: Session, row: Row) -> Study:
-    """Return a study as it stands."""
+    """Return the current state of a study."""
     plan = Plan.of(row.plan)
     progress = repository.done(session, row.id, plan.chunks)
     frequent = sorted(progress.refused.items(), key=lambda pair: (-pair[1], pair[0]))[:MOST_REASONS]

@@ -94,7 +94,7 @@ class Climb:
     _tried: set[tuple[str, str]] = field(default_factory=set)
 
     def decide(self) -> ClimbResult:
-        """Climb until there is nothing more to do."""
+        """Refine levels until no step can improve a verdict."""
         start = time.monotonic()
         verdicts = Verdicts(self.calculation)
         judgements = {judgement.name: judgement for judgement in verdicts.all()}

@@ -100,7 +100,7 @@ class StepRows:
         return cls(block, 1, has_rows=False, level=level, parts=[part], evaluation=evaluation)
 
     def refused(self) -> Mask:
-        """Return which rows are refused."""
+        """Return a mask of the refused rows."""
         refused = np.zeros(self.count, dtype=bool)
         refused[list(self.refusals)] = True
         return refused

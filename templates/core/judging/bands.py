@@ -173,7 +173,7 @@ def _own_shifts(
 
 
 def _changes(side: Relation, middle: Value, low: Mapping[str, Value], high: Mapping[str, Value]) -> Bounds:
-    """Return how far down and up a side moves between two sets of values; NaN if that is not known."""
+    """Return the change of a side, down and up, between two sets of values; NaN if unknown."""
     with np.errstate(all="ignore"):
         one, other = (np.asarray(side.value(end)) - middle for end in (low, high))
         less, more = np.minimum(np.minimum(one, other), 0.0), np.maximum(np.maximum(one, other), 0.0)

@@ -135,7 +135,7 @@ def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: Ma
 
 @lru_cache(maxsize=1024)
 def _lack(absent: tuple[Absent, ...]) -> Mapping[str, Any]:
-    """Return what to give and why, of names without a value."""
+    """Return the inputs to give, with reasons, for names without a value."""
     give = dict.fromkeys(name for one in absent for name in one.give)
     reasons = dict.fromkeys(one.reason for one in absent if one.reason)
     return {"give": tuple(give), "reason": "; ".join(reasons) or None}

@@ -255,7 +255,7 @@ def _where_it_has_a_scale(error: Any, scale: Value) -> tuple[Any, bool, Value | 
 
 
 def _scale(evaluated: EvaluatedValues, name: str) -> Value | None:
-    """Return what an output's error is relative to [SI], as its table says; None if to the output itself.
+    """Return the reference value of an output's relative error [SI]; None if it is the output itself.
 
     The largest of several outputs, such as the four stiffnesses, counts, as large as the truth may be by
     their own errors; NaN stands for a size that is no output. The error of an angle is relative to 90°.
