@@ -1,8 +1,9 @@
 """Decide criteria of a design: steps climb to finer levels only where a criterion is undecided.
 
-Each round calculates one step at its next level: that which takes away most of the error for its cost. It
-ends when all criteria are decided, when no level states a smaller error of the same truth, or when the
-budget is spent. Nothing is saved, and solids stay as they are.
+A criterion is undecided here too where it was compared with an error that is not known: a finer level may
+state one. Each round calculates one step at its next level: that which takes away most of the error for its
+cost. It ends when all criteria are decided, when no level states a smaller error of the same truth, or when
+the budget is spent. Nothing is saved, and solids stay as they are.
 """
 
 from __future__ import annotations
@@ -52,8 +53,8 @@ class ClimbResult:
 
     @property
     def undecided(self) -> list[str]:
-        """Return the criteria asked for that are still undecided."""
-        return [j.name for j in self.criteria if j.verdict == "undecided" and j.name in self.asked]
+        """Return the criteria asked for that are still undecided, or whose error is still unknown."""
+        return [j.name for j in self.criteria if j.is_open and j.name in self.asked]
 
 
 @dataclass(frozen=True)
@@ -88,10 +89,10 @@ class Climb:
         start = time.monotonic()
         verdicts = Verdicts(self.calculation)
         judgements = {judgement.name: judgement for judgement in verdicts.all()}
-        asked = tuple(n for n, j in judgements.items() if j.verdict == "undecided" and self._is_wanted(n))
+        asked = tuple(n for n, j in judgements.items() if self._is_wanted(n) and _is_open(j, verdicts))
         stopped: Stop | None = None
         while stopped is None:
-            open_now = [name for name in asked if judgements[name].verdict == "undecided"]
+            open_now = [name for name in asked if judgements[name].is_open]
             stopped = self._next(open_now, self.budget - (time.monotonic() - start))
             if stopped is None:
                 judgements |= self._judged(open_now)
@@ -186,13 +187,21 @@ class Climb:
             return None
         self.calculation = finer
         judged = self._judged(open_now).values()
-        decided = sorted(judgement.name for judgement in judged if judgement.verdict != "undecided")
+        decided = sorted(judgement.name for judgement in judged if not judgement.is_open)
         self.trials.append(replace(trial, decided=tuple(decided)))
         return None
 
     def _judged(self, names: Sequence[str]) -> dict[str, Judgement]:
         """Return the criteria of these names, judged again."""
         return {judgement.name: judgement for judgement in Verdicts(self.calculation).some(names)}
+
+
+def _is_open(judgement: Judgement, verdicts: Verdicts) -> bool:
+    """Return whether a criterion is undecided, or follows from a level that states no error."""
+    if judgement.verdict == "undecided" or not judgement.is_open:
+        return judgement.is_open
+    blocks = verdicts.calculation.graph.blocks
+    return any(blocks[one.block].cls.levels for one in verdicts.uncertain(judgement.name))
 
 
 def _largest(error: object) -> float:

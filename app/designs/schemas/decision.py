@@ -27,7 +27,7 @@ class Decision(Answer):
     revision: int = Field(description="the revision that was judged")
     criteria: list[Criterion] = Field(description="all of them, worst first")
     verdict: Verdict | None = Field(None, description="over all criteria; absent where there are none")
-    asked: list[str] = Field(description="the criteria that were undecided, of those asked for")
+    asked: list[str] = Field(description="those asked for that were undecided, or of unknown error")
     undecided: list[str] = Field(description="those that still are")
     tried: list[LevelTrial] = Field(description="what was calculated, in order")
     skipped: list[LevelTrial] = Field(description="levels that were left out, and why")

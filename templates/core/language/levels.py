@@ -261,7 +261,8 @@ class NextLevel:
 def next_levels(template: Template, output: str) -> tuple[NextLevel, ...]:
     """Return the levels that answer these inputs with a smaller stated error of an output, cheapest first.
 
-    Smaller at one point at least, and measured against the same truth as the error at the template's level.
+    Smaller at one point at least, or stated at one point where that of the template's level is not, and
+    measured against the same truth as the error at the template's level.
     The errors are looked up where the template lies at its own level; nothing is calculated at another.
     """
     measured = accuracy(type(template))
@@ -271,7 +272,8 @@ def next_levels(template: Template, output: str) -> tuple[NextLevel, ...]:
     here = measured.of(template, [output])[output]
     others = (level for level in template.ladder() if measured.truth(level, output) == truth)
     errors = {level: measured.expected(template, level, [output])[output] for level in others}
-    return tuple(NextLevel(level, error) for level, error in errors.items() if np.any(error < here))
+    limit = np.where(np.isnan(here), np.inf, here)  # an unknown error is larger than any
+    return tuple(NextLevel(level, error) for level, error in errors.items() if np.any(error < limit))
 
 
 def at_level(template: Template, level: str, where: NDArray[np.bool_] | None = None) -> Template:
