@@ -152,9 +152,9 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         generate_unique_id_function=operation_id,
     )
     for router in ROUTERS:
-        app.include_router(router)
-    app.include_router(health)
-    app.include_router(problems.router)
+        openapi.include(app, router)
+    openapi.include(app, health)
+    openapi.include(app, problems.router)
     problems.install(app)
     openapi.install(app)
     pages.install(app)

@@ -74,6 +74,7 @@ def big_end(step: float = 1.0, sizes: Array | None = None) -> dict[str, Any]:
         "bearing_width": quantity(0.127, "m"),
         "diametral_clearance": quantity(165.0, "um"),
         "dynamic_viscosity": quantity(15.0, "mPa*s"),
+        "oil_supply": "flooded_ends",
     }
 
 

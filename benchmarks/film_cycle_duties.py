@@ -19,7 +19,6 @@ import numpy as np
 from benchmarks.supplied_duties import RandomDuty, random_duty
 from templates.core.arrays import Array
 from templates.physics.orbits.cyclic_film import CycleFilm, Duty
-from templates.physics.orbits.grooved_mobility import lift_of
 from templates.physics.supplied.fed_cycle import UNREPEATED, FedDuty, FedOrbit, fed_film, fed_orbit
 from templates.physics.supplied.feeding import Feeding, feed_under_load
 
@@ -89,8 +88,8 @@ def fed(duty: RandomDuty) -> FedDuty:
     start, extent = pocket.centre - pocket.half_angle, 2 * pocket.half_angle
     share = pocket.half_length if duty.fed_by.endswith("groove") else 0.0
     groove = tuple(np.float64(v) for v in (share, start, extent))
-    lift = lift_of(groove[0], groove[2], np.float64(duty.supply.pressure))
-    return FedDuty(asked, *groove, duty.supply, lift, near_holes=True)
+    pressure = np.float64(duty.supply.pressure)
+    return FedDuty(asked, *groove, pressure, np.array(duty.supply, dtype=object))
 
 
 def under_load(duty: RandomDuty) -> float:
@@ -122,7 +121,7 @@ def compared(kind: str, number: int, seed: int, duty: RandomDuty) -> Line:
     """Return one duty at every level: a line of the record."""
     asked, begin = fed(duty), process_time()
     orbit = fed_orbit("supplied", asked)
-    marched = orbit.marched
+    (marched,) = orbit.marches
     assert marched is not None
     seconds = process_time() - begin
     line = {

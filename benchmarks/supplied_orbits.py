@@ -124,7 +124,7 @@ def near(duty: RandomDuty) -> Row:
     finest, _ = marched(duty, near_holes=(*NEAR_HOLES, FINEST))
     return {
         "least_gap": orbit.least_gap,
-        "mesh_error": orbit.mesh_error,
+        "mesh_error": orbit.error.gap,
         "verdict": orbit.verdict.value,
         "cycles": list(orbit.cycles),
         "seconds": seconds,

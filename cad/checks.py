@@ -1,4 +1,4 @@
-"""Check that a finished solid is the one requested: OpenCASCADE calls wrong solids valid."""
+"""Check that a finished solid is the requested one, because OpenCASCADE calls some wrong solids valid."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _is_close: Callable[..., bool] = partial(isclose, rel_tol=1e-12, abs_tol=_DIMENS
 def check_bodies(
     model: CadModel, parts: Sequence[Part], bodies: Sequence[Body], measured: Sequence[BodyMeasures]
 ) -> None:
-    """Every part is there as often as drawn, and is one valid solid of the volume of its closed form.
+    """Check that each part occurs as often as drawn, as one valid solid with its closed-form volume.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def check_bodies(
 
 
 def check_box(model: CadModel, measured: Box) -> None:
-    """The parts together fill the box that they should.
+    """Check that the parts together fill their declared box.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def check_box(model: CadModel, measured: Box) -> None:
 
 
 def check_overlaps(model: CadModel, bodies: Sequence[Body]) -> None:
-    """No two parts that are mated take the same space.
+    """Check that no two mated parts overlap.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def compared(model: CadModel, bodies: Sequence[Body], report: Report) -> tuple[C
 
 
 def check_clearances(model: CadModel, between: Sequence[Clearance]) -> None:
-    """No fixed part of an assembly takes space of another part, unless the assembly allows it.
+    """Check that no fixed part of an assembly overlaps another part, unless the assembly allows it.
 
     Raises
     ------
@@ -105,7 +105,7 @@ def check_clearances(model: CadModel, between: Sequence[Clearance]) -> None:
 
 
 def between_parts(model: CadModel, between: Sequence[Clearance]) -> dict[str, float]:
-    """The least distance [mm] of each fixed part from all other parts, and the space that it shares [mm³].
+    """Return each fixed part's least distance [mm] from all other parts, and the shared space [mm³].
 
     The distance is 0 where it touches or overlaps one. A part that is compared with none has neither.
     """
@@ -124,7 +124,7 @@ def _interferes(model: CadModel, one: Clearance) -> bool:
 
 
 def check_places(model: CadModel, parts: Sequence[Part], bodies: Sequence[Body]) -> None:
-    """The fixed parts of an assembly stand in the file where they were put.
+    """Check that the fixed parts of an assembly stand in the file where they were placed.
 
     Raises
     ------
@@ -141,7 +141,7 @@ def check_places(model: CadModel, parts: Sequence[Part], bodies: Sequence[Body])
             pairs = zip(rigid(wanted), rigid(place), strict=True)
             if not all(np.allclose(a, b, rtol=1e-12, atol=_DIMENSION_TOLERANCE) for a, b in pairs):
                 raise GeometryError(
-                    "place", f"{part.name} of {model.id} does not stand where it was put", model.inputs
+                    "place", f"{part.name} of {model.id} is not at its specified position", model.inputs
                 )
 
 

@@ -78,9 +78,9 @@ def frame_of(name: str, datum: str, parts: Mapping[str, Part]) -> Location:
     if numbered := _AXIS.fullmatch(place):
         axes = _axes_of(part, middle)
         if int(numbered[1]) > len(axes):
-            raise _no_datum(name, f"{part_name} has {len(axes)} axes of cylinders, and no {place}")
+            raise _no_datum(name, f"{part_name} has {len(axes)} cylinder axes, so there is no {place}")
         return _frame(*axes[int(numbered[1]) - 1])
-    raise _no_datum(name, f"{place!r} is none of low_x, high_x, …, high_z, centre, axis_1, axis_2, …")
+    raise _no_datum(name, f"{place!r} is not one of low_x, high_x, …, high_z, centre, axis_1, axis_2, …")
 
 
 def box_of(solids: Sequence[object]) -> Box:
@@ -89,7 +89,7 @@ def box_of(solids: Sequence[object]) -> Box:
 
 
 def _axes_of(part: Part, middle: Vector) -> list[tuple[Vector, Vector]]:
-    """The point of every axis nearest to the middle of the part's box, and its direction, each once."""
+    """Return each axis once: its point nearest to the middle of the part's box, and its direction."""
     axes = dict[tuple[float, ...], tuple[Vector, Vector]]()
     for cylinder in look(part.solid.moved(part.places[0])).cylinders:
         along = _forward(cylinder.direction)
@@ -100,7 +100,7 @@ def _axes_of(part: Part, middle: Vector) -> list[tuple[Vector, Vector]]:
 
 
 def _forward(direction: Vector) -> Vector:
-    """A direction or its opposite, so that the largest component, of equal ones the first, is positive."""
+    """Return a direction or its opposite, so that its largest component is positive."""
     components = direction.toTuple()
     largest = max(components, key=lambda number: round(abs(number), _DIGITS))
     return direction if largest > 0 else -direction

@@ -57,7 +57,7 @@ class Measures:
 
 
 def properties_of(part: Part, solid: Shape) -> PartProperties:
-    """The properties of a part on its solid, integrated as `cad.inspect.measure` does, to twelve digits."""
+    """Return the properties of a part on its solid, integrated as `cad.inspect.measure` does."""
     material = part.made_of.rpartition(" (")[0] or part.made_of  # without its density
     one = measured(solid)
     return PartProperties(part.name, one.volume, one.area, one.centroid, material, _digits(part.density))

@@ -62,7 +62,10 @@ MADE_BY = f"{KERNEL}, recipe {RECIPE}"
 
 
 def made_by(cls: type[CadModel]) -> str:
-    """The part of a build's key beside model and parameters, for people; of a team's model its code too."""
+    """Return the part of a build's key beside model and parameters, for people.
+
+    For a team's model, include its code.
+    """
     return ", code ".join([MADE_BY, *(code[:12] for code in _code(cls))])
 
 
@@ -86,7 +89,7 @@ def ignore(done: float, what: str) -> None:
 
 
 def as_text(model: CadModel) -> dict[str, str]:
-    """Every parameter, defaults included, as it stands in the STEP file: `{"inner_diameter": "50 mm", …}`.
+    """Return each parameter, defaults included, as the STEP file has it: `{"inner_diameter": "50 mm", …}`.
 
     Twelve digits: what differs less is the same model, and gets the same bytes. A tolerance that the faces of
     the model carry is part of it: `48 mm H7`.
@@ -103,7 +106,7 @@ def as_quantities(model: CadModel) -> dict[str, dict[str, Value]]:
 
 
 def build_key(model: CadModel) -> str:
-    """The cache key of a build of this model: SHA-256 of model, version, parameters, kernel and recipe."""
+    """Return a build's cache key: SHA-256 of model, version, parameters, kernel and recipe."""
     kept: _Canonical | None = vars(model).get(_KEPT)
     return (kept or _canonical(model)).key
 
@@ -233,7 +236,7 @@ def _plain(model: CadModel) -> dict[str, Value]:
 
 
 def _written(model: CadModel, name: str, si: Any) -> tuple[str, dict[str, Value]]:
-    """A parameter as text and as quantity, to twelve digits: free of the last digit's noise of conversion."""
+    """Return a parameter as text and as quantity, rounded to twelve digits."""
     if isinstance(si, str):
         return si, {"value": si}
     meaning = model.inputs[name].meaning

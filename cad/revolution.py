@@ -35,7 +35,7 @@ def turned(points: Sequence[Point], start: float = 270.0, turn: float = 360.0) -
 
 
 def turned_volume(points: Sequence[Point], turn: float = 360.0) -> float:
-    """Volume [mm³] of a closed line through (r, z) turned about z by a turn [deg]: ∮ r²/2 dz by its sides."""
+    """Return the volume [mm³] of a closed line (r, z) turned about z by an angle [deg]: ∮ r²/2 dz."""
     sides = ((a[0] ** 2 + a[0] * b[0] + b[0] ** 2) * (b[1] - a[1]) for a, b in pairwise(points))
     return abs(sum(sides)) / 6 * radians(turn)
 
@@ -80,7 +80,7 @@ def drilled_volume(
 
 
 def sheet_under_arc(radius: float, half_width: float) -> float:
-    """Area [mm²] between a diameter and the arc of a circle above it, within half a width on either side."""
+    """Return the area [mm²] between a diameter and the arc above it, within half a width on either side."""
     x = half_width / radius
     return radius**2 * (x * sqrt(1 - x * x) + asin(x))
 
@@ -95,5 +95,5 @@ def nearest(values: Iterable[float], wanted: float) -> float:
     """
     listed = list(values)
     if not listed:
-        raise LookupError(f"nothing measures {wanted:.9g} mm")
+        raise LookupError(f"no surface measures {wanted:.9g} mm")
     return min(listed, key=lambda value: abs(value - wanted))

@@ -21,7 +21,7 @@ MEASURED = ("volume", "surface area", "centroid")
 def check_statements(
     parts: Sequence[Part], bodies: Sequence[Body], annotations: Annotations, stated: Sequence[Statement]
 ) -> None:
-    """The file states every limit exactly, every material, and what is measured on its bodies.
+    """Check that the file states every limit, every material and the measures of its bodies exactly.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The text of a STEP file, the same for the same parts: what the kernel's writer leaves to chance is set.
+"""The text of a STEP file, the same for the same parts: random parts of the kernel's output are fixed.
 
 Three things in its text tell of the process that wrote it: the time in the header, a counter of assembly
 usages that never restarts, whose digits move the line breaks, and the order of colours, which is that of
@@ -39,7 +39,7 @@ def finished(
     names: Sequence[str] = (),
     properties: Sequence[PartProperties] = (),
 ) -> str:
-    """The kernel's text with our header, and with colours, one for each product in the order of the file.
+    """Return the kernel's text with our header and the products' colours, in the order of the file.
 
     `names` are the parameters of its dimensions and then of its geometric tolerances, in the order of the
     file; `properties` are those of its parts.
@@ -81,7 +81,7 @@ def _append(lines: list[str], token: str) -> None:
 
 
 def _annotated(data: str, names: Sequence[str]) -> str:
-    """The data with parameters as names of dimensions and tolerances, and with the types of deviations."""
+    """Return the data with parameters as names of dimensions, and with the types of deviations."""
     number = iter(names)
     named = _NAMELESS.sub(lambda match: f"{match[1]}'{next(number)}'", data)
     return _DEVIATION.sub(r"\1LENGTH_MEASURE(\2),", named)

@@ -72,22 +72,22 @@ class Version:
 
     @property
     def inputs(self) -> dict[str, str | None]:
-        """The unit of each input; None where it is one of several words."""
+        """Return the unit of each input; None where it is one of several words."""
         return {name: _unit(declared) for name, declared in self.template.inputs.items()}
 
     @property
     def outputs(self) -> dict[str, str | None]:
-        """The unit of each output; None where it is a text."""
+        """Return the unit of each output; None where it is a text."""
         return {name: _unit(declared) for name, declared in self.template.formulas.items()}
 
     @property
     def levels(self) -> tuple[str, ...]:
-        """The levels of fidelity, cheapest first; none where a template has one level only."""
+        """Return the levels of fidelity, cheapest first; none where a template has one level only."""
         return self.template.levels
 
     @property
     def example(self) -> dict[str, Any]:
-        """A valid set of inputs."""
+        """Return a valid set of inputs."""
         return dict(self.template.example)
 
     def __call__(
@@ -175,7 +175,7 @@ class Calculation:
 
     @property
     def warnings(self) -> list[Notice]:
-        """What to know of the results computed so far: the name, a code and a sentence each."""
+        """Return the warnings about the results computed so far: name, code and sentence each."""
         if self._complete:
             return list(self._warnings)
         return [*self._warnings, *criterion_warnings(self.template, self._answers, self._errors)]

@@ -35,7 +35,7 @@ UNCHANGED: Responses = {304: {"description": "as it was when the ETag of If-None
 async def lost(
     sha: str, healing: ArtifactRepair, jobs: Jobs, prefer: str | None, *, same: bool = False
 ) -> Response | None:
-    """None once an artifact is good; the answer in its place if it is still being made again, or cannot be.
+    """Return None once an artifact is good, else the answer in its place while it is made again or cannot be.
 
     `same` asks for these very bytes; otherwise a row that names other bytes by now is good as well.
     """
@@ -59,7 +59,7 @@ async def lost(
 async def _unless_healed(
     sha: str, healing: ArtifactRepair, jobs: Jobs, prefer: str | None
 ) -> Response | None:
-    """None once the job that makes an artifact again has ended well, else what to answer."""
+    """Return None once the job that makes an artifact again has ended well, else the answer to send."""
     if refused := healing.refused(sha):
         return problems.answer(refused)
     job = await to_thread.run_sync(healing.request, sha)

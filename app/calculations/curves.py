@@ -2,8 +2,8 @@
 
 `crank angle [deg], pressure [bar]` or `crank_angle_deg,pressure_bar`. Columns are separated by commas,
 semicolons or tabs, as the header shows; decimal commas are understood where the columns have another
-separator. Blank lines, and lines that begin with #, are skipped. Nothing is stored, nothing is guessed: what
-is not plain is refused with its line.
+separator. Blank lines, and lines that begin with #, are skipped. Nothing is stored and nothing is guessed: an
+unclear cell is refused with its line number.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def read_curves(body: bytes) -> dict[str, JsonObject]:
     if faults:
         raise InvalidInputs(faults)
     if not rows:
-        raise _wrong("rows", "empty", "there is a header but no row below it")
+        raise _wrong("rows", "empty", "the table has a header but no rows")
     values = zip(*rows, strict=True)
     return {c.name: {"value": list(v), "unit": c.unit} for c, v in zip(columns, values, strict=True)}
 

@@ -101,7 +101,7 @@ def check(cls: type[Template], question: Question) -> None:
 
 
 def checked(source: Source, question: Question) -> None:
-    """As `check`, in a calculation process."""
+    """Check a request as `check` does, in a calculation process."""
     check(loaded(source), question)
 
 

@@ -84,7 +84,7 @@ class Catalogues:
         return self._drafts(id, version)
 
     async def tried(self, id: str, version: int) -> type[Template]:
-        """As `to_try`, in the event loop: a thread reads the draft.
+        """Return what `to_try` returns, from the event loop: a thread reads the draft.
 
         Raises
         ------

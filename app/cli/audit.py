@@ -75,7 +75,7 @@ class CannotRead(click.ClickException):
 
 @contextmanager
 def _reading(data: Path | None) -> Iterator[Session]:
-    """A snapshot of the database that the settings name."""
+    """Open a snapshot of the database that the settings name."""
     settings = Settings(data=data) if data else Settings()
     try:
         engine = reading_engine(_url(settings))

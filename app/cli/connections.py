@@ -31,7 +31,7 @@ data_option = click.option(
 
 @contextmanager
 def connected(url: str | None, data: Path | None) -> Iterator[Client]:
-    """A client of the service that was named, or of one that is started on a data folder."""
+    """Open a client of the named service, or of one that is started on a data folder."""
     place = url or f"http://127.0.0.1:{Settings().port}"
     try:
         if data is not None:

@@ -64,7 +64,7 @@ LOADED = {"steps": {"film": {"inputs": {"radial_load": "30 kN"}}}, "note": "only
 
 @contextmanager
 def service(data: Path, *, err: bool = False, key: str | None = None) -> Iterator[Client]:
-    """A service in a process of its own on a free port, ended when done; `err` keeps the output free.
+    """Run a service in a process of its own on a free port and end it when done; `err` keeps the output free.
 
     The client sends a key if one is given.
     """

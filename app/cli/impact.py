@@ -56,7 +56,7 @@ def impact_command(
 
 
 def _print(impact: Impact) -> None:
-    """The counts, then a line for each design."""
+    """Print the counts, then a line for each design."""
     counts = f"{impact.moved} move, {impact.refused} refuse it, {impact.unchanged} stay as they are"
     solids = f", {impact.needs_solids} need solids" if impact.needs_solids else ""
     archived = f" ({impact.archived} archived ones are left out)" if impact.archived else ""

@@ -167,7 +167,7 @@ def _moment(span: str | None) -> datetime | None:
 
 @contextmanager
 def opened(data: Path | None) -> Iterator[Identity]:
-    """Principals and keys in the database of a data folder or of the settings, be it served or not."""
+    """Open the principals and keys in the database of a data folder or of the settings, served or not."""
     settings = Settings() if data is None else Settings(data=data)
     try:
         database = Database(_prepared(settings))

@@ -86,7 +86,7 @@ def import_command(files: tuple[Path, ...], author: str | None, url: str | None,
 def import_sheet_command(
     ctx: click.Context, file: Path, id: str | None, url: str | None, data: Path | None
 ) -> None:
-    """Import FILE, a sheet of Mathcad Prime (.mcdx) or Mathcad 11 to 15 (.xmcd), as a draft.
+    """Import FILE, a sheet of Mathcad Prime (.mcdx) or Mathcad 11 to 15 (.xmcd, .xmcdz), as a draft.
 
     Prints what became of its regions. The exit code is 1 if some of them forbid a release.
     """
@@ -154,7 +154,9 @@ def review_command(id: str, reviewer: str, digest: str, url: str | None, data: P
     with connected(url, data) as client:
         sheet = client.read_worksheet(id)
         if len(digest) < 12 or not (sheet.digest or "").startswith(digest):
-            raise click.ClickException(f"{id} has digest {sheet.digest}, not {digest}: read its text again")
+            raise click.ClickException(
+                f"{id} has digest {sheet.digest}, not {digest}: read its current text first"
+            )
         _say(client.review_worksheet(sheet, reviewer))
 
 

@@ -57,7 +57,7 @@ def create_worksheet(
 def import_worksheet(
     id: str, content: bytes, file: str, *, key: str | None = None, on_progress: Progress | None = None
 ) -> Exchange[Sheet]:
-    """Return the draft that a sheet of Mathcad (.mcdx, .xmcd) becomes, once it has been read.
+    """Return the draft that a sheet of Mathcad (.mcdx, .xmcd, .xmcdz) becomes, once it has been read.
 
     Raises
     ------

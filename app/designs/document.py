@@ -1,4 +1,4 @@
-"""A design as its user wrote it: parameters, steps, models, iterations. This is what a revision keeps.
+"""A design as its user wrote it: parameters, steps, models, iterations. A revision stores this document.
 
 Values stay as typed: a quantity, a relation that begins with `=`, or a list of both.
 """
@@ -62,7 +62,7 @@ class Step(Bounded):
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
-        """No limits are not mentioned: a document of before there were any is the same document."""
+        """Leave out empty limits, so that a document without limits has one form."""
         return _without_nothing(plain(self), "limits")
 
 
@@ -80,7 +80,7 @@ class Model(Bounded):
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
-        """No analyses are not mentioned: a document of before there were any is the same document."""
+        """Leave out empty analyses, so that a document without analyses has one form."""
         return _without_nothing(plain(self), "analyses")
 
 
@@ -150,13 +150,13 @@ class Document(Bounded):
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
-        """No criteria or variants are not mentioned: a document of before there were any is the same."""
+        """Leave out empty criteria and variants, so that a document without them has one form."""
         return _without_nothing(plain(self), "criteria", "variants")
 
     @model_validator(mode="before")
     @classmethod
     def one_model(cls, raw: Raw) -> Raw:
-        """`model` is short for `models` with one entry of that name."""
+        """Replace `model` by `models` with one entry of that name."""
         if not isinstance(raw, Mapping):
             return raw
         if "model" in raw and "models" in raw:
@@ -170,7 +170,7 @@ class Document(Bounded):
 
     @model_validator(mode="after")
     def names_differ(self) -> Self:
-        """Parameters, steps and models share one space of names."""
+        """Require that parameters, steps and models have different names."""
         count = Counter(chain(self.parameters, self.steps, self.models))
         twice = sorted(name for name, times in count.items() if times > 1)
         if twice:

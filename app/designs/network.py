@@ -1,8 +1,8 @@
-"""The network of a design: which value follows from which.
+"""The network of a design: which value depends on which.
 
 Its nodes are cells, which are the values that a user wrote (`scale`, `film.radial_load`); blocks, which are
-steps and models; solids, which are models when built; and analyses of solids. A block follows from its cells,
-and its outputs follow from it. What is measured follows from the solid.
+steps and models; solids, which are models when built; and analyses of solids. A block depends on its cells,
+and its outputs depend on the block. Measurements depend on the solid.
 
 Criteria name values of the network. A name without a dot is a criterion of the design itself, which needs
 `require`. `film.pressure` is the criterion `pressure` of the template of step `film`: the design may replace
@@ -302,7 +302,7 @@ def read_demands(document: Document, blocks: Mapping[str, Block]) -> tuple[dict[
 
 
 def _is_unread(name: str, document: Document, blocks: Mapping[str, Block]) -> bool:
-    """True if a criterion is one of a step whose template is not known, which is a fault of its own."""
+    """Return whether a criterion belongs to a step of an unknown template, which is a fault of its own."""
     criterion = Reference.parse(name)
     is_of_step = criterion.output is not None and criterion.block in document.steps
     return is_of_step and criterion.block not in blocks

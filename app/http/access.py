@@ -1,18 +1,18 @@
 """Who sends a request: its principal, its client, and the role that its route needs.
 
-Every request acts for the principal whose key or session it carries. Limits and turns are counted by client:
-who has signed in is the client as a principal. Where nothing asks for a key, a client is the header
-`Crankwright-Client`, else the session of a page, else the address that the request came from.
+Every request acts for the principal whose key or session it carries. Limits and turns are counted by client.
+If keys are in use, the client is the principal. Otherwise it is the header `Crankwright-Client`, else the
+session of a page, else the address that the request came from.
 
-The role that a route needs is that of its declaration, else it follows from its method; it is checked before
-the route runs. A router or a route declares by `dependencies=[needs("author")]`; of several declarations the
-last one counts.
+A route declares the role that it needs; without a declaration its HTTP method decides. The role is checked
+before the route runs. A router or a route declares by `dependencies=[needs("author")]`; of several
+declarations the last one counts.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from typing import Annotated
@@ -189,7 +189,7 @@ class Needs:
     is_public: bool = False
 
     async def __call__(self) -> None:
-        """As a dependency of a route it does nothing: the gate has read it."""
+        """Do nothing as a dependency of a route: the gate has read it."""
 
     def check(self) -> None:
         """Let the acting principal pass.
@@ -204,7 +204,7 @@ class Needs:
         who = acting()
         if who is ANONYMOUS:
             raise NotSignedIn
-        if self.roles and not any(who.may(role) for role in self.roles):
+        if self.roles and who.included.isdisjoint(self.roles):
             raise RoleNeeded(who, self.roles)
 
 
@@ -256,25 +256,7 @@ class Guarded:
 
 def install(app: FastAPI) -> None:
     """Guard all routes that an app has by now, and paths that it has not. Routes are shared by all apps."""
-    for route in routes_of(app):
+    for route in app.router.routes:
         if not isinstance(route.handle, Guarded):
             route.handle = Guarded(route.handle, needs_of(route))  # type: ignore[method-assign]
     app.router.default = Guarded(app.router.default, SIGNED_IN)
-
-
-def routes_of(app: FastAPI) -> list[BaseRoute]:
-    """Return all routes of an app, those of its routers included.
-
-    `fastapi.routing.iter_route_contexts` gives the same, but prepares each route for requests: 0.3 s at the
-    start that belong to the first requests. A test compares the two.
-    """
-    return list(_within(app.router.routes))
-
-
-def _within(routes: Iterable[BaseRoute]) -> Iterator[BaseRoute]:
-    for route in routes:
-        router = getattr(route, "original_router", None)  # of an included router, which FastAPI keeps whole
-        if router is None:
-            yield route
-        else:
-            yield from _within(router.routes)

@@ -25,7 +25,7 @@ class _Sink:
         return len(part)
 
     def flush(self) -> None:
-        """There is nothing to flush."""
+        """Do nothing: there is nothing to flush."""
 
     def taken(self) -> bytes:
         """Return the bytes written since the last call, and empty the stream."""

@@ -41,7 +41,7 @@ def is_at_hand(if_none_match: str | None, etag: str) -> bool:
 
 
 def unchanged(headers: Mapping[str, str]) -> Response:
-    """Return 304, with the headers that a 200 would have but for those of its body."""
+    """Return 304 with the headers of a 200, except those about its body."""
     kept = {name: value for name, value in headers.items() if name != "Content-Disposition"}
     return Response(status_code=304, headers=kept)
 

@@ -1,7 +1,7 @@
-"""Connections that nobody holds for ever: uvicorn's protocol, with limits on heads and on slow clients.
+"""Limits on connections: uvicorn's protocol with limits on request headers and on slow clients.
 
-uvicorn waits without limit for the head of a request, and until a client has read its answer. It reads a
-head of any length, and copies all of it again whenever another piece comes in.
+uvicorn sets no time limit on receiving request headers or on a client that reads its answer slowly. It
+accepts headers of any length, and copies all of them again whenever another piece arrives.
 
 From a target that is no mere path, such as `GET http://evil.example/healthz`, uvicorn drops the host and
 serves the path, although RFC 9112 wants that host to count instead of the header `Host`. No client of this
@@ -117,27 +117,27 @@ class TimedProtocol(HttpToolsProtocol):
             self._head_timer = self.loop.call_later(self.limits.header_seconds, self._head_is_late)
 
     def _unsupported_upgrade_warning(self) -> None:
-        """Upgrades are ignored, which HTTP permits; uvicorn would advise to install something."""
+        """Do not warn: upgrades are ignored, which HTTP permits."""
 
     def on_message_begin(self) -> None:
-        """Called by the parser at the first byte of a request."""
+        """Note that a request begins; the parser calls this at its first byte."""
         self._in_head = True
         super().on_message_begin()
 
     def on_headers_complete(self) -> None:
-        """Called by the parser at the end of a head."""
+        """Note that a head is complete; the parser calls this at its end."""
         self._in_head, self._pending = False, 0
         if not self.url.startswith(b"/"):
             self.scope["extensions"] = {_NO_PATH: {}}
         super().on_headers_complete()
 
     def on_body(self, body: bytes) -> None:
-        """Called by the parser at each piece of a body."""
+        """Take a piece of a body; the parser calls this for each."""
         self._pending = 0
         super().on_body(body)
 
     def on_message_complete(self) -> None:
-        """Called by the parser at the end of a request."""
+        """Note that a request is complete; the parser calls this at its end."""
         self._pending = 0
         self.scope[WHOLE] = True  # type: ignore[literal-required]
         super().on_message_complete()
@@ -177,12 +177,12 @@ class TimedProtocol(HttpToolsProtocol):
         self.transport.close()
 
     def pause_writing(self) -> None:
-        """Called by the transport when the client does not read what is sent."""
+        """Pause writing; the transport calls this when the client does not read."""
         super().pause_writing()
         self._watch_reader()
 
     def resume_writing(self) -> None:
-        """Called by the transport when the client has read most of it."""
+        """Resume writing; the transport calls this when the client has read most."""
         super().resume_writing()
         if self._write_timer is not None:
             self._write_timer.cancel()

@@ -1,10 +1,10 @@
-"""The outermost layer of the application: no other site reads, writes or frames anything through a browser.
+"""The outermost layer of the application: it keeps other sites from reading, writing or framing pages.
 
 Three rules, before any route (docs/decisions/018-hosts-and-origins.md has the reasons):
 
 1. The header `Host` names a host that the service answers to.
-2. What changes something comes from the service's own pages, or from no page at all. Other sites may link to
-   a page; they may not load anything from here.
+2. A request that changes something must come from the service's own pages, or from no page at all. Other
+   sites may link to a page; they may not load anything from here.
 3. Every answer forbids sniffing, framing and reading by other origins.
 """
 
@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterable
+from functools import lru_cache
 
 from fastapi import FastAPI, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -124,13 +125,7 @@ def check(scope: Scope, hosts: Hosts) -> None:
     """
     looked = _looked_at(scope["headers"])
     scheme = SCHEMES[scope["scheme"]]
-    asked = _host(looked, scope)
-    if not hosts.allows(asked, scheme, scope.get("server")):
-        name = f"[{asked.name}]" if ":" in asked.name else asked.name
-        raise HostNotAllowed(
-            f"this service does not answer to the host {name!r}; if that is its name, the operator allows it "
-            f"by the setting {SETTING}, a JSON list: {SETTING}='[\"{name}\"]'"
-        )
+    asked = _allowed(hosts, _host(looked, scope), scheme, scope.get("server"))
     if scope.get("method") in SAFE:
         _check_link(looked)
         if b"upgrade" in looked:  # a WebSocket: browsers let pages of any site try one
@@ -148,15 +143,34 @@ def _looked_at(headers: Iterable[tuple[bytes, bytes]]) -> Looked:
     return looked
 
 
-def _host(looked: Looked, scope: Scope) -> Authority:
+def _host(looked: Looked, scope: Scope) -> bytes:
+    """Return the header that names the host."""
     given = looked.get(b"host", [])
     if len(given) != 1:
         raise BadHost(f"send exactly one header Host; there are {len(given)}")
     if not is_mere_path(scope):
         raise BadHost("send the path alone as the target of the request, such as /healthz, without a host")
-    asked = parse(given[0].decode("latin-1"))
+    if len(given[0]) > LONGEST:
+        raise BadHost(_no_host(given[0]))
+    return given[0]
+
+
+def _no_host(given: bytes) -> str:
+    return f"the header Host holds no host with or without a port: {_shown(given)}"
+
+
+@lru_cache(maxsize=1024)  # of short headers only; an error is not kept
+def _allowed(hosts: Hosts, given: bytes, scheme: str, server: tuple[str, int | None] | None) -> Authority:
+    """Return the host that a request names, to which the service answers."""
+    asked = parse(given.decode("latin-1"))
     if asked is None:
-        raise BadHost(f"the header Host holds no host with or without a port: {_shown(given[0])}")
+        raise BadHost(_no_host(given))
+    if not hosts.allows(asked, scheme, server):
+        name = f"[{asked.name}]" if ":" in asked.name else asked.name
+        raise HostNotAllowed(
+            f"this service does not answer to the host {name!r}; if that is its name, the operator allows it "
+            f"by the setting {SETTING}, a JSON list: {SETTING}='[\"{name}\"]'"
+        )
     return asked
 
 

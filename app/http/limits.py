@@ -128,7 +128,7 @@ class RequestLimits:
         return BodyTooLarge(f"a body may have at most {self.body.size / 2**20:g} MiB")
 
     def _counted(self, receive: Receive) -> Receive:
-        """For a body of unknown length: raise once it grows beyond the limit."""
+        """Raise once a body of unknown length grows beyond the limit."""
         size = 0
 
         async def counted() -> Message:

@@ -1,8 +1,8 @@
-"""The description of the interface at /openapi.json, made to say what the service does, and its page /docs.
+"""The OpenAPI document at /openapi.json, corrected to match the service, and its page /docs.
 
-FastAPI derives it from the routes. It is wrong in four things, which are corrected here: a parameter of
-a path, query or header has no null; a change needs If-Match; a name that does not fit the pattern of names is
-refused; `itemSchema` is OpenAPI 3.2. Some things are put so that generators of clients understand them.
+FastAPI derives it from the routes. It is wrong in four things, which are corrected here: a parameter of a
+path, query or header has no null; a change needs If-Match; a name that does not fit the pattern of names is
+refused; `itemSchema` is OpenAPI 3.2. Some parts are written in the form that client generators understand.
 Problems that follow from what an operation takes are added here too; a route declares those of its own.
 
 `Any` is what FastAPI's dictionaries hold: parts of a description, of any depth.
@@ -16,7 +16,7 @@ from base64 import b64encode
 from collections.abc import Iterator
 from typing import Any
 
-from fastapi import FastAPI
+from fastapi import APIRouter, FastAPI
 from fastapi.openapi.docs import get_swagger_ui_html
 from fastapi.responses import HTMLResponse
 from fastapi.routing import APIRoute
@@ -37,6 +37,18 @@ def operation_id(route: APIRoute) -> str:
         return route.name
     ends = (("/revisions/{number}", "_of_revision"), ("/models/{name}", "_of_model"), (".{kind}", "_as"))
     return route.name + "".join(end for part, end in ends if part in route.path)
+
+
+def include(app: FastAPI, router: APIRouter) -> None:
+    """Serve the routes of a router as routes of the app itself, with the app's responses and names.
+
+    FastAPI keeps a router that it includes whole, and looks through it twice for each request.
+    """
+    for route in router.routes:
+        if isinstance(route, APIRoute):
+            route.responses = {**app.router.responses, **route.responses}
+            route.unique_id = route.operation_id or operation_id(route)
+        app.router.routes.append(route)
 
 
 def describe_interface(app: FastAPI) -> dict[str, Any]:
@@ -81,7 +93,7 @@ def _drop_item_schemas(operation: dict[str, Any]) -> None:
 
 
 def _drop_nulls(operation: dict[str, Any]) -> None:
-    """An optional parameter may be absent; there is no way to write null in a URL or a header."""
+    """Remove null from optional parameters: a URL or header cannot contain null."""
     for parameter in operation.get("parameters", ()):
         schema = parameter["schema"]
         kinds = [kind for kind in schema.get("anyOf", ()) if kind != {"type": "null"}]
@@ -91,7 +103,7 @@ def _drop_nulls(operation: dict[str, Any]) -> None:
 
 
 def _declare_preconditions(method: str, operation: dict[str, Any]) -> None:
-    """If-Match is needed for PATCH and PUT and compared wherever it is sent."""
+    """Declare If-Match: PATCH and PUT need it, and every route compares it."""
     matching = [one for one in operation.get("parameters", ()) if one["name"] == "if-match"]
     if not matching:
         return

@@ -94,7 +94,7 @@ def method_of(scope: Scope) -> str:
 
 
 def _log(scope: Scope, status: int, seconds: float) -> None:
-    """One line; without a status, the client has gone before there was an answer."""
+    """Write one line; without a status, the client left before there was an answer."""
     path = scope["path"][:_LONGEST]
     about = {
         "client": logs.without_secret(from_whom(scope)),

@@ -1,4 +1,4 @@
-"""Requirements for every request: a small body, valid JSON, a precondition on changes.
+"""Requirements on every request: a bounded body, valid JSON, a precondition on changes.
 
 `StrictRoute` replaces FastAPI's lenient reading of bodies: pydantic's parser refuses lone surrogates and deep
 nesting, and nothing is guessed from a missing or wrong content type. `PlainRoute` reads just as strictly, and
@@ -21,9 +21,10 @@ from pydantic_core import from_json
 from starlette.exceptions import HTTPException
 from starlette.types import Receive, Scope, Send
 
+from app.http.openapi import operation_id
 from app.http.pace import Pace
 from app.plain import Json
-from app.workers.pieces import PIECE, Pieces
+from app.workers.pieces import PIECE
 from templates.core.errors import Fault, InvalidInputs, plain
 
 if TYPE_CHECKING:
@@ -33,7 +34,13 @@ JSON_TYPES = {"application/json"}
 PATCH_TYPES = {"application/json", "application/merge-patch+json"}
 STEP_TYPES = ("model/step", "application/step", "application/p21")
 """The registered name of STEP's clear text, and two that were in use before it."""
-SHEET_TYPES = {"application/octet-stream", "application/zip", "application/xml", "text/xml"}
+SHEET_TYPES = {
+    "application/octet-stream",
+    "application/zip",
+    "application/gzip",
+    "application/xml",
+    "text/xml",
+}
 """Media types of a sheet of Mathcad: its own ones are not registered."""
 MODEL_TYPES = {"application/octet-stream", "application/zip", "model/step"}
 """Media types of a model: FreeCAD's own one is not registered."""
@@ -86,16 +93,17 @@ class StrictRequest(Request):
         """Return the pace of all large bodies and answers of the app."""
         return self.app.state.pace  # type: ignore[no-any-return]
 
-    async def pieces(self) -> Pieces:
+    async def parts(self) -> tuple[bytes, ...]:
         """Return the body as it came."""
-        if not hasattr(self, "_pieces"):
-            self._pieces = Pieces(tuple([part async for part in self._received()]))
-        return self._pieces
+        if not hasattr(self, "_parts"):
+            self._parts = tuple([part async for part in self._received()])
+        return self._parts
 
     async def body(self) -> bytes:
-        """Return the body as one object; to join a large one holds the interpreter, see `pieces`."""
+        """Return the body as one object; to join a large one holds the interpreter, see `parts`."""
         if not hasattr(self, "_body"):
-            self._body = (await self.pieces()).joined()
+            parts = await self.parts()
+            self._body = parts[0] if len(parts) == 1 else b"".join(parts)
         return self._body
 
     async def discard(self) -> None:
@@ -135,7 +143,8 @@ class StrictRoute(APIRoute):
     """
 
     def __init__(self, path: str, endpoint: Callable[..., object], **options: Any) -> None:  # as FastAPI
-        super().__init__(path, endpoint, **{**options, "response_model_exclude_unset": True})
+        own = {"response_model_exclude_unset": True, "generate_unique_id_function": operation_id}
+        super().__init__(path, endpoint, **{**options, **own})
         self.takes = frozenset(self.methods or ())
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[object, None, Response]]:
@@ -289,6 +298,8 @@ def check_type(request: Request, allowed: set[str], error: type[HttpError] = Not
     HttpError
         The error given, if there is a body, and its type is another or is not named.
     """
+    if request.headers.get("content-type") in allowed:
+        return
     length = request.headers.get("content-length")
     if length in (None, "0") and "transfer-encoding" not in request.headers:
         return  # an empty body is judged by what the route needs
@@ -349,10 +360,12 @@ async def _check_intricacy(request: StrictRequest) -> bool:
     """
     brackets = quotes = 0
     is_nul_possible, end = False, b""
-    for number, piece in enumerate(await request.pieces()):
+    parts = await request.parts()
+    if len(parts) == 1 and len(parts[0]) <= MOST_BRACKETS:  # it cannot have as many
+        return may_have_nul(parts[0])
+    for number, part in enumerate(parts):
         if number:
             await request.pace.step()
-        part = bytes(piece)
         brackets += part.count(b"[") + part.count(b"{")
         quotes += part.count(b'"')
         is_nul_possible = is_nul_possible or may_have_nul(part) or may_have_nul(end + part[:5])

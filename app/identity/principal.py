@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 Role = Literal["viewer", "author", "checker", "admin"]
@@ -35,9 +36,14 @@ class Principal:
     roles: frozenset[Role]
     key: str | None = None
 
+    @cached_property
+    def included(self) -> frozenset[Role]:
+        """Return the roles with those that they include."""
+        return frozenset(role for own in self.roles for role in INCLUDED[own])
+
     def may(self, role: Role) -> bool:
         """Return whether one of the roles includes a given role."""
-        return any(role in INCLUDED[own] for own in self.roles)
+        return role in self.included
 
 
 LOCAL = Principal("local", "local", "person", frozenset(ROLES))

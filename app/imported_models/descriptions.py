@@ -48,7 +48,7 @@ class Deadline:
 
     @contextmanager
     def kept(self) -> Iterator[None]:
-        """Whatever does not end in what is left has exceeded the whole."""
+        """Raise `DeadlineExceeded` with the deadline of the whole import, not with the time that was left."""
         try:
             yield
         except DeadlineExceeded:
@@ -110,7 +110,7 @@ def described_creo(
     for one in described.parameters:
         if one.role and not shows(one, sizes):
             raise UnreadableModel(
-                "check", f"{one.name}: no {one.role} of {one.value:g} {one.unit} on the solid"
+                "check", f"{one.name}: the solid has no {one.role} of {one.value:g} {one.unit}"
             )
     return described
 

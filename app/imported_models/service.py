@@ -56,7 +56,7 @@ class ModelImports:
         self.programs, self.registry = programs, registry
 
     def begin(self, content: bytes, id: str, file: str, once: Once) -> str:
-        """Queue the import of a file as a model; the id of the job.
+        """Queue the import of a file as a model and return the id of the job.
 
         Raises
         ------

@@ -202,7 +202,7 @@ def _plain(entry: tarfile.TarInfo) -> tarfile.TarInfo:
 
 @contextmanager
 def temporary(target: Path, what: str) -> Iterator[Path]:
-    """A file beside the target that is gone in the end, unless it took the target's name."""
+    """Create a file beside the target, and delete it in the end unless it took the target's name."""
     folder = target.absolute().parent
     descriptor, name = tempfile.mkstemp(dir=folder, prefix=f".{target.name}.", suffix=f".{what}")
     os.close(descriptor)

@@ -56,7 +56,7 @@ def is_in_use(data: Path) -> bool:
 
 @contextmanager
 def reading(path: Path) -> Iterator[sqlite3.Connection]:
-    """A connection that reads one snapshot and cannot write; a service may use the file meanwhile."""
+    """Open a connection that reads one snapshot and cannot write; a service may use the file meanwhile."""
     connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=rw", uri=True, isolation_level=None)
     try:
         for pragma in ("busy_timeout = 10000", "query_only = on"):

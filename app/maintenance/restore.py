@@ -84,7 +84,7 @@ def _refuse_content(data: Path) -> None:
 
 @contextmanager
 def _sibling(data: Path) -> Iterator[Path]:
-    """A folder beside the wanted one, gone in the end unless it took that one's name."""
+    """Create a folder beside the wanted one, and delete it in the end unless it took that one's name."""
     parent = data.absolute().parent
     parent.mkdir(parents=True, exist_ok=True)
     folder = Path(tempfile.mkdtemp(dir=parent, prefix=f".{data.name}.restoring-"))

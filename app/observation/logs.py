@@ -1,7 +1,7 @@
 """Structured logs on standard error, as text or JSON lines, each with the id of the request behind it.
 
-Bodies, queries, cookies and keys are never logged. A thread of its own writes: a terminal that does not take
-the lines delays nobody, and what is beyond the room of the queue is dropped and counted.
+Bodies, queries, cookies and keys are never logged. A separate thread writes the lines, so a blocked terminal
+delays nobody. Lines that exceed the queue are dropped and counted.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def without_secret(client: str) -> str:
 
 @contextmanager
 def caused(cause: str) -> Iterator[None]:
-    """Within it, lines carry the id of the request that has queued a job; the job's row holds its cause."""
+    """Add to lines the id of the request that queued a job; the job's row holds its cause."""
     request, _, trace = cause.partition(" ")
     tokens = REQUEST_ID.set(request), TRACE.set(trace)
     try:
@@ -112,7 +112,7 @@ class QueueHandler(logging.Handler):
         self.dropped = 0
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Never waits."""
+        """Queue a line without waiting."""
         if not hasattr(record, "request_id"):
             record.request_id = REQUEST_ID.get()
         try:

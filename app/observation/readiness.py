@@ -1,4 +1,4 @@
-"""`/readyz`: can the service do its work now? It writes, looks at free space, job processes and a file store.
+"""`/readyz`: whether database writes, free space, job processes and the file store allow work now.
 
 The answer takes the same time however many designs there are, and comes even if the writer hangs.
 """
@@ -98,7 +98,7 @@ def _look_at(writing: asyncio.Future[None]) -> None:
 
 
 def _touch(session: Session) -> None:
-    """A write that is synced and changes nothing."""
+    """Write a row that changes nothing, synced to disk."""
     session.execute(update(CounterRow).where(CounterRow.name == "operation").values(value=CounterRow.value))
 
 

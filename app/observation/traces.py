@@ -80,7 +80,7 @@ class Traces:
 
     @contextmanager
     def span(self, name: str, about: About, kind: SpanKind = SpanKind.INTERNAL) -> Iterator[Span]:
-        """A span within the present one; what begins inside belongs to it."""
+        """Open a span within the current one; spans that begin inside belong to it."""
         span = self._begun(name, about, kind)
         token = logs.TRACE.set(_carried(span))
         try:

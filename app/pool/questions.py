@@ -1,9 +1,9 @@
 """A question is answered at once if that is cheap, else by a job.
 
 `Questions` does this for evaluations, solutions and worksheets of templates, and for previews, decisions,
-solutions, analyses of tolerances, single variants and the impact of versions. What was begun for a client who
-waits no longer goes on: the job takes it over and keeps the answer as an artifact, and the client comes back
-for it. A job is known by the key of its question, so an equal question finds its job, or the answer itself.
+solutions, analyses of tolerances, single variants and the impact of versions. If a client stops waiting, a
+job takes over the running calculation and stores the answer as an artifact, which the client fetches later. A
+job is known by the key of its question, so an equal question finds its job, or the answer itself.
 """
 
 from __future__ import annotations
@@ -166,7 +166,7 @@ class Questions(Generic[Q, A]):
         return reply.answer, None if reply.rest is None else self._queued(reply.rest, key, client)
 
     def in_parts(self, question: Q, client: str) -> tuple[A, str | None]:
-        """As `answer`, of a kind whose answer has parts: it is never empty.
+        """Answer as `answer` does, for a kind whose answer has parts and is never empty.
 
         Raises
         ------

@@ -92,7 +92,7 @@ class Artifacts(Protocol):
         ...
 
     def claim(self, owner: str) -> str:
-        """Have the store belong to an owner, if it has none; return whose it is."""
+        """Claim the store for an owner, if it has none; return its owner."""
         ...
 
     def read_note(self, name: str) -> str | None:
@@ -100,7 +100,7 @@ class Artifacts(Protocol):
         ...
 
     def write_note(self, name: str, text: str) -> None:
-        """Have the store say something under a name, in place of what it said."""
+        """Write a note of the store under a name, in place of the one before."""
         ...
 
     def probe(self) -> None:
@@ -221,7 +221,7 @@ class ArtifactStore:
                     yield StoredFile(path.name, seen.st_size, seen.st_mtime)
 
     def claim(self, owner: str) -> str:
-        """Have the folder belong to an owner, if it has none; return whose it is."""
+        """Claim the folder for an owner, if it has none; return its owner."""
         descriptor, temporary = tempfile.mkstemp(dir=self.folder, prefix=TEMPORARY)
         try:
             with os.fdopen(descriptor, "w") as file:
@@ -242,7 +242,7 @@ class ArtifactStore:
             return None
 
     def write_note(self, name: str, text: str) -> None:
-        """Have the folder say something under a name, durably."""
+        """Write a note of the folder under a name, durably."""
         with self._changing.putting():
             write_whole(self.folder / name, [text.encode()], self._clear, is_durable=self._is_durable)
         sync_folder(self.folder)

@@ -1,6 +1,6 @@
 """Files written whole and durably: no reader sees half of one, and a crash of the machine loses none.
 
-Two locks keep what removes a file apart from what puts one, in one process or among several.
+Two locks separate the removal of a file from its creation, within one process and among several.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class OwnLock:
 
     @contextmanager
     def putting(self) -> Iterator[None]:
-        """While a file is put or renewed."""
+        """Hold the lock while a file is put or renewed."""
         with self._lock:
             yield
 
@@ -41,13 +41,13 @@ class SharedLock:
 
     @contextmanager
     def putting(self) -> Iterator[None]:
-        """While a file is put or renewed."""
+        """Hold the lock while a file is put or renewed."""
         with self._held(fcntl.LOCK_SH):
             yield
 
     @contextmanager
     def removing(self) -> Iterator[None]:
-        """While a file is looked at and then deleted or set aside."""
+        """Hold the lock while a file is examined and then deleted or set aside."""
         with self._held(fcntl.LOCK_EX):
             yield
 

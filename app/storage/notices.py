@@ -1,8 +1,8 @@
 """Notifications between the servers of a team: PostgreSQL's NOTIFY, sent after the commit.
 
-A hint is a short text, such as the topic of an event or `queue:regenerate`. Rows are the truth: a lost hint
-costs the time to the next look at the database, not what it was about. NOTIFY within a transaction would hold
-a lock of the whole database until its commit is done: see docs/decisions/050-events-are-rows.md.
+A hint is a short text, such as the topic of an event or `queue:regenerate`. Rows are authoritative: a lost
+hint delays its news until the next poll of the database, but loses nothing. NOTIFY within a transaction would
+hold a lock of the whole database until its commit is done: see docs/decisions/050-events-are-rows.md.
 """
 
 from __future__ import annotations
@@ -120,7 +120,7 @@ class Notices:
             pause = min(2 * pause, LONGEST)
 
     def _attend(self, connection: psycopg.Connection) -> None:
-        """Hear what comes, until the connection is lost."""
+        """Receive notices until the connection is lost."""
         looked = -self._poll
         while not self._stopping.is_set():
             if time.monotonic() - looked >= self._poll:

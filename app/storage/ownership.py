@@ -24,7 +24,7 @@ NAME = "database"  # of the row that holds the identity
 
 
 def claim(database: Database, store: Artifacts) -> None:
-    """Have a store belong to a database, if it belongs to none.
+    """Claim a store for a database, if it belongs to none.
 
     Raises
     ------

@@ -42,7 +42,7 @@ class Vary(Bounded):
 
     @model_validator(mode="after")
     def one_of_both(self) -> Self:
-        """Either bounds or a list."""
+        """Require either bounds or a list."""
         if (self.between is None) == (self.values is None):
             raise ValueError("give either `between`, two bounds, or `values`, a list")
         return self

@@ -149,7 +149,7 @@ class Run:
         self._all(range(self.plan.chunks, self.plan.chunks - (-len(rows) // size)), started)
 
     def _all(self, numbers: Iterable[int], started: Started) -> None:
-        """Have chunks calculated that are not yet, some at a time, and keep each as it comes."""
+        """Have missing chunks calculated, some at a time, and store each as it arrives."""
         there = {chunk.number for chunk in self.chunks()}
         waiting: deque[tuple[int, Calculation]] = deque()
         try:

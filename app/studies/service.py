@@ -188,7 +188,7 @@ class Studies:
 
     @contextmanager
     def reading(self, id: str) -> Iterator[None]:
-        """While rows of a study are read.
+        """Guard the reading of a study's rows.
 
         Raises
         ------

@@ -11,6 +11,7 @@ from starlette.responses import Response
 from starlette.types import Scope
 
 from app.api.responses import Compression
+from app.http import openapi
 from app.web.approval import routes as approval
 from app.web.audit import routes as audit
 from app.web.compare import routes as compare
@@ -111,7 +112,7 @@ class Files(StaticFiles):
 def install(app: FastAPI) -> None:
     """Add the pages; call it after the interface is complete."""
     for router in ROUTERS:
-        app.include_router(router)
+        openapi.include(app, router)
     app.mount("/static", Files(directory=FOLDER), name="static")
     problems.install(app)
     app.add_middleware(Compression)

@@ -75,7 +75,7 @@ def states(session: Session) -> tuple[State, ...]:
 
 
 def add(session: Session, row: Row) -> None:
-    """A new version.
+    """Insert a new version.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """A crankshaft as a chain of throws: matrices of single throws, turned by their pins' angles and assembled.
 
-The first end is held. Guided, each main stays on the axis, as in a bearing, and may turn; else nothing else
-is held. Stiffnesses of throws that were each computed alone know in series of no bearings between them.
+The first end is held. In a guided chain each main stays on the axis, as in a bearing, and may turn; otherwise
+nothing else is held. A series of separately computed throw stiffnesses neglects the bearings between them.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class Chain:
         return 1e-3 / between
 
     def _rotations(self, *, guided: bool) -> Array:
-        """Rotations of the mains behind each throw [rad] under a torque of 1 N mm at the last section."""
+        """Return the rotations of the mains behind each throw [rad] under a torque of 1 N mm at the end."""
         free = self.free_to_move(guided=guided)
         torque = np.zeros(self.size)
         mains = END * np.arange(1, len(self.throws) + 1) + 5
@@ -69,7 +69,7 @@ class Chain:
         return np.asarray(moved[np.searchsorted(free, mains)])
 
     def frequency(self, *, guided: bool) -> float:
-        """Frequency [Hz] of the mode with the largest effective inertia about z, the first section held."""
+        """Return the frequency [Hz] of the mode with the largest inertia about z, the first section held."""
         free = self.free_to_move(guided=guided)
         K, M = (self.assembled(name)[np.ix_(free, free)] for name in ("stiffness", "mass"))
         squares, shapes = eigh(K, M)

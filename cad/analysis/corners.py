@@ -1,7 +1,8 @@
 """Sharp inner edges of a solid, at which stress has no limit and elements have to be small.
 
-For `cad.analysis.mesh`. They are seen on triangles that are small enough to turn by less than `SHARP` where a
-fillet begins: at a sharp inner edge two triangles of two faces meet at a larger angle, and open outward.
+For `cad.analysis.mesh`. The surface is divided into triangles so small that neighbours turn by less than
+`SHARP` where a fillet begins. At a sharp inner edge, triangles of two faces meet at a larger angle that opens
+outward.
 """
 
 from __future__ import annotations
@@ -56,7 +57,7 @@ def sharp_inner_edges(shape: Any, scale: float) -> Edges:
 
 
 def along(edges: Edges, share: float) -> Iterator[tuple[tuple[float, float, float], float]]:
-    """Points along edges with the distance [mm] between them there: a share of the radius of the edge."""
+    """Yield points along edges, spaced [mm] by a share of the radius of the edge."""
     for (start, end), radius in zip(edges.ends, edges.radius, strict=True):
         step = share * float(radius)
         count = ceil(float(np.linalg.norm(end - start)) / step)
@@ -66,7 +67,7 @@ def along(edges: Edges, share: float) -> Iterator[tuple[tuple[float, float, floa
 
 
 def _radii(faces: Integers, vertices: Integers, ends: Array) -> Array:
-    """The radius [mm] of the edge at each piece: length by turning, where two between the same faces meet."""
+    """Return the radius [mm] of the edge at each piece, from its length and its turn."""
     met = defaultdict(list)
     for piece, (pair, two) in enumerate(zip(faces, vertices, strict=True)):
         for side in (0, 1):

@@ -2,9 +2,10 @@
 
 Lengths in mm, forces in N, stresses in MPa, masses in t: so no factor stands in any equation.
 
-Rotation is that of energy: under the traction t = (-y, x, 0)/J, of torque 1, the loaded end turns by
-θ = ∫ t·u ds, the mean of its rotation with weight r². So K = 1/θ = 1/(2 U). The finite element space lies in
-that of all displacements, so θ comes out too small, K too large: K falls towards the true one.
+The rotation is the one that conserves energy: under the traction t = (-y, x, 0)/J, of torque 1, the loaded
+end turns by θ = ∫ t·u ds, the mean of its rotation with weight r². So K = 1/θ = 1/(2 U). The finite element
+space lies in that of all displacements, so θ is too small and K too large; K decreases towards the true
+value.
 
 Symmetry. Torsion of a solid that mirrors itself in y = 0 is antisymmetric: u(x, -y, z) has the opposite u_x
 and u_z, the same u_y. On the plane the tangential displacements are zero and the normal one is free; half the
@@ -115,7 +116,9 @@ class System:
 
 
 def _by_order(form: Any, space: Any) -> Any:
-    """An approximate inverse of an assembled form: exact in second order; of the rest by edges and faces.
+    """Return an approximate inverse of an assembled form: exact in second order.
+
+    The rest is inverted by edges and faces.
 
     The basis is hierarchical: the unknowns of second order are those of vertices and the first of each edge.
     """
@@ -137,7 +140,7 @@ def _by_order(form: Any, space: Any) -> Any:
 
 
 def _of_components(numbers: Integers, count: int) -> Integers:
-    """Unknowns (n, 3 k) of the three components for those (n, k) of one, of which there are so many."""
+    """Return the unknowns (n, 3 k) of three components, from those (n, k) of one."""
     return np.concatenate([numbers + component * count for component in range(3)], axis=1)
 
 
@@ -173,7 +176,7 @@ def respond(system: System, boundary: Boundary) -> Response:
 
 
 def is_antisymmetric(mirror: str, load: Kind) -> bool:
-    """True if the displacement at the image of a point, in the plane of this normal, is minus the image."""
+    """Return whether the displacement at the mirror image of each point is minus the image."""
     return load == "torsion" or mirror == "x"  # a moment about y is odd in x
 
 

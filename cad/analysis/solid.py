@@ -1,4 +1,4 @@
-"""The solid in a STEP file as it is to be analysed: its end faces named, and halved where it mirrors itself.
+"""Prepare the solid of a STEP file for analysis: name its end faces, and halve it if it is symmetric.
 
 Faces are recognised by geometry, never by number. A mirror plane is used only if both halves are proven to be
 images of each other: equal volume, centre, inertia, and one face for each face.
@@ -40,7 +40,7 @@ class Solid:
 
     @cached_property
     def scale(self) -> float:
-        """In what elements are measured [mm]: the loaded end's radius, unless that is small for the solid."""
+        """Return the length that sizes elements [mm]: the radius of the loaded end, unless it is small."""
         low, high = self.shape.bounding_box
         return max(self.radius, 0.5 * sqrt(self.shape.mass * self.parts / pi / (high[2] - low[2])))
 

@@ -73,7 +73,7 @@ class Outline:
         return [first, *upper, last, *lower]
 
     def _round(self) -> tuple[Run, list[Run], Run]:
-        """A round web: its end beyond the pin, its side up to the flank, its other end if there is none."""
+        """Return a round web: the end beyond the pin, the side up to the flank, and any other end."""
         h, R = self.half_width, self.throw
         first, last = ((R, -h), (self.tip, 0.0), (R, h)), ((0.0, h), (-h, 0.0), (0.0, -h))
         side: Run = ((R, h), (0.0, h))

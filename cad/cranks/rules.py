@@ -22,7 +22,7 @@ def corner(shape: str, width: Array) -> Array:
 
 @units(None, "rad", returns="1")
 def clear_of_corners(shape: str, angle: Array) -> Truth:
-    """True if the flanks of a counterweight [rad] pass the corners of the web, or meet them exactly."""
+    """Return whether the flanks of a counterweight [rad] clear the corners of the web."""
     meeting = {"obround": pi, "rectangular": pi / 2}[shape]
     apart: Array = np.abs(angle - meeting)
     return (apart < 1e-9) | (apart >= radians(0.099))

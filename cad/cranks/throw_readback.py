@@ -42,7 +42,7 @@ class Webs:
 
 
 def pin(seen: PartSurfaces, webs: Webs) -> dict[str, float]:
-    """Pin diameter, bore and throw: the pin stands between the webs, its bore goes through both."""
+    """Return the pin diameter, bore and throw; the pin stands between the webs."""
     _, front, rear, _ = webs.faces
     beside = [c.turned(Z) for c in seen.cylinders if c.along(Z) and not c.about(Z)]
     pin_surface = next(c for c in beside if front - _CLEAR < c.reach[0] and c.reach[1] < rear + _CLEAR)
@@ -59,7 +59,10 @@ def stubs(seen: PartSurfaces, webs: Webs) -> tuple[list[Surface], list[Surface]]
 
 
 def journal_bore(seen: PartSurfaces, webs: Webs) -> float:
-    """Diameter of the cylinder about the shaft that goes on through the web; 0 if there is none."""
+    """Return the diameter of the cylinder about the shaft that goes on through the web.
+
+    Return 0 if there is none.
+    """
     low, high = webs.faces[3] - _CLEAR, webs.faces[3] + _CLEAR
     through = (c.diameter for c in seen.about(Z) if c.reach[0] < low and high < c.reach[1])
     return max(through, default=0.0)
@@ -89,7 +92,7 @@ def fillet(seen: PartSurfaces) -> float:
     if not radii:
         return 0.0
     if len(radii) != 4 or max(radii) - min(radii) > _CLEAR:
-        raise LookupError(f"four fillets alike; there are {radii}")
+        raise LookupError(f"the four fillets must have one radius; the file has {radii}")
     return radii[0]
 
 

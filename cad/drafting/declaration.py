@@ -1,4 +1,4 @@
-"""What a drawing takes from a model's declaration: is it a shaft, limits, datums, tolerances of form."""
+"""The part of a model's declaration that a drawing shows: kind, limits, datums, form tolerances."""
 
 from __future__ import annotations
 

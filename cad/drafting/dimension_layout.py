@@ -91,7 +91,9 @@ class DimensionLayout:
         return placed
 
     def within(self, one: Dimension, along: float, high: float) -> PlacedDimension:
-        """An upright dimension whose line runs within a view, as across a web; its words stand above that.
+        """Return an upright dimension whose line runs within a view, as across a web.
+
+        Its words stand above that.
 
         Parameters
         ----------

@@ -57,7 +57,7 @@ class Lanes:
         return sides
 
     def _side(self, one: Dimension, middle: Point) -> tuple[Side, int]:
-        """The side of a dimension, and whether it lies below or left (-1), above or right (1), or neither."""
+        """Return the side of a dimension: below or left (-1), above or right (1), or neither."""
         measure = one.measure
         place = sum(x for x, _ in measure.points) / len(measure.points)
         match measure.form, measure.place:
@@ -105,7 +105,7 @@ class Lanes:
 
 
 def _from_its_edges(one: Dimension, view: View, out: int) -> Dimension:
-    """The same with extension lines that begin where an edge that it measures is nearest to its side."""
+    """Return the dimension with extension lines that begin at the edges nearest to its side."""
     along = int(one.measure.form == "up")
     points = []
     for number, point in enumerate(one.measure.points):

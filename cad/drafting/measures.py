@@ -121,7 +121,7 @@ def _edge_at(section: View, v: float, reach: tuple[float, float]) -> float | Non
 
 
 def _on_circle(view: View, centre: Point, radius: float) -> Point | None:
-    """A point of a visible line on that circle, on the longest run of such points, beside its middle."""
+    """Return a point of a visible line on a circle, beside the middle of its longest visible run."""
     runs = [
         [p for p in curve.points if abs(hypot(p[0] - centre[0], p[1] - centre[1]) - radius) < 1e-4]
         for curve in view.visible

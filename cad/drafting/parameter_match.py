@@ -1,4 +1,4 @@
-"""Match sizes in a drawing with parameters: by their values, and by the sort that their words speak of."""
+"""Match sizes in a drawing with parameters: by their values, and by the kind that their words name."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Dimension:
 def matched(
     parameters: Mapping[str, str], measures: Sequence[Measure], limits: Mapping[str, Limits] | None = None
 ) -> tuple[list[Dimension], list[str]]:
-    """A dimension for every parameter that is seen, and the names of the lengths and angles that are not.
+    """Return a dimension for each parameter that is seen, and the names of those that are not.
 
     `parameters` are as in the header of a STEP file: `{"inner_diameter": "50 mm", "shells": "upper"}`;
     `limits` are those of toleranced ones.
@@ -140,7 +140,7 @@ def _size(text: str) -> tuple[float, bool] | None:
 def references(
     taken: Sequence[Dimension], measures: Sequence[Measure], elsewhere: Sequence[Point] = ()
 ) -> Iterator[Dimension]:
-    """Lengths that complete the drawing: between planes across the shaft that nothing locates, and the whole.
+    """Yield reference lengths: between planes that nothing locates, and overall.
 
     What dimensions join is located by them, also those `elsewhere`, of which the two ends along the shaft are
     given; two planes that lie alike on either side of the origin are joined with it by the dimension between

@@ -1,4 +1,4 @@
-"""Sizes of what stands out of a cylinder, lies beside the shaft or is bevelled: lugs, joints, chamfers."""
+"""Sizes of lugs that protrude from a cylinder, of joints beside the shaft, and of chamfers."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def of_walls(parts: Sequence[PartSurfaces], section: View) -> Iterator[Measure]:
 
 
 def of_arms(seen: PartSurfaces, end: View) -> Iterator[Measure]:
-    """Angles at the shaft between planes through it, on the side of the crown, as of the ends of a groove."""
+    """Yield angles at the shaft between planes through it, on the side of the crown."""
     arms = []
     for plane in seen.planes:
         if plane.holds(Z) and not plane.along(Y):

@@ -106,7 +106,7 @@ def _removed(
 
 
 def _measures(view: View) -> Iterator[Measure]:
-    """Distances between straight edges, level and upright, from those ends that are lowest or most left."""
+    """Yield the distances between straight edges, level and upright, from the lowest or leftmost ends."""
     forms: tuple[tuple[int, Form], ...] = ((0, "across"), (1, "up"))
     for along, form in forms:
         feet: dict[float, float] = {}

@@ -87,7 +87,7 @@ _MEDIUM = ((6.0, 0.1), (30.0, 0.2), (120.0, 0.3), (400.0, 0.5), (1000.0, 0.8), (
 
 
 def general_profile(longest: float) -> float | None:
-    """Width [mm] of the general profile tolerance (ISO 22081) of a part whose longest side is so long [mm].
+    """Return the general profile tolerance (ISO 22081) [mm] of a part by its longest side [mm].
 
     The rule is ours: the width that ISO 2768-m gives the longest side. None beyond 4 m, where it gives none.
     """

@@ -1,9 +1,9 @@
 """The two views of a drawing: a section along the shaft (z), and the end seen along it; all in millimetres.
 
-Of the two planes through the shaft that is cut which is no joint, and then the one that holds the axes of
-more cylinders: an oil hole, a pin. In the section z points right; beside it, in first-angle projection,
-stands the view from the left. Balls, shafts and round bars are not cut lengthwise (ISO 128-3): they are drawn
-whole, a shaft with its hidden lines.
+The section takes one of two planes through the shaft: one that is not a joint, and then the one that holds
+the axes of more cylinders, such as oil holes and pins. In the section z points right; beside it, in
+first-angle projection, stands the view from the left. Balls, shafts and round bars are not cut lengthwise
+(ISO 128-3): they are drawn whole, a shaft with its hidden lines.
 """
 
 from __future__ import annotations
@@ -178,7 +178,7 @@ def _upright(bodies: Sequence[Body]) -> Vector:
         return sum(face.Area() for shape in placed for face in faces_across(shape, normal))
 
     def parts(normal: Vector) -> bool:
-        """True if there is material on both sides: a half shell ends in its joint, or a little beyond."""
+        """Return whether there is material on both sides of the axis."""
         sides = [_sides(body.shape.moved(place), normal) for body in bodies for place in body.places]
         depths = sorted((-min(low for low, _ in sides), max(high for _, high in sides)))
         return depths[0] > max(CLEAR, _LITTLE * depths[1])
@@ -191,7 +191,7 @@ def _upright(bodies: Sequence[Body]) -> Vector:
 
 
 def _surrounds(cylinder: Surface) -> bool:
-    """True if the shaft's axis lies within: in a bore, or in the relief beside the joint of a shell."""
+    """Return whether the shaft's axis lies within a bore or a joint relief."""
     return cylinder.along(Z) and cylinder.point.cross(Z).Length < cylinder.diameter / 2
 
 

@@ -91,7 +91,7 @@ class Section:
 
 
 def ring(section: Section, pitch_radius: float, side: int) -> Solid:
-    """The section turned about z, as one profile: cut by a torus, its bytes would differ between runs."""
+    """Return the section turned about z as one profile: a cut by a torus would vary between runs."""
     outline = section.outline(lambda s, z: Vector(pitch_radius + side * s, 0, z))
     return Solid.revolve(outline, 360, Vector(0, 0, 0), Vector(0, 0, 1))
 

@@ -135,7 +135,7 @@ class Crankshaft(SplitParameters, EndParameters):
 
     @profile("mm**2", "counterweight sector", along="webs", symbol="A_w")
     def A_w(self) -> Array:
-        """Area of the sector that makes a counterweight, from the journal's axis on."""
+        """Return the area of the sector that makes a counterweight, from the journal's axis on."""
         return sectors(self.R_w, self.phi_w, self.n)
 
     @formula("mm", "overall length", symbol="L")

@@ -208,7 +208,10 @@ class DeepGrooveBearing(CadModel):
         return Box((-radius, -radius, -half), (radius, radius, half))
 
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
-        """Every length and the count of balls, as the parts show them; those of the cage if there is one."""
+        """Return every length and the count of balls, as the parts show them.
+
+        Include those of the cage if there is one.
+        """
         inner, outer, ball = seen["inner_ring"], seen["outer_ring"], seen["ball"]
         sizes = {
             "inner_diameter": inner.diameters(Z)[0],

@@ -37,7 +37,10 @@ def drawable(length: Array) -> Truth:
 
 @units(None, "1", returns="rad")
 def half_pitch(washer: str, grooves: Array) -> Array:
-    """Half the angle [rad] from groove to groove; of a half washer also that from its joint to the first."""
+    """Return half the angle [rad] from groove to groove.
+
+    For a half washer it is also the angle from the joint to the first groove.
+    """
     turn = {"full": 2 * pi, "half": pi}[washer]
     return np.minimum(turn / (2 * np.maximum(grooves, 1)), pi / 2)
 

@@ -37,7 +37,7 @@ class Relief:
         return self.bore + self.depth - self.axis
 
     def arc(self) -> list[tuple[float, float]]:
-        """Beginning, middle and end of the arc, as radius and angle [rad] from the joint about the bore."""
+        """Return the start, middle and end of the arc, as radius and angle [rad] from the joint."""
         foot = sqrt(self.bore**2 - self.height**2)
         half = atan2(self.height, foot - self.axis) / 2
         x, y = self.axis + self.radius * cos(half), self.radius * sin(half)
@@ -56,7 +56,7 @@ class Relief:
 
 
 def read_relief(bore: float, axis: float, radius: float) -> tuple[float, float]:
-    """Height and depth [mm] of a relief from the radius of the bore, and axis and radius of its circle."""
+    """Return the height and depth [mm] of a relief from the bore's radius and the relief's circle."""
     depth = axis + radius - bore
     fall = depth * (2 * bore + depth) / (2 * axis) - depth  # inverts `Relief.axis`
     return sqrt(fall * (2 * bore - fall)), depth

@@ -64,7 +64,7 @@ class ShellReadback:
 
     @property
     def groove_turn(self) -> float:
-        """The turn of the groove [rad]: from end to end, or half a turn if it goes from joint to joint."""
+        """Return the angle of the groove [rad] from end to end; half a turn from joint to joint."""
         groove = self.wanted.groove
         if groove is None or groove.is_whole:
             return pi

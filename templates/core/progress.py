@@ -26,3 +26,18 @@ def reporting(reporter: Reporter | None) -> Iterator[None]:
         yield
     finally:
         _reporter.reset(token)
+
+
+@contextmanager
+def part_of_progress(number: int, count: int) -> Iterator[None]:
+    """Let `report` within the context speak of one part of `count` equal ones, counted from 0."""
+    whole = _reporter.get()
+    if whole is None or count == 1:
+        yield
+        return
+
+    def of_part(fraction: float, text: str) -> None:
+        whole((number + fraction) / count, f"point {number + 1} of {count}: {text}")
+
+    with reporting(of_part):
+        yield

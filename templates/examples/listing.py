@@ -22,7 +22,7 @@ class Example:
 
 @cache
 def examples() -> tuple[Example, ...]:
-    """Every example, the paper's worksheet first."""
+    """Return every example, the paper's worksheet first."""
     files = sorted(Path(__file__).parent.glob("*.sheet"), key=lambda file: (file.stem != _FIRST, file.stem))
     return tuple(_example(file) for file in files)
 

@@ -23,10 +23,12 @@ from templates.physics.engine.gas_checks import (
     POLYTROPIC,
     angles_rise,
     burns_before_exhaust,
+    crankcase_is_filled,
     full_cycle,
     is_manageable,
     known_for,
     pressure_rises,
+    pressures_are_of_one_kind,
     table_closes,
     table_is_known,
     valves_in_order,
@@ -179,10 +181,28 @@ class Cylinder(Template):
         """Combustion does not begin below the pressure at the end of compression."""
         return pressure_rises(self.gas)
 
+    @require("crankcase_pressure", "suction_pressure", warning="vacuum_in_crankcase",
+             remedy="about 1 bar: suction and combustion pressure are absolute")  # fmt: skip
+    def crankcase_is_filled(self) -> Truth:
+        """The crankcase of cycles otto, diesel and four_stroke has an absolute pressure above 0."""
+        return crankcase_is_filled(self.gas_cycle, self.p_0)
+
+    @require("pressure", "crankcase_pressure", warning="gauge_or_absolute",
+             remedy="it is 0 bar beside gauge pressures, about 1 bar beside absolute ones")  # fmt: skip
+    def pressures_are_of_one_kind(self) -> Truth:
+        """The pressures of the table and of the crankcase are both absolute, or both gauge."""
+        return pressures_are_of_one_kind(self.gas_cycle, self.p_t, self.p_0)
+
     @require("speed", warning="reversed_cycle", remedy="a gas cycle then runs backwards, and takes up work")
     def runs_forwards(self) -> Truth:
         """The crank angle rises with time."""
         return (self.omega >= 0) | (self.gas_cycle == "none")
+
+    @require("crank_mass", "crankpin_mass", "counterweight_mass", warning="massless_crank",
+             remedy="give their masses; main loads, balance and inertia are of rods alone")  # fmt: skip
+    def crank_has_mass(self) -> Truth:
+        """Web, crankpin or counterweight has a mass."""
+        return (self.m_w > 0) | (self.m_cp > 0) | (self.m_cb > 0)
 
     def ladder(self) -> tuple[str, ...]:
         """Return the levels for which the rod is known well enough."""

@@ -17,7 +17,12 @@ from templates.core.language.template import (
     text,
 )
 from templates.groups.engine_cylinders import EACH, EngineCylinders
-from templates.physics.crankshaft.shaft_loads import throw_places, web_unbalance, webs_are_whole
+from templates.physics.crankshaft.shaft_loads import (
+    has_any_unbalance,
+    throw_places,
+    web_unbalance,
+    webs_are_whole,
+)
 from templates.physics.engine.balance import mid_plane
 from templates.physics.engine.engine_curves import Rotors
 from templates.physics.engine.engine_layout import (
@@ -177,6 +182,13 @@ class EngineBalance(EngineCylinders):
     def webs_are_whole(self) -> Truth:
         """Webs with an unbalance or a counterweight have their places."""
         return webs_are_whole(self.z_w, self.U_w, self.U_k, self.t_w, self.layout.throws)
+
+    @require("crank_unbalance", "web_unbalance", "counterweights", warning="massless_crank",
+             remedy="give crank_unbalance, or web_unbalance, counterweights and web_positions; main loads"
+             " and balance are of rods and pistons alone")  # fmt: skip
+    def crank_has_mass(self) -> Truth:
+        """Throws or webs have an unbalance."""
+        return has_any_unbalance(self.U_c, self.U_w, self.U_k)
 
     @shared
     def layout(self) -> Layout:

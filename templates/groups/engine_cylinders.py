@@ -22,8 +22,10 @@ from templates.physics.engine.gas_checks import (
     GIVEN_PEAK,
     POLYTROPIC,
     angles_rise,
+    crankcase_is_filled,
     full_cycle,
     known_for,
+    pressures_are_of_one_kind,
     table_closes,
     table_is_known,
     valves_in_order,
@@ -161,6 +163,18 @@ class EngineCylinders(Template):
     def combustion_raises(self) -> Truth:
         """Combustion does not begin below the pressure at the end of compression."""
         return combustion_raises(self.gas)
+
+    @require("crankcase_pressure", "suction_pressure", warning="vacuum_in_crankcase",
+             remedy="about 1 bar: suction and combustion pressure are absolute")  # fmt: skip
+    def crankcase_is_filled(self) -> Truth:
+        """The crankcase of cycles otto, diesel and four_stroke has an absolute pressure above 0."""
+        return crankcase_is_filled(self.gas_cycle, self.p_0)
+
+    @require("pressure", "crankcase_pressure", warning="gauge_or_absolute",
+             remedy="it is 0 bar beside gauge pressures, about 1 bar beside absolute ones")  # fmt: skip
+    def pressures_are_of_one_kind(self) -> Truth:
+        """The pressures of the table and of the crankcase are both absolute, or both gauge."""
+        return pressures_are_of_one_kind(self.gas_cycle, self.p_t, self.p_0)
 
     @require("speed", warning="reversed_cycle", remedy="a gas cycle then runs backwards, and takes up work")
     def runs_forwards(self) -> Truth:

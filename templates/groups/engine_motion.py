@@ -1,4 +1,4 @@
-"""Group: what an engine does over its cycle: forces of rods and walls, torque, energy, shaking."""
+"""Group: forces of rods and walls, torque, energy and shaking forces of an engine over its cycle."""
 
 from __future__ import annotations
 

@@ -25,6 +25,10 @@ FED = (
     "level supplied needs to know how oil comes in: give groove_width, sleeve_hole_length or pin_hole_length "
     "in mm, and supply_pressure in bar"
 )
+DESCRIBE = (
+    "give groove_width, sleeve_hole_length or pin_hole_length in mm, or oil_supply flooded_ends, for a film "
+    "that is always full"
+)
 SLEEVE_BACK = (
     "give speeds in rpm with which it rests in the frame or turns by whole turns in a cycle, or a "
     "groove_extent of 360 deg and no hole in the sleeve"
@@ -58,6 +62,7 @@ class FedBearing(Template):
     l_J: Array = given("mm", "pin hole length", symbol="l_{J}", alternative=True, gt=0)
     phi_J: Array = given("deg", "pin hole angle", symbol=r"\varphi_{J}", default="0 deg", ge=-360, le=360)
     p_s: Array = given("bar", "supply pressure", alternative=True, gt=0)
+    fed_by: str = choice("groove_or_hole", "flooded_ends", words="oil supply", default="groove_or_hole")
 
     @derived("rpm", "crank speed", symbol=r"\Omega", gt=0, remedy="give it in rpm where the journal rests")
     def Omega(self) -> Array:
@@ -98,6 +103,16 @@ class FedBearing(Template):
     def pin_hole_within_bearing(self) -> Truth:
         """The pin's hole takes at most 95 % of the bearing's width and goes around once at most."""
         return within_bearing(self.l_J, self.W, self.a_J, self.D)
+
+    @require("groove_width", "sleeve_hole_length", "pin_hole_length", missing=True, remedy=DESCRIBE)
+    def supply_is_described(self) -> Truth:
+        """The bearing has an oil supply."""
+        return (self.feeding.count > 0) | (self.fed_by == "flooded_ends")
+
+    @require("oil_supply", warning="unused_input", remedy="leave it out, or the groove and holes")
+    def flooded_ends_count(self) -> Truth:
+        """Flooded ends count where neither a groove nor a hole is given."""
+        return (self.feeding.count == 0) | (self.fed_by != "flooded_ends")
 
     @require("supply_pressure", missing=True, remedy="give the pressure above ambient, such as 4 bar")
     def fed_under_pressure(self) -> Truth:

@@ -75,13 +75,13 @@ def read_sources(path: Path) -> dict[str, Source]:
 
 
 def read_rows(path: Path, sources: Mapping[str, Source]) -> tuple[Row, ...]:
-    """Return the rows of a table, checked.
+    """Check the rows of a table and return them.
 
     Raises
     ------
     UnusableTable
-        If a row is there twice, is not confirmed, names a source that is unknown or no value, or has a
-        number or a unit that is none.
+        If a row occurs twice or is not confirmed, names an unknown source or no value, or has an invalid
+        number or unit.
     """
     records = list(_records(path))
     _each_once(path, (record["id"] for record in records))
@@ -106,7 +106,7 @@ def _each_once(path: Path, keys: Iterable[str]) -> None:
 
 def _row(path: Path, record: Mapping[str, str], sources: Mapping[str, Source]) -> Row:
     if record["confirmed"] != "yes":
-        raise UnusableTable(path, f"{record['id']} is not confirmed; leave it out until it is")
+        raise UnusableTable(path, f"{record['id']} is not confirmed; remove the row until it is")
     values = dict(_values(path, record, sources))
     if not (values and record["words"]):
         raise UnusableTable(path, f"{record['id']} has no value, or no words")

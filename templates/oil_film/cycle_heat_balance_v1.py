@@ -203,7 +203,7 @@ class CycleHeatBalance(Oil, FedBearing):
         return np.isnan(self.p_s) | self.feeding.grooved | (self.level == "supplied")
 
     def ladder(self) -> tuple[str, ...]:
-        """The levels that know how the bearing is fed; level supplied only where something feeds it."""
+        """Return the levels that model the oil supply; `supplied` only where a groove or hole feeds it."""
         cheap = ("mobility_grooved",) if np.any(self.feeding.grooved) else ("mobility_short", "mobility")
         return (*cheap, "supplied") if np.all(self.feeding.count > 0) else cheap
 
@@ -224,7 +224,7 @@ class CycleHeatBalance(Oil, FedBearing):
     @shared
     def bearing(self) -> CycleBearing:
         """The bearing over its cycle."""
-        return CycleBearing(self.level, self.duty, self.feeding, self.p_s, self.c / 2, relieved=True)
+        return CycleBearing(self.level, self.duty, self.feeding, self.p_s, self.c / 2)
 
     @shared
     def eta_given(self) -> Array:

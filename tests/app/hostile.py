@@ -178,7 +178,6 @@ def ask(url, method, target, headers=(), body=None):
 
 def every_route(app):
     """(method, path) of all routes, those of the pages included."""
-    for outer in app.routes:
-        for route in getattr(getattr(outer, "original_router", None), "routes", [outer]):
-            for method in sorted(getattr(route, "methods", None) or ()):
-                yield method, getattr(route, "path_format", route.path)
+    for route in app.routes:
+        for method in sorted(getattr(route, "methods", None) or ()):
+            yield method, getattr(route, "path_format", route.path)

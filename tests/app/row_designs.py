@@ -83,6 +83,7 @@ CURVES = {
                 "bearing_width": "18 mm",
                 "diametral_clearance": "= clearance",
                 "dynamic_viscosity": "10 mPa*s",
+                "oil_supply": "flooded_ends",
             },
         },
     },

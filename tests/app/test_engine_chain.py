@@ -37,6 +37,7 @@ FILM = {
     "bearing_width": "20 mm",
     "diametral_clearance": "0.055 mm",
     "dynamic_viscosity": "10 mPa*s",
+    "oil_supply": "flooded_ends",
 }
 CHAIN = {
     "name": "big end",

@@ -6,6 +6,7 @@ Analytic: closed angles and shares; the static film of oil_film 2 with the same 
 import numpy as np
 import pytest
 
+from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
 from templates.oil_film.oil_film_v2 import OilFilm
@@ -127,14 +128,14 @@ def test_analytic_constant_load_is_the_static_film_with_the_same_groove():
 
 
 @pytest.mark.slow
-def test_property_hole_that_stays_under_the_load_starves_with_its_reason():
-    """Every result of the film says why there is none; the rest is answered."""
+def test_property_hole_that_stays_under_the_load_starves_and_is_refused_by_that_name():
+    """What does not need the film is answered; of several points the others are."""
     turning_load = inputs(4 * np.cos(ANGLE), 4 * np.sin(ANGLE), **PIN)
-    result = marched(turning_load)
-    answers = result.outputs
+    with pytest.raises(InvalidInputs, match=r"hole stays under the load.*move the groove") as info:
+        marched(turning_load)
+    assert [fault.code for fault in info.value.faults] == ["starved"]
+    answers = marched(turning_load, outputs=["verdict", "feed_under_load", "cycles_run"]).outputs
     assert answers["verdict"].value == "starved"
-    for name in ("minimum_film_thickness", "film_thickness", "power_loss", "side_flow", "maximum_pressure"):
-        assert "the film thins from cycle to cycle" in answers[name].reason, name
     assert answers["feed_under_load"].value == pytest.approx(1)
     assert answers["cycles_run"].value > 1
 
@@ -144,7 +145,7 @@ def test_property_oil_of_the_cycle_balances():
     x = 2 + 3 * np.exp(6 * (np.cos(ANGLE - 0.4) - 1)) + 0.5 * np.cos(2 * ANGLE)
     answers = marched(inputs(x, np.sin(ANGLE), **PIN)).outputs
     assert answers["verdict"].value in ("repeating", "wandering")
-    assert answers["numerical_error"].value < 0.03
+    assert 5e-3 < answers["numerical_error"].value < 0.06  # mesh and step are in it
     assert abs(answers["mass_balance"].value) < 1e-4
     assert answers["supply_flow"].value == pytest.approx(answers["side_flow"].value, rel=5e-3)
     assert answers["minimum_film_thickness"].value <= answers["film_thickness"].value.min() * (1 + 1e-9)

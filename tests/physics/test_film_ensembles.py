@@ -17,7 +17,6 @@ from benchmarks.film_cycle_duties import (
     WIDTHS,
     band,
     drawn,
-    fed,
     kept,
     wanted,
 )
@@ -133,14 +132,6 @@ def test_property_the_sample_has_each_supply_with_each_kind_of_load_alike():
     assert len(numbers) == 60
     assert set(alike.values()) == {6}
     assert len(alike) == 10
-
-
-def test_example_a_groove_all_around_bears_nothing_at_rest():
-    _, duty = next(drawn(1, "full_groove"))
-    assert fed(duty).lift == pytest.approx(0, abs=1e-12)
-    _, half = next(drawn(1, "half_groove"))
-    (pocket,) = half.supply.pockets
-    assert fed(half).lift > 0.3 * half.supply.pressure * np.sin(pocket.half_angle)
 
 
 def test_property_lines_that_count_are_of_one_march():

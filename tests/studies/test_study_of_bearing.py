@@ -1,4 +1,4 @@
-"""A bearing through `Net`: least power with a film of at least a limit, explored at a cheap level."""
+"""A study finds the least power of a bearing whose film keeps a limit, explored at a cheap level."""
 
 import numpy as np
 import pytest

@@ -205,8 +205,8 @@ CYCLE_CASES = [
     ("pressure", {"permissible_pressure": "70 MPa"}, "not_met", 74.4904, 70),
     ("film_exists", {}, "met", 2.90276, 0.05),
     ("film_exists", {"dynamic_viscosity": "0.02 mPa*s"}, "not_met", 0.0145597, 0.05),
-    ("rigid", {}, "met", 74.4904, STIFF * PSI),
-    ("rigid", {"dynamic_viscosity": "0.02 mPa*s"}, "not_met", 659.286, STIFF * PSI),
+    ("rigid", {"dynamic_viscosity": "1 Pa*s"}, "met", 1.78698, 24.30052 / 2),
+    ("rigid", {}, "not_met", 3.774199, 2.90276 / 2),
     ("isoviscous", {}, "met", 74.4904, 500),
     ("isoviscous", {"dynamic_viscosity": "0.02 mPa*s"}, "not_met", 659.286, 500),
 ]  # fmt: skip
@@ -218,6 +218,7 @@ def test_the_cycle_without_a_supply_is_judged_by_its_value_since_no_bound_of_its
 ):
     changes = {
         **dict.fromkeys(["groove_width", "groove_start", "groove_extent", "supply_pressure"]),
+        "oil_supply": "flooded_ends",
         **changes,
     }
     judgement, warnings = judged(*CYCLE, changes, {}, name)

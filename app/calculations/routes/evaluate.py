@@ -1,7 +1,7 @@
 """`/templates/{id}/versions/{n}/evaluate` and `…/solve` and `…/worksheet`.
 
-What is cheap is calculated here, in the event loop or a thread; what is expensive, or comes in a large body,
-goes to a calculation process as it is.
+A cheap calculation runs here, in the event loop or a thread. An expensive calculation, or a large body, goes
+to a calculation process.
 """
 
 from __future__ import annotations
@@ -57,11 +57,11 @@ class LargeRoute(PlainRoute):
 
     async def shortcut(self, request: StrictRequest) -> Response | None:
         """Return the answer to a large body."""
-        system, body = _system(request), await request.pieces()
-        if system is None or len(body) <= LARGE or not _is_plain(request):
+        parts = await request.parts()
+        if sum(map(len, parts)) <= LARGE or (system := _system(request)) is None or not _is_plain(request):
             return None
         operation = self.path.rpartition("/")[2]
-        question = Question(*_template(request), operation, body, system, _form(request, operation))
+        question = Question(*_template(request), operation, Pieces(parts), system, _form(request, operation))
         return await _answered(request, question)
 
 
@@ -194,8 +194,8 @@ async def _question(
 
 def _form(request: Request, operation: str) -> Form:
     """Return the format that the client wants: an array if it names that before JSON."""
-    kinds = [kind.partition(";")[0].strip() for kind in request.headers.get("accept", "").split(",")]
-    return "npy" if "npy" in OPERATIONS[operation].write and kinds[0] == NPY else "json"
+    first = request.headers.get("accept", "").partition(",")[0].partition(";")[0].strip()
+    return "npy" if first == NPY and "npy" in OPERATIONS[operation].write else "json"
 
 
 def _json(content: bytes) -> Response:

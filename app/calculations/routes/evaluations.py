@@ -16,11 +16,12 @@ from app.designs.schemas.designs import Preview
 from app.designs.schemas.solution import DesignSolution
 from app.designs.schemas.variants import VariantDetail
 from app.http.access import TheClient
+from app.http.strict_requests import StrictRoute
 from app.impact.schemas import Impact
 from app.schemas.problems import refusals
 from app.tolerances.schemas import ToleranceAnalysis
 
-router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"])
+router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"], route_class=StrictRoute)
 
 
 @router.get(

@@ -1,4 +1,4 @@
-"""Find what a design must calculate for some of its values, and which of that differs from row to row.
+"""Find what a design must calculate for the requested values, and which parts differ from row to row.
 
 Pure functions over the network: no value is calculated here.
 """
@@ -82,7 +82,7 @@ def _of_member(graph: Graph, reference: Reference, result: Needs) -> list[Refere
 
 
 def is_member(graph: Graph, reference: Reference) -> bool:
-    """True if a name means an input or an output of a step or model, not what is measured on a solid."""
+    """Return whether a name means an input or output of a step or model, not a measure of a solid."""
     block = graph.blocks.get(reference.block)
     if block is None or reference.analysis is not None:
         return False

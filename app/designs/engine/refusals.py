@@ -58,7 +58,7 @@ def _refusal(step: str, template: Template, mask: Mask) -> Refusal:
 
 
 def is_of_all_rows(cls: type[Template], faults: Sequence[Fault], varied: Collection[str]) -> bool:
-    """True if a fault holds for all rows, because it concerns nothing that follows from varied inputs."""
+    """Return whether a fault holds for all rows because it depends on no varied input."""
     attributes = {cls.inputs[name].attribute for name in varied}
     for fault in faults:
         beneath = _beneath(cls, fault)

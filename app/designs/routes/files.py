@@ -147,7 +147,7 @@ class FileRequest:
         return PRINTED.get(wanted, wanted)
 
     async def _unless_ready(self, key: str, kind: str, prefer: str, *, has_older: bool) -> Response | None:
-        """None once a file is made; 202 if the client does not wait so long, or why it cannot be made."""
+        """Return None once a file is made, 202 if the client waits no longer, or why it cannot be made."""
         job = await run_in_threadpool(self.models.request_file, key, kind, self.client)
         if not await finished(self.jobs, job, prefer):
             return accepted(job)

@@ -42,5 +42,5 @@ def too_many_cells(document: Document) -> Iterator[Fault]:
 
 
 def row_faults(base: Calculation) -> list[Fault]:
-    """Return a fault for every step of a design with variants that has rows of its own."""
+    """Return a fault for every step that has several rows of its own in a design with variants."""
     return [fault.within("variants") for fault in row_arrays(base)]

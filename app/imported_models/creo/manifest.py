@@ -42,7 +42,7 @@ class Driven(Bounded):
 
     @model_validator(mode="after")
     def is_one_number(self) -> Self:
-        """The entry as it is.
+        """Require a dimension or a parameter, with a value within its range.
 
         Raises
         ------
@@ -88,7 +88,7 @@ class Manifest(Bounded):
 
     @model_validator(mode="after")
     def names_are_distinct(self) -> Self:
-        """The manifest as it is.
+        """Require distinct names.
 
         Raises
         ------
@@ -122,4 +122,4 @@ def read(content: bytes) -> Manifest:
         wrong = (
             f"{'.'.join(map(str, one['loc'])) or 'manifest'}: {one['msg']}" for one in error.errors()[:10]
         )
-        raise UnreadableModel("manifest", f"the manifest of Creo is wrong: {'; '.join(wrong)}") from None
+        raise UnreadableModel("manifest", f"the manifest for Creo is not valid: {'; '.join(wrong)}") from None

@@ -119,7 +119,7 @@ class LatinHypercube:
 
     @cached_property
     def _unit(self) -> Array:
-        """Return all rows at once: where one lies depends on all others."""
+        """Return all rows of the sample at once, since the place of each depends on the others."""
         from scipy.stats import qmc
 
         return np.asarray(qmc.LatinHypercube(len(self.space), rng=self.seed).random(self.count))

@@ -35,11 +35,12 @@ async function decision(api) {
   return (answer.status === 202 ? await calculated(answer.location) : answer).payload;
 }
 
-function summary({ tried, undecided, stopped, seconds }) {
-  if (!tried.length && undecided.length && stopped === "no_finer_level")
-    return `No finer level gives an error estimate for ${undecided.length === 1 ? "this one" : `these ${undecided.length}`}.`;
+function summary({ tried, undecided, error_unknown: unknown = [], stopped, seconds }) {
+  const open = undecided.length + unknown.length;
+  if (!tried.length && open && stopped === "no_finer_level")
+    return `No finer level gives an error estimate for ${open === 1 ? "this one" : `these ${open}`}. Nothing was saved.`;
   const levels = tried.map(({ step, level }) => `${step} at level ${level.replaceAll("_", " ")}`).join(", ");
   const spent = levels ? `Calculated ${levels} in ${plain(Number(seconds.toPrecision(2)))} s` : "Nothing was calculated";
-  const left = undecided.length ? `; ${undecided.length} still open: ${STOPPED[stopped] ?? stopped}` : "; all decided";
+  const left = open ? `; ${open} still open: ${STOPPED[stopped] ?? stopped}` : "; all decided";
   return `${spent}${left}. Nothing was saved.`;
 }

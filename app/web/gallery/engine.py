@@ -81,7 +81,10 @@ _OUTPUTS: list[JsonValue] = [
 
 
 def _bearings(mains: int, cylinders: int) -> dict[str, JsonValue]:
-    """Return a variant for every main and every big end."""
+    """Return a variant for every main and every big end.
+
+    The groove lies in the shell of a main's block, and in that of a big end's cap.
+    """
     big_ends: dict[str, JsonValue] = {
         f"big_end_{n}": {
             "bearing": f"{n}",
@@ -89,6 +92,7 @@ def _bearings(mains: int, cylinders: int) -> dict[str, JsonValue]:
             "film.load_y": "= engine.crankpin_load_y[bearing]",
             "film.sleeve_speed": "= engine.rod_angular_velocity[bearing]",
             "film.bearing_diameter": "= engine.crankpin_diameter + film.diametral_clearance",
+            "film.groove_start": "90 deg",
         }
         for n in range(1, cylinders + 1)
     }
@@ -143,7 +147,7 @@ def _document(
             "film": {
                 "template": "oil_film_cycle",
                 "version": 1,
-                "level": "mobility",
+                "level": "supplied",
                 "inputs": {
                     "crank_angle": "= engine.crank_angle",
                     "load_x": "= engine.elastic_main_load_x[bearing]",
@@ -155,6 +159,10 @@ def _document(
                     "diametral_clearance": "0.055 mm",
                     "dynamic_viscosity": "10 mPa*s",
                     "permissible_film": "1 um",
+                    "groove_width": "3 mm",
+                    "groove_start": "-90 deg",
+                    "groove_extent": "180 deg",
+                    "supply_pressure": "4 bar",
                 },
             },
             **gallery_train.steps(train),

@@ -102,7 +102,7 @@ def _values(revision: Revision) -> Iterator[tuple[str, object]]:
 
 
 def _comparable(value: object) -> object:
-    """Return a quantity as plain data, without where it came from; a value as typed as it is."""
+    """Return a quantity as plain data without its origin; return a value as its user typed it."""
     if not isinstance(value, Answer):
         return value
     return {name: part for name, part in value.plain().items() if name != "from"}

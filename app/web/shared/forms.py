@@ -98,7 +98,7 @@ def _is_field(design: Names, blocks: Set[str], name: str) -> bool:
 
 
 def _parts(name: str) -> tuple[str, str, str]:
-    """Block, `.` or `@`, and the rest of a control's name."""
+    """Return the block, `.` or `@`, and the rest of a control's name."""
     return name.partition("@" if "@" in name else ".")
 
 
@@ -142,7 +142,7 @@ def inner(outer: dict[str, JsonValue], name: str) -> dict[str, JsonValue]:
 
 
 def option_of(name: str, value: JsonValue) -> JsonValue:
-    """A tolerance is a number; the interface says what is wrong with one that is none."""
+    """Return an option, a tolerance as a number; the interface refuses one that is no number."""
     if name != "tolerance" or not isinstance(value, str):
         return value
     try:

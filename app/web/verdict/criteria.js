@@ -65,10 +65,11 @@ export function missing({ give, verdict, needs, reason }) {
 }
 
 export function remarks(criterion) {
-  const { unverified, waived, reason } = criterion;
+  const { unverified, waived, truth, reason } = criterion;
   return [
     unverified && `unverified: ${unverified}`,
     waived && `waived: ${waived}`,
+    truth?.includes(" ") && truth,
     where(criterion),
     reason && missing(criterion) !== reason && reason,
   ].filter(Boolean);

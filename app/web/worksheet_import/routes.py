@@ -53,9 +53,8 @@ async def import_file(request: Request, services: ThePageServices) -> Response:
     id = parts["id"].text.strip() if "id" in parts else ""
     chosen = parts.get("file")
     if chosen is None or not chosen.content:
-        return _form(
-            request, id, "choose a file: a .mcdx of Mathcad Prime or a .xmcd of Mathcad 11 to 15", 422
-        )
+        said = "choose a file: a .mcdx of Mathcad Prime or a .xmcd or .xmcdz of Mathcad 11 to 15"
+        return _form(request, id, said, 422)
     name = "".join(sign for sign in (chosen.file or "") if sign.isprintable())[-200:].strip()
     try:
         job = await begun_import(services, chosen.content, id, name)

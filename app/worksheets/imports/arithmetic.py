@@ -10,6 +10,7 @@ from app.worksheets.imports.names import key_of
 from app.worksheets.imports.terms import PRODUCT, SUM, Term, binary, called, negative, number, reduced
 from app.worksheets.imports.terms import power as raised
 from app.worksheets.imports.trees import Node
+from app.worksheets.imports.unit_names import UNLABELLED
 from app.worksheets.imports.writer import Writer
 
 
@@ -62,9 +63,9 @@ class Arithmetic(Writer):
         return binary(left, "/", right, PRODUCT)
 
     def power(self, base: Node, exponent: Node) -> Term:
-        """Return a power; of a vector its square alone, which is a scalar product."""
+        """Return a power; a vector can only be squared, which gives a scalar product."""
         over = self.value(exponent)
-        if base.tag == "id" and key_of(base) == "e" and "e" not in self.scope:
+        if base.tag == "id" and self._is_euler(base):
             return called("exp", over)
         under = self.value(base)
         if under.is_vector and not self.is_vectorised:
@@ -74,6 +75,12 @@ class Arithmetic(Writer):
         if over.number is not None and not _is_plain(over.text):
             over = _fraction(exponent) or number(over.number)
         return raised(under, over)
+
+    def _is_euler(self, base: Node) -> bool:
+        """Return whether a base is Euler's number: `e` labelled so, or without a label and a definition."""
+        label = base.attributes.get("labels", "")
+        is_free = label in UNLABELLED and "e" not in self.scope
+        return key_of(base) == "e" and (label == "CONSTANT" or is_free)
 
     def root(self, degree: list[Node], part: Term) -> Term:
         """Return a root of any degree."""

@@ -1,4 +1,4 @@
-"""Find the units of expressions by the language of worksheets itself."""
+"""Find the units of expressions with the parser of the worksheet language."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Declarations:
                 f"formula that the language refuses ({error})", _remedy(error.code)
             ) from None
         except lark.exceptions.LarkError:
-            raise Untranslatable("formula that is not understood", "write it by hand") from None
+            raise Untranslatable("formula that cannot be read", "write it by hand") from None
         finally:
             self.bound = before
         return result
@@ -114,6 +114,11 @@ def fits(text: str, sort: Sort) -> bool:
         return False
 
 
+def _is_speed(text: str) -> bool:
+    """Return whether a unit is one of angular speed."""
+    return dimension_of(unit(text)) == dimension_of(unit("rad/s"))
+
+
 def unit_for(sort: Sort, wanted: Sequence[str]) -> str:
     """Return the unit in which a value is declared.
 
@@ -124,8 +129,10 @@ def unit_for(sort: Sort, wanted: Sequence[str]) -> str:
     Untranslatable
         What it measures has no unit with whole powers.
     """
-    if sort.kind.base == registry.Unit("radian"):
+    if sort.kind.base == registry.Unit("radian") and not sort.kind.turned:
         return next((text for text in wanted if fits(text, sort) and text != "1"), "rad")
+    if dimension_of(sort.kind) == dimension_of(unit("1/s")) and any(map(_is_speed, wanted)):
+        return "rad/s"  # to Mathcad 1/s and rad/s are one, and rpm is 2*pi/60 of it
     usual = (text for text in _USUAL if dimension_of(unit(text)) == dimension_of(sort.kind))
     declared = next((text for text in (*wanted, *usual) if fits(text, sort)), None)
     if declared:

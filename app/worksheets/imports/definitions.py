@@ -9,12 +9,13 @@ from app.worksheets.imports.expressions import Expressions
 from app.worksheets.imports.list_definitions import ListDefinitions
 from app.worksheets.imports.names import key_of, legal, look
 from app.worksheets.imports.outcome import Outcome, one_line
-from app.worksheets.imports.quantities import scaled, unit_named
+from app.worksheets.imports.quantities import scaled
 from app.worksheets.imports.regions import Original
 from app.worksheets.imports.scope import FailedName, Function, Scope, Value, Written
 from app.worksheets.imports.statements import without_result
 from app.worksheets.imports.terms import Term
 from app.worksheets.imports.trees import Node
+from app.worksheets.imports.unit_names import label_units
 
 
 class Definitions(ListDefinitions):
@@ -30,8 +31,7 @@ class Definitions(ListDefinitions):
         """
         self.now = outcome
         self.owners[outcome.original.number] = outcome
-        if not self.is_labelled:
-            _label_units(math, self.scope)
+        label_units(math, self.scope.keys() | _own_names(math), self.letters)
         self.expect(outcome, math.parts[1] if math.tag == "define" and len(math.parts) > 1 else math)
         match math.tag, math.parts:
             case "define" | "globalDefine", [target, value]:
@@ -144,7 +144,7 @@ class Definitions(ListDefinitions):
             self.now = before
 
     def _result(self, outcome: Outcome, math: Node) -> None:
-        """A region that shows a result: of a name, or of a formula, which gets a line."""
+        """Translate a region that shows the result of a name, or of a formula, which gets a line."""
         inner = math.parts[0]
         at = Expressions(self, self.scope)
         while inner.tag == "parens" and inner.parts:
@@ -162,7 +162,7 @@ class _Trial:
     """Answers what an expression asks of a sheet, and writes nothing."""
 
     def __init__(self, sheet: Definitions) -> None:
-        self.origin, self.is_labelled = sheet.origin, sheet.is_labelled
+        self.origin = sheet.origin
         self.axis = sheet.axis
 
     def function(self, function: Function, arguments: Sequence[Term]) -> str | None:
@@ -183,15 +183,14 @@ _HOPELESS = frozenset({
 })  # fmt: skip
 
 
-def _label_units(math: Node, scope: Scope) -> None:
-    """Say which names are units, as Mathcad Prime does: those that nothing defines."""
-    own = set(_defined(math.parts[0])) if math.tag == "define" and math.parts else set[str]()
+def _own_names(math: Node) -> set[str]:
+    """Return the names to which a region itself gives a meaning: what it defines, parameters, local names."""
+    own = (
+        set(_defined(math.parts[0])) if math.tag in ("define", "globalDefine") and math.parts else set[str]()
+    )
     for tag in ("boundVars", "localDefine"):
         own.update(key_of(name) for node in math.all(tag) for name in node.parts if name.tag == "id")
-    for node in math.all("id"):
-        key = key_of(node)
-        if key not in scope and key not in own and unit_named(key) is not None:
-            node.attributes.setdefault("labels", "UNIT")
+    return own
 
 
 def _defined(target: Node) -> Iterator[str]:

@@ -1,7 +1,7 @@
 """Mathcad's trees as expressions of worksheets.
 
-A vector of Mathcad is a list. A range variable stands for its values, one by one, and so does what it
-indexes. What worksheets do not have is refused by its name.
+A vector of Mathcad is a list. A range variable becomes the list of its values, and so does a list that it
+indexes. A construct that worksheets lack is refused by name.
 """
 
 from __future__ import annotations
@@ -90,9 +90,9 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
             return _WELL_KNOWN[key]
         if key == "∞":
             raise Untranslatable("infinity", "give a number")
-        if label == "CONSTANT" or (key == "e" and not self.sheet.is_labelled):
+        if label == "CONSTANT":
             return _constant(key)
-        if key == "%" or (label in ("", "*", "None") and key and unit_named(key)):
+        if key == "%":
             return self._unit(key)
         raise Unnamed(key)
 

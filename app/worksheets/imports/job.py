@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from app.worksheets.imports.legacy import read_legacy
@@ -9,7 +11,7 @@ from app.worksheets.imports.outcome import Outcome, one_line
 from app.worksheets.imports.package import is_package
 from app.worksheets.imports.prime import read_prime
 from app.worksheets.imports.record import SheetRecord, recorded
-from app.worksheets.imports.regions import OriginalSheet
+from app.worksheets.imports.regions import Original, OriginalSheet
 from app.worksheets.imports.translation import translated
 from app.worksheets.imports.verification import verified
 
@@ -45,8 +47,21 @@ def imported(content: bytes, title: str) -> ImportResult:
     """
     sheet = read_sheet(content)
     outcomes = translated(sheet)
+    outcomes += list(_left_out(sheet, outcomes))
     text = verified(_title(outcomes, title), outcomes)
     return ImportResult(text, recorded(sheet, outcomes, text))
+
+
+def _left_out(sheet: OriginalSheet, outcomes: Iterable[Outcome]) -> Iterator[Outcome]:
+    """Yield a refusal for each region that the file has by the other count and no outcome stands for."""
+    reported = Counter(outcome.original.number for outcome in outcomes)
+    for number in (sheet.counted - reported).elements():
+        outcome = Outcome(Original(number, "other", 0.0, 0.0))
+        outcome.refuse(
+            "region that the import left out, which is a fault of the import",
+            "report the fault, and write here by hand what the region says",
+        )
+        yield outcome
 
 
 def _title(outcomes: list[Outcome], other: str) -> str:

@@ -1,39 +1,56 @@
-"""Sheets of Mathcad 11 to 15 (.xmcd): one XML document, its trees brought to the form of Mathcad Prime."""
+"""Sheets of Mathcad 11 to 15 (.xmcd, .xmcdz): one XML document, brought to the form of Mathcad Prime."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from itertools import islice
 
 from app.worksheets.imports.errors import SheetNotRead
-from app.worksheets.imports.regions import MOST_REGIONS, Kind, Original, OriginalSheet, Tag, coordinate
+from app.worksheets.imports.package import Budget, unpacked
+from app.worksheets.imports.regions import (
+    MOST_REGIONS,
+    Kind,
+    Original,
+    OriginalSheet,
+    Tag,
+    coordinate,
+    count_regions,
+    number_of,
+)
 from app.worksheets.imports.trees import Node, read
 
 _KINDS: Mapping[str, Kind] = {
     "math": "math", "text": "text", "plot": "plot", "picture": "picture", "area": "area",
     "pageBreak": "page break",
 }  # fmt: skip
+_GZIP = b"\x1f\x8b"
 _RENAMED = {"ifThen": "if", "otherwise": "else", "sqrt": "nthRoot"}
 _SKIPPED = {"originRef", "parentRef", "comment", "originComment", "contentHash", "resultFormat"}
 
 
 def read_legacy(content: bytes) -> OriginalSheet:
-    """Read a .xmcd file.
+    """Read a .xmcd file, or a .xmcdz file, which is one compressed by gzip.
+
+    Regions stand in the sheet, in its areas, collapsed or not, and among the words of its texts.
 
     Raises
     ------
     SheetNotRead
         It is no such file, or it is larger than a sheet may be.
     """
+    if content.startswith(_GZIP):
+        content = unpacked(content, Budget())
     root = read(content, "the file")
     if root.tag != "worksheet" or root.first("regions") is None:
         what = f"its outermost element is {root.tag[:40]!a}"
         raise SheetNotRead(
-            "no_sheet", f"{what}: send a .mcdx of Mathcad Prime or a .xmcd of Mathcad 11 to 15"
+            "no_sheet", f"{what}: send a .mcdx of Mathcad Prime or a .xmcd or .xmcdz of Mathcad 11 to 15"
         )
-    regions = tuple(_regions(root))
+    regions = tuple(_original(region) for region in islice(root.all("region"), MOST_REGIONS + 1))
     if len(regions) > MOST_REGIONS:
         raise SheetNotRead("too_large", f"it has more than {MOST_REGIONS} regions: split the sheet")
-    return OriginalSheet("Mathcad", regions, _origin(root), is_labelled=False, results_carry_units=True)
+    counted = count_regions(content)
+    return OriginalSheet("Mathcad", regions, counted, _origin(root), results_carry_units=True)
 
 
 def _origin(root: Node) -> int:
@@ -42,16 +59,10 @@ def _origin(root: Node) -> int:
     return int(text) if text.lstrip("-").isdigit() and len(text) < 6 else 0
 
 
-def _regions(root: Node) -> Iterator[Original]:
-    for group in (part for part in root.parts if part.tag == "regions"):
-        for region in group.parts:
-            if region.tag == "region" and region.parts:
-                yield _original(region)
-                yield from _regions(region.parts[0]) if region.parts[0].tag == "area" else ()
-
-
 def _original(region: Node) -> Original:
-    body = region.parts[0]
+    body = next((part for part in region.parts if part.tag in _KINDS), None) or next(
+        iter(region.parts), region
+    )
     kind = _KINDS.get(body.tag, "other")
     math = _math(body) if kind == "math" else None
     cached = next(math.all("result"), None) if math else None
@@ -59,7 +70,7 @@ def _original(region: Node) -> Original:
     named = region.attributes.get("tag", "").lower()
     tag: Tag = "input" if named == "input" else "output" if named == "output" else ""
     return Original(
-        number=region.attributes.get("region-id", "")[:20],
+        number=number_of(region.attributes.get("region-id")),
         kind=kind,
         top=coordinate(region.attributes.get("align-y") or region.attributes.get("top")),
         left=coordinate(region.attributes.get("left")),

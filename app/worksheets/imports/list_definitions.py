@@ -21,7 +21,7 @@ class ListDefinitions(Statements):
     """Defines lists and choices."""
 
     def range_of(self, outcome: Outcome, target: Node, node: Node) -> None:
-        """A range variable, as a list."""
+        """Translate a range variable into a list."""
         key = key_of(target)
         numbers = self._numbers(node)
         axis = replace(self.axis(len(numbers)), start=int(numbers[0]), numbers=numbers)
@@ -47,7 +47,7 @@ class ListDefinitions(Statements):
         return tuple(start + n * step for n in range(count))
 
     def items_of(self, outcome: Outcome, target: Node, value: Node) -> None:
-        """Items of a list along a range: all of them at once."""
+        """Translate items of a list along a range, all of them at once."""
         if len(target.parts) == 3 and target.parts[1].tag == "id" and target.parts[2].tag == "real":
             self._one_item(outcome, target, value)
             return
@@ -72,7 +72,7 @@ class ListDefinitions(Statements):
         self.declare(outcome, key, replace(term, axis=axis, is_vector=True), self.asked(value))
 
     def _one_item(self, outcome: Outcome, target: Node, value: Node) -> None:
-        """Another value for one item of a list that is there, which makes another list."""
+        """Translate a new value for one item of a list, which makes another list."""
         key = key_of(target.parts[1])
         whole = self.scope.get(key)
         if isinstance(whole, FailedName):
@@ -89,7 +89,7 @@ class ListDefinitions(Statements):
         outcome.name = ""
 
     def several(self, outcome: Outcome, target: Node, value: Node) -> None:
-        """Several names at once: of the items of a list, or of the columns of a combo box."""
+        """Translate several names at once: of the items of a list, or of the columns of a combo box."""
         targets = target.parts
         if not all(part.tag == "id" for part in targets):
             raise Untranslatable("items defined one by one", "write the list with all its items")
@@ -113,7 +113,7 @@ class ListDefinitions(Statements):
         outcome.name = ""
 
     def choose(self, outcome: Outcome, targets: Sequence[Node], control: Node) -> None:
-        """A combo box: a choice among its rows, and the values of the chosen row."""
+        """Translate a combo box: a choice among its rows, and the values of the chosen row."""
         rows, columns, chosen = (_count(control, key) for key in ("rows", "cols", "SelectedRow"))
         holder = control.first("ComboBoxValues")
         cells = list(holder.parts) if holder else []

@@ -1,11 +1,12 @@
 """The parts of a .mcdx package, unpacked within limits that are counted while reading.
 
-The sizes that a ZIP states are a client's words, so they decide nothing. A part that is a ZIP itself (a text
-region) is opened once, for its one document, and spends the same budget; nothing within it is opened.
+A client may forge the sizes that a ZIP states, so the reader ignores them. A part that is a ZIP itself (a
+text region) is opened once, for its one document, and spends the same budget; nothing within it is opened.
 """
 
 from __future__ import annotations
 
+import gzip
 import io
 import struct
 import zipfile
@@ -96,13 +97,32 @@ class Package:
         return b"".join(pieces)
 
 
+def unpacked(content: bytes, budget: Budget) -> bytes:
+    """Return what a file compressed by gzip holds.
+
+    Raises
+    ------
+    SheetNotRead
+        It is damaged, or it holds too much.
+    """
+    pieces: list[bytes] = []
+    try:
+        with gzip.GzipFile(fileobj=io.BytesIO(content)) as file:
+            while piece := file.read(_PIECE):
+                budget.spend(len(piece))
+                pieces.append(piece)
+    except _DAMAGES as error:
+        raise SheetNotRead("package", f"it is a damaged .xmcdz file ({error}): {AGAIN}") from None
+    return b"".join(pieces)
+
+
 def is_package(content: bytes) -> bool:
     """Return whether a file begins as a ZIP does."""
     return content.startswith(b"PK\x03\x04")
 
 
 def _check_directory(content: bytes) -> None:
-    """Declarations the directory before `zipfile` reads it: it makes an object of every entry."""
+    """Check the directory before `zipfile` reads it: it makes an object of every entry."""
     place = len(content) - _END_SIZE
     if content[place : place + 4] != _END or content[-2:] != b"\0\0":
         place = content.rfind(_END, max(0, place - _LONGEST_COMMENT))

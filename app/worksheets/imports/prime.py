@@ -7,7 +7,16 @@ from dataclasses import dataclass, field
 
 from app.worksheets.imports.errors import SheetNotRead
 from app.worksheets.imports.package import Budget, Package, is_package
-from app.worksheets.imports.regions import MOST_REGIONS, Kind, Original, OriginalSheet, Tag, coordinate
+from app.worksheets.imports.regions import (
+    MOST_REGIONS,
+    Kind,
+    Original,
+    OriginalSheet,
+    Tag,
+    coordinate,
+    count_regions,
+    number_of,
+)
 from app.worksheets.imports.trees import Node, read
 
 WORKSHEET, RESULTS = "mathcad/worksheet.xml", "mathcad/result.xml"
@@ -37,11 +46,12 @@ def read_prime(content: bytes) -> OriginalSheet:
     if sheet is None or sheet.first("regions") is None:
         what = "it has no part mathcad/worksheet.xml with regions"
         raise SheetNotRead(
-            "no_sheet", f"{what}: send a .mcdx of Mathcad Prime or a .xmcd of Mathcad 11 to 15"
+            "no_sheet", f"{what}: send a .mcdx of Mathcad Prime or a .xmcd or .xmcdz of Mathcad 11 to 15"
         )
     reader = _Reader(package, budget, _results(package), *_tags(package), _targets(package))
     regions = tuple(reader.regions(sheet))
-    return OriginalSheet("Mathcad Prime", regions, _origin(package))
+    counted = count_regions(package.read(WORKSHEET) or b"")
+    return OriginalSheet("Mathcad Prime", regions, counted, _origin(package))
 
 
 def _part(package: Package, name: str) -> Node | None:
@@ -89,33 +99,30 @@ class _Reader:
     count: int = field(default=0)
 
     def regions(self, node: Node, block: str = "") -> Iterator[Original]:
-        """Yield the regions within an element, and within the areas and solve blocks among them."""
-        for group in (part for part in node.parts if part.tag == "regions"):
-            for region in group.parts:
-                if region.tag == "region" and region.parts:
-                    yield from self._region(region, block)
+        """Yield the regions within an element, and all within them, such as those of areas."""
+        for region in node.outermost("region"):
+            yield from self._region(region, block)
 
     def _region(self, region: Node, block: str) -> Iterator[Original]:
         self.count += 1
         if self.count > MOST_REGIONS:
             raise SheetNotRead("too_large", f"it has more than {MOST_REGIONS} regions: split the sheet")
-        body = region.parts[0]
+        body = next(iter(region.parts), region)
         kind = _KINDS.get(body.tag, "other")
-        if kind == "table":
-            for math in body.all("math"):
-                yield self._original(region, "math", math, block)
-            return
-        yield self._original(region, kind, body, block)
+        maths = list(body.outermost("math", "region")) if kind == "table" else []
+        for math in maths:
+            yield self._original(region, "math", math, block)
+        if not maths:
+            yield self._original(region, kind, body, block)
         number = region.attributes.get("region-id", "")
-        if kind in ("area", "solve block"):
-            yield from self.regions(body, number if kind == "solve block" else block)
+        yield from self.regions(body, number if kind == "solve block" else block)
 
     def _original(self, region: Node, kind: Kind, body: Node, block: str) -> Original:
         number = region.attributes.get("region-id", "")
         cached = self.results.get(body.attributes.get("resultRef", "")) if kind == "math" else None
         math = next((part for part in body.parts if part.tag not in _FORMATS), None)
         return Original(
-            number=number[:20],
+            number=number_of(number),
             kind=kind,
             top=coordinate(region.attributes.get("top")),
             left=coordinate(region.attributes.get("left")),

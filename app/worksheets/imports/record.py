@@ -45,6 +45,7 @@ class SheetRecord(TypedDict):
 
     program: str
     origin: int
+    counted: int
     regions: list[RegionRecord]
 
 
@@ -66,6 +67,7 @@ def recorded(sheet: OriginalSheet, outcomes: Sequence[Outcome], text: str) -> Sh
     return {
         "program": sheet.program,
         "origin": sheet.origin,
+        "counted": sheet.counted.total(),
         "regions": [_region(outcome, lines, owners) for outcome in outcomes],
     }
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import Literal
+from xml.parsers import expat
 
 from app.worksheets.imports.trees import Node
 
@@ -12,6 +14,11 @@ Tag = Literal["", "input", "output"]
 
 MOST_REGIONS = 2_000
 MATHEMATICAL: frozenset[Kind] = frozenset({"math"})
+
+
+def number_of(text: str | None) -> str:
+    """Return the number of a region as it is shown."""
+    return (text or "")[:20]
 
 
 @dataclass(frozen=True)
@@ -39,16 +46,35 @@ class Original:
 
 @dataclass(frozen=True)
 class OriginalSheet:
-    """A sheet's regions, where its indices begin, and which program wrote it."""
+    """A sheet's regions, where its indices begin, and which program wrote it.
+
+    `counted` says how often the file has a region of each number, by another reading of the file.
+    """
 
     program: Literal["Mathcad Prime", "Mathcad"]
     regions: tuple[Original, ...] = ()
+    counted: Counter[str] = field(default_factory=Counter)
     origin: int = 0
-    is_labelled: bool = True
-    """Whether names say what they are: in Mathcad Prime a unit is labelled so."""
     results_carry_units: bool = False
     """Whether a cached result names its whole unit; else it is a multiple of the unit that is asked for."""
     notes: tuple[str, ...] = field(default=())
+
+
+def count_regions(content: bytes) -> Counter[str]:
+    """Count the regions in a document by their numbers, as the parser meets their tags.
+
+    It shares nothing with `trees` and with what reads regions from trees, so that each checks the other.
+    """
+    counted = Counter[str]()
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        if tag.rpartition(":")[2] == "region":
+            counted[number_of(attributes.get("region-id"))] += 1
+
+    parser = expat.ParserCreate()
+    parser.StartElementHandler = start
+    parser.Parse(content, True)
+    return counted
 
 
 def coordinate(text: str | None) -> float:

@@ -46,7 +46,7 @@ class Imports:
         self.catalogues, self.worksheets = catalogues, worksheets
 
     def begin(self, content: bytes, id: str, file: str, once: Once) -> str:
-        """Queue the import of a file as a worksheet; the id of the job.
+        """Queue the import of a file as a worksheet and return the id of the job.
 
         Raises
         ------
@@ -60,7 +60,7 @@ class Imports:
         if not 0 < len(content) <= MOST_BYTES:
             what = "the body is empty" if not content else f"it has more than {MOST_BYTES // 2**20} MiB"
             raise SheetNotRead(
-                "too_large" if content else "no_sheet", f"{what}: send one .mcdx or .xmcd file"
+                "too_large" if content else "no_sheet", f"{what}: send one .mcdx, .xmcd or .xmcdz file"
             )
         require_free(id, self.catalogues)
         name = PurePath(file.replace("\\", "/")).name

@@ -15,9 +15,10 @@ from app.worksheets.imports.regions import OriginalSheet
 from app.worksheets.imports.scope import Function, Scope, Value, Written
 from app.worksheets.imports.terms import Axis, Term, number
 from app.worksheets.imports.trees import Node
+from app.worksheets.imports.unit_names import letters_of
 from templates.core.language.template import Template
 from templates.core.units.expressions import Sort, constant
-from templates.core.units.units import registry, unit
+from templates.core.units.units import is_rate, registry, unit
 
 RESERVED = frozenset(
     "if then else and or not is to so that over from within gives given choice curve solve require check test"
@@ -32,8 +33,9 @@ class Statements:
 
     def __init__(self, sheet: OriginalSheet) -> None:
         self.sheet = sheet
-        self.origin, self.is_labelled = sheet.origin, sheet.is_labelled
+        self.origin = sheet.origin
         self.scope: Scope = {}
+        self.letters = letters_of(sheet.regions)
         self.declared = Declarations()
         self.names = Names(RESERVED)
         self.outcomes: dict[int, Outcome] = {}
@@ -134,7 +136,7 @@ class Statements:
     ) -> Value:
         """Write the line of a value, and let the name mean it from here on."""
         sort = self.declared.sort(term.text, None)
-        unit = unit_for(sort, wanted)
+        unit = unit_for(sort, [*wanted, *self._shown_in(key)] if is_rate(sort.kind.base) else wanted)
         name = self.names.take(key)
         if key in self.scope:
             outcome.notes.append(f"{look(key)} is defined again here: from here on it is {name}")
@@ -152,6 +154,17 @@ class Statements:
         )
         self.scope[key] = value
         return value
+
+    def _shown_in(self, key: str) -> list[str]:
+        """Return the units in which results of a name alone are shown: they say what a rate counts."""
+        maths = (region.math for region in self.sheet.regions)
+        results = [math for math in maths if math is not None and math.tag == "eval" and math.parts]
+        return [
+            unit
+            for math in results
+            if math.parts[0].tag == "id" and key_of(math.parts[0]) == key
+            for unit in self.asked(math)
+        ]
 
     def _symbol(self, key: str, name: str) -> str:
         """Return a clause where the name has lost the look that it had."""

@@ -61,7 +61,7 @@ def _calculating(outcome: Outcome, work: Definitions) -> None:
 
 
 def _solving(outcome: Outcome, work: Definitions) -> None:
-    """A region of a solve block: only its solver defines anything."""
+    """Translate a region of a solve block: only its solver defines anything."""
     region = outcome.original
     assert region.math is not None
     if region.role != "solver":

@@ -51,6 +51,16 @@ class Node:
                 yield node
             waiting.extend(reversed(node.parts))
 
+    def outermost(self, tag: str, *closed: str) -> Iterator[Node]:
+        """Yield the elements of a name within this one, but for those within another, or within `closed`."""
+        waiting = list(reversed(self.parts))
+        while waiting:
+            node = waiting.pop()
+            if node.tag == tag:
+                yield node
+            elif node.tag not in closed:
+                waiting.extend(reversed(node.parts))
+
 
 def read(content: bytes, name: str) -> Node:
     """Return the root of a document.

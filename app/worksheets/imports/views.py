@@ -27,7 +27,9 @@ def imported(row: Row) -> SheetImport:
         raise NotFound(f"worksheet {row.id} was typed, not imported")
     open_ = {id(region) for region in unresolved(record, row.text)}
     items = [{**region, "is_unresolved": id(region) in open_} for region in record["regions"]]
-    return SheetImport.model_validate({**_short(row, record), "origin": record["origin"], "items": items})
+    return SheetImport.model_validate(
+        {**_short(row, record), "origin": record["origin"], "counted": record["counted"], "items": items}
+    )
 
 
 def _short(row: Row, record: ImportRecord) -> dict[str, object]:

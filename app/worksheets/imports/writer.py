@@ -1,4 +1,4 @@
-"""Parts that all writers of expressions share: the place in the sheet, and its questions to the sheet."""
+"""Base class of all expression writers: the position in the sheet, and look-ups of names there."""
 
 from __future__ import annotations
 
@@ -20,7 +20,6 @@ class Sheets(Protocol):
     """The sheet that is being written, as an expression sees it."""
 
     origin: int
-    is_labelled: bool
 
     def function(self, function: Function, arguments: Sequence[Term]) -> str | None:
         """Return the name of a function's statement for these arguments.

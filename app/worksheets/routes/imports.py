@@ -1,4 +1,4 @@
-"""`/worksheets/import`: sheets of Mathcad as drafts, and what became of their regions."""
+"""`/worksheets/import`: import Mathcad sheets as drafts, and report the outcome of each region."""
 
 from __future__ import annotations
 
@@ -42,8 +42,9 @@ async def import_worksheet(
     id: NewId,
     file: FileName = "sheet.mcdx",
 ) -> Response:
-    """A sheet of Mathcad Prime (.mcdx) or Mathcad 11 to 15 (.xmcd) as a draft; the body is the file itself.
+    """A sheet of Mathcad Prime (.mcdx) or Mathcad 11 to 15 (.xmcd, .xmcdz) as a draft.
 
+    The body is the file itself.
     The job answers with the worksheet once it has ended. Every region of the sheet is accounted for: see
     `GET /worksheets/{id}/import`.
     """

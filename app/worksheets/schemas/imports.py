@@ -62,4 +62,5 @@ class SheetImport(SheetOrigin):
     """Every region of an imported sheet, in the order in which Mathcad calculates them."""
 
     origin: int = Field(description="the index of the first item of a list in the sheet")
+    counted: int = Field(description="regions in the file, counted apart from the reading of the items")
     items: list[ImportedRegion]

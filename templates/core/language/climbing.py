@@ -88,7 +88,7 @@ def best_first(cls: type[Template], ladder: tuple[str, ...], start: str, points:
 
 
 def has_value(template: Template, output: str) -> Any:
-    """Mask of the points where an output exists, of the shape of the points or a part of it."""
+    """Return the mask of the points where an output exists, of the shape of the points or a part of it."""
     formula = template.formulas[output]
     there = ~np.isnan(getattr(template, formula.attribute))
     return formula.inside(there) if isinstance(formula, Profile) else there
@@ -190,7 +190,7 @@ class _Search:
         return met
 
     def _wanted(self, rung: Template, name: str, where: Mask | None) -> Mask:
-        """Mask of where an output has a value at the starting level, of the shape of the points of a rung."""
+        """Return the mask of where an output has a value at the starting level, shaped as a rung's points."""
         if rung.level == self.start:
             return np.zeros((), dtype=bool)
         try:

@@ -124,7 +124,7 @@ class Comparison:
 
     @property
     def share(self) -> float | None:
-        """The side that must be smaller over the one that must be larger, at the worst point that counts.
+        """Return the side that must be smaller over the other, at the worst point that counts.
 
         None where it has no meaning: a side is the constant 0, or is not an amount at one of the points.
         """

@@ -93,7 +93,7 @@ def _polished(
     bounds: tuple[float, float],
     outputs: Outputs,
 ) -> tuple[float, Outputs] | None:
-    """The crossing of a curve near that of the scan, by its slope and then by secants, and the output."""
+    """Return the crossing of a curve near that of the scan, by slope and secants, and the output."""
     x, slope = place.x, _slope(scanned, place.x, bounds)
     size = abs(curve.wanted) or abs(slope) * (bounds[1] - bounds[0])
     miss = curve.miss_of(outputs)

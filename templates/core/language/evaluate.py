@@ -341,7 +341,7 @@ def notices_of(template: Template) -> list[Notice]:
 def criterion_warnings(
     template: Template, answers: Mapping[str, Answer], errors: Mapping[str, Any]
 ) -> list[Notice]:
-    """The warnings of those criteria whose outputs are among these answers of a template at its level."""
+    """Return the warnings of the criteria whose outputs are among these answers."""
     if not template.declared_criteria:
         return []
     measured, level = accuracy(type(template)), template.level or None

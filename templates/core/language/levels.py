@@ -10,6 +10,9 @@ measured. Two levels may follow two conventions, and then their errors say nothi
 (`truth_of`, `next_levels`). The error of a profile is relative to its largest absolute value
 (`absolute_error`).
 
+A level may state the error of each answer itself, from what it has computed (`Template.own_error`); the table
+then says under `own` what error to expect before.
+
 Errors may be measured apart for several cases of inputs, such as ways to feed a bearing: then the table holds
 them under `cases`, and `Template.measured_case` says which case its inputs are.
 """
@@ -75,8 +78,15 @@ class Accuracy:
         """Return errors of single cases of inputs, by case, level and output, in the same cells."""
         return {case: _tables(levels) for case, levels in self.content.get("cases", {}).items()}
 
+    def own(self, level: str) -> Mapping[str, float]:
+        """Return by output the error to expect at a level that states the error of each answer itself."""
+        of_level: Mapping[str, Mapping[str, float]] = self.content.get("levels", {}).get(level, {})
+        return of_level.get("own", {})
+
     def states_any(self, level: str) -> bool:
         """Return whether any error is stated at a level, in any case."""
+        if self.own(level):
+            return True
         measured = (self.errors, *self.cases.values())
         return any(
             np.isfinite(table).any() for levels in measured for table in levels.get(level, {}).values()
@@ -95,7 +105,10 @@ class Accuracy:
         An estimate is the largest relative error to expect at the template's level, of a profile relative to
         its largest absolute value; NaN where none is stated. Scalars, or arrays of the shape of the points.
         """
-        return self.expected(template, template.level, outputs)
+        errors = self.expected(template, template.level, outputs)
+        for name in self.own(template.level).keys() & errors.keys():
+            errors[name] = template.own_error(name)
+        return errors
 
     def expected(self, template: Template, level: str, outputs: Iterable[str]) -> dict[str, Any]:
         """Return the errors stated for a level in the cell in which the template lies at its own level."""
@@ -105,13 +118,15 @@ class Accuracy:
         tables = levels.get(level or SINGLE, {})
         there = template if level == template.level else template.at(level)
         exact = {name for name in names if _same_at_all_levels(template, name)} if template.levels else set()
+        own = self.own(level or SINGLE)
         available = tables if there.is_measured() else {}
-        measured = [name for name in names if name in available and name not in exact]
+        measured = [name for name in names if name in available and name not in exact and name not in own]
         cell = self._cell(template) if measured else None
         estimates = {name: _looked_up(tables[name], cell) for name in measured}
         errors: dict[str, Any] = estimates
         if len(estimates) < len(names):
             none = np.zeros(template.shape_of_points())[()]
+            estimates |= {name: none + own[name] for name in names if name in own and name not in exact}
             unknown = none + np.nan
             errors = {n: estimates[n] if n in estimates else none if n in exact else unknown for n in names}
         for condition in self._conditions:

@@ -33,7 +33,7 @@ class Bounds:
         return Bounds(*(None if limit is None else float(scale.to_si(limit)) for limit in limits))
 
     def admits(self, value: Any) -> Any:
-        """Mask of the values (scalar or array) within the limits; NaN is not."""
+        """Return the mask of the values (scalar or array) within the limits; NaN is not."""
         inside = value == value
         if self.gt is not None:
             inside = inside & (value > self.gt)
@@ -112,7 +112,7 @@ class Meaning:
         return f"{self.scale.from_si(float(si)):.6g}{'' if self.unit == '1' else ' ' + self.unit}"
 
     def admits(self, value: Any) -> Any:
-        """Mask of SI values (scalar or array) that are finite, in the domain, and whole if they must be."""
+        """Return the mask of SI values that are finite, in the domain, and whole if they must be."""
         if isinstance(value, float):
             low, high = self.interval
             return low <= value <= high and not (self.integer and value != round(value))
@@ -170,7 +170,7 @@ def _named(words: str, name: str | None) -> str:
     """
     name = name or api_name(words)
     if not _API_NAME.fullmatch(name):
-        raise TypeError(f"{words!r} makes the API name {name!r}; give it a name= in snake_case")
+        raise TypeError(f"{words!r} gives the API name {name!r}; give it a name= in snake_case")
     return name
 
 

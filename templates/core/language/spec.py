@@ -172,7 +172,7 @@ class Profile(Formula[T]):
         self.along, self.axes = along, axes
 
     def inside(self, places: NDArray[np.bool_]) -> Any:
-        """Mask of the points all of whose places hold."""
+        """Return the mask of the points all of whose places hold."""
         return np.all(places, axis=tuple(range(-self.axes, 0)))
 
     def spread(self, points: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -231,7 +231,9 @@ class Requirement:
         self.missing, self.warning = missing, warning
         self.sentence = " ".join((inspect.getdoc(function) or "").split()).rstrip(".")
         if not self.sentence:
-            raise TypeError(f"{function.__qualname__}: the docstring of a requirement is its sentence")
+            raise TypeError(
+                f"{function.__qualname__}: a requirement needs a docstring: the sentence that a user reads"
+            )
 
     @cached_property
     def uses(self) -> tuple[str, ...]:

@@ -83,7 +83,7 @@ def _read_as_given(node: ast.AST) -> str | None:
 
 
 def lines_of_attributes(function: Callable[..., Any]) -> dict[str, int]:
-    """The first line of the file in which a method names each attribute x, as `self.x` or by a text."""
+    """Return the first line in which a method names each attribute x, as `self.x` or by a text."""
     first = function.__code__.co_firstlineno
     lines: dict[str, int] = {}
     for node in ast.walk(syntax(function)):

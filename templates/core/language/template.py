@@ -173,6 +173,10 @@ class Template(Calculation):
         """Return the measured case of such inputs, where errors were measured apart for several."""
         return ""
 
+    def own_error(self, output: str) -> Array:
+        """Return the relative error of an output that the level itself states; NaN without one [-]."""
+        return np.full(self.shape_of_points(), np.nan)[()]
+
     def starting_level(self) -> str:
         """Return the level that is taken when none is requested."""
         ladder = self.ladder()
@@ -210,7 +214,7 @@ class Template(Calculation):
 
     @classmethod
     def _waits(cls, rule: Requirement, pending: Collection[str]) -> bool:
-        """True if a rule is about any of the inputs that are pending, by name or beneath what it uses."""
+        """Return whether a rule depends on any of the pending inputs."""
         beneath = {name for used in rule.uses for name in cls.dependencies(used)}.union(rule.uses_as_given)
         attributes = {cls.inputs[name].attribute for name in pending}
         return not (attributes.isdisjoint(beneath) and frozenset(pending).isdisjoint(rule.names))

@@ -35,7 +35,7 @@ from templates.core.sheets.lines import Chunk
 from templates.core.sheets.names import FUEL, Names, sort_of
 from templates.core.sheets.solving import SolveBody, equation_of
 from templates.core.units.conformity import declared_kind, turns_remark
-from templates.core.units.nodes import EITHER, Constant, Kind, kind_of
+from templates.core.units.nodes import EITHER, Kind, kind_of
 from templates.core.units.sorts import Sort
 from templates.core.units.units import compatible, difference_in
 
@@ -88,11 +88,11 @@ class Builder:
         """Return whether the formula of a name in K says more of its kind than was known."""
         name = str(statement.parts[0])
         try:
-            node, got = self.reader.part(statement, statement.parts[3])
+            _, got = self.reader.part(statement, statement.parts[3])
         except (Refusal, FollowsFromFault):
             return False
         own = self.names.sorts[name]
-        if isinstance(node, Constant) or not compatible(got.kind, own.kind):
+        if got.kind.literal or not compatible(got.kind, own.kind):
             return False
         self.names.sorts[name] = replace(own, kind=declared_kind(got.kind, own.kind))
         return self.names.sorts[name].kind != own.kind

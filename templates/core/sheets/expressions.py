@@ -11,7 +11,7 @@ from templates.core.errors import FaultyText
 from templates.core.sheets.body import TreeBody
 from templates.core.sheets.grammar import ParsedStatement
 from templates.core.sheets.names import Names, sort_of
-from templates.core.sheets.remedies import declared_in, remedy_at
+from templates.core.sheets.remedies import declared_in, names_in_units, remedy_at
 from templates.core.units.conformity import misfit
 from templates.core.units.expressions import FaultyPlace, checked
 from templates.core.units.operations import Constant
@@ -77,6 +77,7 @@ class Reader:
             why, remedy = mismatch
             is_declared = str(statement.parts[0]).rstrip("(") == name
             remedy = remedy or (declared_in(name, got.kind) if is_declared else _given_in(unit_text))
+            remedy = names_in_units(at, self.names) or remedy
             message = f"{name} is declared in {unit_text}, but {why}"
             raise statement.refuse("unit_mismatch", message, at, remedy)
         if axis is not None:

@@ -87,7 +87,7 @@ def taken(parameter: str, unit_text: str, part: Part, takes: str) -> Kind:
 
 
 def function_of(statement: ParsedStatement, reader: Reader) -> Function:
-    """The function that a statement declares, its formula checked by what its parameters are declared in.
+    """Return the function that a statement declares, with its formula checked for units.
 
     Raises
     ------

@@ -135,7 +135,7 @@ def solved(matrices: NDArray[Any], right: NDArray[Any]) -> tuple[NDArray[Any], N
 
 
 def _sizes(matrices: NDArray[Any], axis: int) -> NDArray[Any]:
-    """The largest number of each row or column, a power of 2, so that dividing by it rounds nothing."""
+    """Return the size of each row or column as a power of 2, by which a division is exact."""
     most = np.abs(matrices).max(axis=axis, keepdims=True)
     return np.ldexp(1.0, np.frexp(most)[1] - 1)
 
@@ -157,7 +157,7 @@ def system_of(
     equations = list(_joined(node))
     remedy = "write as many equations as unknowns, as in x + y == 3 N and x - y == 1 N"
     if not all(isinstance(one, Apply) and one.operation.sign == "==" for one in equations):
-        raise statement.refuse("equation", "these are not equations joined by and", tree, remedy)
+        raise statement.refuse("equation", "only equations can be joined by `and` here", tree, remedy)
     if len(equations) != len(unknowns):
         message = f"for {len(unknowns)} unknowns there must be as many equations, not {len(equations)}"
         raise statement.refuse("equation", message, tree, remedy)

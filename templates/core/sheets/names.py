@@ -110,7 +110,7 @@ class Names:
             or name in OVER_LISTS
             or hasattr(Template, name)
         ):
-            raise FaultyText("name", f"{name} has a meaning of its own")
+            raise FaultyText("name", f"{name} is a reserved word; choose another name")
 
 
 def sort_of(text: str, name: str | None = None) -> Sort:

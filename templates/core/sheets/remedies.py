@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import lark
@@ -12,6 +13,7 @@ from templates.core.units.rules import in_words
 from templates.core.units.units import base_text, dimension_of, registry, unit
 
 MOST_NAMES = 4
+_LATER_UNIT = re.compile(r"([*/])([A-Za-z]\w*)")
 _COMMON = (
     "1", "mm", "mm**2", "mm**3", "s", "m/s", "m/s**2", "kg", "kg/m**3", "kg*m**2", "N", "MPa", "N*m", "N/mm",
     "W", "K", "mPa*s", "mm**2/s", "rad/s", "Hz", "1/s", "W/(m*K)", "J/(kg*K)", "W/(m**2*K)", "N/mm**3",
@@ -74,6 +76,26 @@ def common_unit(kind: Kind) -> str:
         return kind.unit
     alike = (text for text in _COMMON if dimension_of(unit(text)) == dimension_of(kind))
     return next(alike, base_text(kind))
+
+
+def names_in_units(at: Any, names: Names) -> str:
+    """Return the advice to put blanks before a name that was read as a unit: `t` of `1 turn/t`, the tonne."""
+    tokens = (
+        at.scan_values(lambda token: getattr(token, "type", "") == "QUANTITY") if hasattr(at, "data") else ()
+    )
+    for text in map(str, tokens):
+        spaced = _LATER_UNIT.sub(lambda part: _spaced(part, names), text)
+        if spaced != text:
+            return f"{text} is a unit from end to end; if it holds a name, write {spaced}"
+    return ""
+
+
+def _is_quantity(token: Any) -> bool:
+    return getattr(token, "type", "") == "QUANTITY"
+
+
+def _spaced(part: re.Match[str], names: Names) -> str:
+    return f" {part[1]} {part[2]}" if part[2] in names.sorts else part[0]
 
 
 def _equal(at: lark.Tree[Any], names: Names) -> str:

@@ -138,7 +138,7 @@ def read(text: str) -> Sheet:
 
 @lru_cache(maxsize=64)
 def from_text(text: str, id: str, version: int, withdrawn: str | None = None) -> type[Template]:
-    """The class of a worksheet in this process, one for each text, id, version and reason of withdrawal.
+    """Return the class of a worksheet in this process, one for each text, id, version and withdrawal.
 
     Raises
     ------

@@ -67,7 +67,8 @@ def _remedy_of_rates(kind: Kind, want: Unit, text: str) -> str:
     if not (is_rate(kind.base) and is_rate(want.base)):
         return ""
     if kind.cycles and radians(want.base):
-        return f"Hz counts cycles: write 2*pi*{_in_brackets(text)}"
+        times = re.sub(r"(?<![\w.])pi(?![\w.])", "2*pi", text)
+        return f"Hz counts cycles: write {times if kind.pi == 1 else f'2*pi*{_in_brackets(text)}'}"
     if radians(kind.base) and want.cycles:
         return f"Hz counts cycles: write {_in_brackets(text)}/(2*pi)"
     return ""
@@ -108,18 +109,23 @@ def turns_remark(kind: Kind, want: Unit, text: str) -> str:
     return ""
 
 
+def _over(name: str, divisor: str) -> str:
+    """Return a name or a number with its unit over a divisor."""
+    return f"{name} / ({divisor})" if " " in name else f"{name}/({divisor})"
+
+
 def _both_readings(names: list[str], want: Unit, text: str) -> str:
     which = f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} given in turns"
     if radians(want.base):
         return f"{which}, but in a formula the value is in rad/s already: leave out 2*pi or pi/30"
     in_turns = text
     for name in names:
-        in_turns = re.sub(rf"(?<![\w.]){re.escape(name)}(?![\w.])", f"({name}/(2*pi))", in_turns)
+        in_turns = re.sub(rf"(?<![\w.]){re.escape(name)}(?![\w.])", f"({_over(name, '2*pi')})", in_turns)
     plain = _OF_TURNS.fullmatch(text.strip()) if len(names) == 1 and not re.search(r"[-+,]", text) else None
     same = f", which is {plain[2]}{'' if plain[1] else '/2'}" if plain else ""
     turns = f": {in_turns}{same}" if in_turns != text else ""
     return (
-        f"{which}, but in a formula the value is in rad/s, and {want.text} holds no angle. If the formula "
-        f"takes turns, write {names[0]}/(2*pi) for {names[0]}{turns}. If it takes radians, "
-        f"give {names[0]} in rad/s, or write {names[0]}/(1 rad)"
+        f"{which}, but in a formula the value is in rad/s, and {want.text} holds no angle; if the formula "
+        f"takes turns, write {_over(names[0], '2*pi')} for {names[0]}{turns}; if it takes radians, "
+        f"give {names[0]} in rad/s, or write {_over(names[0], '1 rad')}"
     )

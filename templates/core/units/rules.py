@@ -31,7 +31,7 @@ def same(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> Kin
 
 def shared(sign: str, one: Kind, other: Kind, nodes: tuple[Any, ...]) -> Kind:
     """Return the kind that two values share."""
-    counted = _joined(sign, one, other)
+    counted = _joined(sign, one, other, nodes)
     if one.temperatures is None or other.temperatures is None:
         return _kind(counted, None, is_literal=one.literal or other.literal)
     if not (both := one.temperatures & other.temperatures):
@@ -42,19 +42,28 @@ def shared(sign: str, one: Kind, other: Kind, nodes: tuple[Any, ...]) -> Kind:
     return _kind(counted, both, is_literal=one.literal or other.literal)
 
 
-def _joined(sign: str, one: Kind, other: Kind) -> Kind:
+def _joined(sign: str, one: Kind, other: Kind, nodes: tuple[Any, ...]) -> Kind:
     """Return the base units that two values share; 1/s beside rad/s or Hz is that."""
+    detail = f"{sign} needs equal units, not {in_words(one)} and {in_words(other)}"
     if not compatible(one, other):
-        what = f"{in_words(one)} and {in_words(other)}"
-        raise FaultyText("unit_mismatch", f"{sign} needs equal units, not {what}")
+        is_of_rates = is_rate(one.base) and is_rate(other.base)
+        remedy = (
+            "; write 2*pi times what is in Hz, or what is in rad/s divided by (2*pi)" if is_of_rates else ""
+        )
+        raise FaultyText("unit_mismatch", detail + remedy)
     counts = [kind for kind in (one, other) if radians(kind.base) or kind.cycles]
     turned = one.turned | other.turned
     if is_rate(one.base) and turned and len(counts) == 1:
-        what = f"{in_words(one)} and {in_words(other)}"
-        detail = f"{sign} needs equal units, not {what}: {' and '.join(sorted(turned))} counts turns"
-        raise FaultyText("unit_mismatch", f"{detail}; multiply 1/s by 1 turn or by 1 rad, as in 1 turn / t")
+        remedy = next(filter(None, map(_counted, nodes)), "multiply 1/s by 1 turn or by 1 rad")
+        raise FaultyText("unit_mismatch", f"{detail}: {' and '.join(sorted(turned))} counts turns; {remedy}")
     first = counts[0] if counts else one
     return Kind(first.base, first.cycles, turned=turned)
+
+
+def _counted(node: Any) -> str:
+    """Return the ways to say what a number in 1/s counts; empty for anything else."""
+    per = node.text.partition(" 1/") if isinstance(node, Constant) else ("", "", "")
+    return f"write {per[0]} turn/{per[2]} or {per[0]} rad/{per[2]}" if per[1] else ""
 
 
 def _kind(
@@ -122,13 +131,13 @@ def as_compared(sign: str, other: Kind, node: Any, beside: Any) -> str:
 
 
 def summed(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> Kind:
-    """Return a sum, a difference, or a value with the other sign."""
+    """Return the kind of a sum, a difference or a negated value."""
     if len(kinds) == 1:
         (kind,) = kinds
         counts = None if kind.temperatures is None else frozenset(-n for n in kind.temperatures)
         return _kind(kind, counts, is_literal=kind.literal, pi=kind.pi, twos=kind.twos)
     one, other = kinds
-    counted = _joined(operation.sign, one, other)
+    counted = _joined(operation.sign, one, other, nodes)
     if one.temperatures is None or other.temperatures is None:
         return _kind(counted, None, is_literal=one.literal or other.literal)
     sign = 1 if operation.sign == "+" else -1
@@ -241,7 +250,7 @@ def angle(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -
 
 
 def whole(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    """A quantity has no whole part of its own: 3.7 mm are 0.0037 m."""
+    """Return a pure number; refuse a quantity, whose whole part depends on its unit: 3.7 mm are 0.0037 m."""
     if kinds[0].base != Kind().base:
         hint = f"divide by a unit, as in {operation.sign}(d / 1 mm)"
         raise FaultyText(

@@ -102,7 +102,7 @@ class Lack:
 
 
 def fed_coefficients(eps: float, ratio: float, attitude: float, feed: Feed) -> tuple[Array, Array]:
-    """Stiffness and damping in axes of the load, psi²/(B D eta omega_h) times those in c and omega_h, (2, 2).
+    """Return the stiffness and damping (2, 2) in axes of the load, in psi²/(B D eta omega_h).
 
     Parameters
     ----------

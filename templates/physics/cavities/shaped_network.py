@@ -91,7 +91,7 @@ class Gaps:
 
 
 def shaped_nodes(bore: Bore, lie: Lie, ratio: float, pockets: list[Pocket], n: int, m: int) -> Nodes:
-    """A mesh graded to the thin film, with nodes at the edges of pockets, at joints and where mouths begin.
+    """Return a mesh graded to the thin film, with nodes at pocket edges, joints and mouths.
 
     It is that of the plain bearing whose film is as thin and as long: that of a lobe's radius.
     """

@@ -71,7 +71,7 @@ def mains_ascend(mains: Array) -> Truth:
 
 
 def _returned(part: Array, vectors: Vectors, grid: CrankGrid) -> Array:
-    """A part of vectors at the returned angles; zero where only rounding of the largest is left."""
+    """Return a part of vectors at the returned angles; zero where only rounding of the largest is left."""
     if not np.ndim(vectors):
         return np.asarray(part)
     largest = np.abs(vectors).max(axis=-1, keepdims=True)

@@ -126,6 +126,12 @@ def webs_are_whole(places: Array, unbalance: Array, counterweight: Array, throws
     return np.ndim(places) == 1 and named
 
 
+@units("kg*m", "kg*m", "kg*m", returns="1")
+def has_any_unbalance(throws: Array, webs: Array, counterweights: Array) -> Truth:
+    """Return whether any throw, web or counterweight has an unbalance [kg m]."""
+    return any(bool(np.any(one != 0)) for one in (throws, webs, counterweights))
+
+
 @units(None, None, returns="1")
 def change_on_supports(elastic_forces: Vectors, determinate_forces: Vectors) -> Array:
     """Return by how much each main's greatest load differs from the determinate one, over that."""

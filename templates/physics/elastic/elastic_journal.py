@@ -28,6 +28,8 @@ from templates.physics.elastic.soft_equations import SoftFilm, Softness
 from templates.physics.journals.static_journal import static_film_at
 from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
 
+_FAR = 1e3
+"""Outer over inner radius of a ring that deforms as an endless body does [-]."""
 RIGID, LINER, HOUSING = "rigid", "liner", "housing"
 LEVELS = (RIGID, LINER, HOUSING)
 ROELANDS_PRESSURE = 5.1e-9
@@ -283,3 +285,23 @@ def neglected_deformation(
     share = np.where(n == 0, 0.5, 1.0) * np.asarray(mean * half / np.pi)[..., None] * bump
     of_ring = (share * ring_compliance(inner, outer, modulus, poisson)).sum(axis=-1)
     return np.asarray(of_liner + np.nan_to_num(of_ring, nan=0.0) + 0 * p_max)[()]
+
+
+@units("Pa", "N", "m", "m", returns="m", latex=r"\text{{estimate, steel without end}}")
+def deflection_in_steel(p_max: Array, load: Array, radius: Array, width: Array) -> Array:
+    """Estimate the displacement of a bore in an endless body of steel under the largest pressure [m].
+
+    The shape of the pressure is that of `neglected_deformation`, of which this is the least case.
+
+    Parameters
+    ----------
+    p_max
+        Largest pressure [Pa].
+    load
+        Radial load [N].
+    radius, width
+        Of the bearing [m].
+    """
+    steel = np.asarray(210e9), np.asarray(0.3)
+    no_liner, far = np.asarray(0.0), _FAR * radius
+    return neglected_deformation(RIGID, p_max, load, radius, width, no_liner, radius, far, *steel)

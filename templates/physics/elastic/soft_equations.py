@@ -203,7 +203,10 @@ def _gathered(onward: Array, outward: Array) -> Array:
 
 
 def _assembled(around: tuple[Array, Array], across: tuple[Array, Array], film: Mask) -> csc_array:
-    """The matrix from the slopes of each flow over the pressures at its two ends; the unit matrix outside."""
+    """Return the matrix from the slopes of each flow over the pressures at its two ends.
+
+    Outside it is the unit matrix.
+    """
     number = np.arange(film.size).reshape(film.shape)
     ends = ((number[:-1], number[1:], *around), (number[:, :-1], number[:, 1:], *across))
     rows, columns, values = [], [], []

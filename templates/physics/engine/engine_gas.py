@@ -146,6 +146,6 @@ def burns_in_time(name: str, gas: Callable[[], GasCycle]) -> Truth:
 
 @units(None, returns="1")
 def combustion_raises(gas: GasCycle) -> Truth:
-    """True if combustion does not begin below the pressure of the compression's end in any cylinder."""
+    """Return whether combustion begins at or above the compression's end pressure in every cylinder."""
     holds = np.asarray(pressure_rises(gas))
     return np.all(holds, axis=-1) if holds.ndim else bool(holds)

@@ -196,7 +196,7 @@ def order_agrees(layout: Layout, order: Array) -> Truth:
 
 @units("1", "1", "rad", "rad", returns="1")
 def throws_are_named(throws: Array, order: Array, pins: Array, firing: Array) -> Truth:
-    """True if there is a throw for each cylinder, numbered from 1 without a gap, if throws are given."""
+    """Return whether throws, if given, are one for each cylinder, numbered from 1 without a gap."""
     if not listed(throws):
         return True
     named = np.unique(throws)

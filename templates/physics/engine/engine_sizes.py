@@ -70,7 +70,7 @@ def is_one_list(values: Array) -> Truth:
 
 @units(None, None, "1", "rad", returns="1")
 def is_manageable(points: tuple[int, ...], throw: NDArray[np.intp], strokes: Array, step: Array) -> Truth:
-    """True if curves over the internal grid of all cylinders at points of this shape fit into memory."""
+    """Return whether curves of all cylinders at points of this shape fit into memory."""
     return bool(np.prod(points, dtype=float) * throw.size * angles_in(strokes, step) <= MOST_VALUES)
 
 

@@ -18,6 +18,7 @@ POLYTROPIC, GIVEN_PEAK = ("otto", "diesel", "four_stroke"), ("otto", "four_strok
 FEWEST = 8  # points of a table
 MOST_VALUES = 2_000_000  # of a curve over all points
 _QUARTER = np.pi / 2
+_ABSOLUTE, _AMBIENT = 0.3e5, 0.5e5  # pressures that only an absolute scale has in a table, in a crankcase
 
 
 @units(None, None, None, returns="1")
@@ -86,6 +87,24 @@ def table_closes(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
         return True
     repeats = np.isclose(angle[-1] - angle[0], np.pi * strokes, rtol=1e-9)
     return ~repeats | np.isclose(p[..., 0], p[..., -1], rtol=1e-6)
+
+
+@units(None, "Pa", returns="1")
+def crankcase_is_filled(name: str, p_c: Array) -> Truth:
+    """Return whether the crankcase has a pressure [Pa] above 0 beside the absolute ones of a gas cycle."""
+    return np.logical_or(name not in POLYTROPIC, p_c > 0)
+
+
+@units(None, "Pa", "Pa", returns="1")
+def pressures_are_of_one_kind(name: str, p: Array, p_c: Array) -> Truth:
+    """Return whether a table's pressures and the crankcase's [Pa] may both be absolute, or both gauge.
+
+    A table that never falls below 0.3 bar is taken for absolute, one that falls below 0 for gauge.
+    """
+    if name != "table" or np.ndim(p) == 0:
+        return True
+    lowest = np.min(p, axis=-1)
+    return ~(((lowest >= _ABSOLUTE) & (p_c == 0)) | ((lowest < 0) & (p_c >= _AMBIENT)))
 
 
 @units(None, "1", "rad", returns="1")

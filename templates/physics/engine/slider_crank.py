@@ -102,7 +102,7 @@ def crank_motion(theta: Array, n: Array) -> Motion:
 
 
 def travel_integral(theta: Array, n: Array) -> Array:
-    """The travel over the stroke, integrated over the crank angle from 0 [rad], by the elliptic integral."""
+    """Return the travel over the stroke, integrated over the crank angle from 0 [rad]."""
     return ((1 + n) * theta - np.sin(theta) - n * ellipeinc(theta, 1 / n**2)) / 2
 
 

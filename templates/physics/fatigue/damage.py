@@ -40,7 +40,7 @@ class Counted:
 
 
 def counted_cycles(history: Array, criterion: str, level: str, k: Array, credit: str) -> Counted:
-    """The cycles of stress histories [..., point, angle, 6] [Pa] by a criterion and a way of counting."""
+    """Return the cycles of stress histories [..., point, angle, 6] [Pa] by criterion and counting method."""
     count = by_extremes if level == EXTREMES else by_rainflow
     if criterion == SIGNED:
         signed = signed_von_mises(history)

@@ -73,7 +73,7 @@ def is_manageable(loads: Sequence[Array], stresses: Sequence[Rows]) -> Truth:
 
 
 def superposed(loads: Sequence[Array], stresses: Sequence[Rows]) -> Array:
-    """The stress tensors [..., point, angle, 6] [Pa] of loads [..., angle] and of their units [point, 6].
+    """Return the stress tensors [..., point, angle, 6] [Pa] of loads [..., angle] times unit stresses.
 
     A load is in its SI unit, its stresses in Pa for each of these. One point without stress where the inputs
     do not go together, which is refused elsewhere.
@@ -103,7 +103,7 @@ def von_mises_1913(tensors: Array) -> Array:
 
 
 def leading_tensor(tensors: Array) -> tuple[Array, Array]:
-    """The tensor of length 1 [..., 6] that carries most of a history [..., angle, 6], and its share [1].
+    """Return the unit tensor [..., 6] that carries most of a history, and its share [1].
 
     The share is that of the sum of the squares of all tensors; 1 where nothing acts. The sign of the tensor
     is such that its principal stress of the larger amount is tension; of pure shear it is either.
@@ -119,7 +119,7 @@ def leading_tensor(tensors: Array) -> tuple[Array, Array]:
 
 
 def signed_von_mises(tensors: Array) -> Array:
-    """The equivalent stress [..., angle] [Pa] of a history, negative where the leading tensor turns round.
+    """Return the equivalent stress [..., angle] [Pa], negative where the leading tensor is reversed.
 
     Only for a history that one tensor carries. Pure shear has no sign of its own: its mean counts as tension.
     """

@@ -34,16 +34,14 @@ from templates.physics.journals.shear_thinning import (
     viscosity_Cross_1965,
 )
 from templates.physics.orbits.cyclic_film import Duty, cycle_of, weights
-from templates.physics.orbits.turning import turning
 from templates.physics.supplied.fed_cycle import (
     FedDuty,
     FedOrbit,
     fed_duty,
     fed_film,
     fed_orbit,
-    relieved_duty,
 )
-from templates.physics.supplied.feeding import AROUND, Feeding
+from templates.physics.supplied.feeding import Feeding
 
 LEVELS = ("mobility_short", "mobility", "mobility_grooved")
 """Those of `fed_cycle` that are cheap enough to be solved at many viscosities."""
@@ -109,15 +107,11 @@ class CycleBearing:
     """Supply pressure, NaN without a groove [Pa]."""
     clearance: Array
     """Radial clearance [m]."""
-    relieved: bool = False
-    """Whether the film is that of `oil_film_cycle` 1: with the supply's pressure (`relieved_duty`)."""
 
     def fed(self, eta: Array) -> FedDuty:
         """Return the duty at a viscosity [Pa s]."""
-        if not self.relieved:
-            return warmed_duty(self.duty, self.feeding, eta)
         P = self.pressure * (2 * self.clearance / self.feeding.D) ** 2 / (eta * self.duty.Omega)
-        return relieved_duty(replace(self.duty, scale=self.duty.scale / eta), self.feeding, P)
+        return fed_duty(self.level, replace(self.duty, scale=self.duty.scale / eta), self.feeding, P)
 
 
 @dataclass(frozen=True)
@@ -165,54 +159,7 @@ def heated_film(bearing: CycleBearing, eta: Array) -> tuple[FedOrbit, Warmed]:
     gap = orbit.gap
     with np.errstate(invalid="ignore"):
         rate = (sliding / np.sqrt(gap * (2 - gap))) @ mean * D / (2 * c)
-    driven = 0 * side if bearing.level == "supplied" else feed_flow(bearing, orbit, eta)
-    return orbit, Warmed(loss, side, driven, rate)
-
-
-def feed_flow(bearing: CycleBearing, orbit: FedOrbit, eta: Array) -> Array:
-    """Return what the supply pressure drives from the groove over both lands, mean over the cycle [m³/s]."""
-    duty, groove = bearing.duty, bearing.feeding
-    turned = sleeve_turn(duty)
-    whole = np.asarray(groove.groove_extent >= AROUND)[..., None]
-    turned = np.where(whole, np.nan_to_num(turned), turned)
-    cubes = gap_cubed(
-        orbit.eps_x, orbit.eps_y, turned + np.asarray(groove.groove_start)[..., None],
-        np.asarray(groove.groove_extent)[..., None],
-    )  # fmt: skip
-    period = cycle_of(duty.angle)
-    cubed = cubes @ weights(duty.angle, period) / period
-    land = (groove.W - groove.groove_width) / 2
-    flow = bearing.pressure * bearing.clearance**3 * groove.D / 2 * cubed / (6 * eta * land)
-    return np.asarray(np.where(groove.grooved, flow, 0 * eta))[()]
-
-
-def gap_cubed(eps_x: Array, eps_y: Array, start: Array, extent: Array) -> Array:
-    """Return the integral of H³ over an arc of a bearing, H = 1 − eps · n, by its antiderivative [rad].
-
-    Parameters
-    ----------
-    eps_x, eps_y
-        Relative eccentricity [-].
-    start, extent
-        Where the arc begins and how far it goes [rad].
-    """
-    eps, centre = np.hypot(eps_x, eps_y), np.arctan2(eps_y, eps_x)
-
-    def up_to(angle: Array) -> Array:
-        sin = np.sin(angle)
-        square = 1.5 * eps**2 * (angle + sin * np.cos(angle))
-        return np.asarray(angle - 3 * eps * sin + square - eps**3 * (sin - sin**3 / 3))
-
-    return up_to(start + extent - centre) - up_to(start - centre)
-
-
-def sleeve_turn(duty: Duty) -> Array:
-    """Return the angle of the sleeve in the frame (..., N) [rad]."""
-    period = cycle_of(duty.angle)
-    speed = (duty.omega_B - duty.omega_F) / np.asarray(duty.Omega)[..., None]
-    rows = np.broadcast_arrays(speed, duty.angle)[0]
-    turned = turning(duty.angle, period, rows.reshape(-1, duty.angle.size))
-    return np.asarray(turned.at(duty.angle, turned.swing)).reshape(rows.shape)
+    return orbit, Warmed(loss, side, film.feed_flow * W * D * c * Omega, rate)
 
 
 @on_paper("solved numerically by bracketing the viscosity in the heat balance over the cycle")
@@ -332,11 +279,6 @@ def side_flow_of(heat: CycleHeat, eta: Array) -> Array:
 def feed_flow_of(heat: CycleHeat, eta: Array) -> Array:
     """Return the flow that the supply pressure drives [m³/s]; NaN where the viscosity is."""
     return _where_known(eta, heat.feed_flow)
-
-
-def warmed_duty(duty: Duty, feeding: Feeding, eta: Array) -> FedDuty:
-    """Return the duty, whose scale is that of 1 Pa s, at a viscosity [Pa s]."""
-    return fed_duty(replace(duty, scale=duty.scale / eta), feeding, np.full(2, np.nan))
 
 
 @units(None, "1", "1", "Pa*s", "K", "K", None, "kg/m**3", "K", returns="Pa*s")

@@ -113,7 +113,7 @@ class Running:
         return 1 - (by_oil + by_air) / power
 
     def residual(self, rise: Array) -> Array:
-        """Power less what is carried off, over the largest of power and what oil or air carry off [-]."""
+        """Return the heat imbalance over the largest of power and heat to oil and air [-]."""
         power, by_oil, by_air = self.heat(rise)
         largest = np.maximum(power, np.maximum(np.abs(by_oil), np.abs(by_air)))
         return (power - by_oil - by_air) / largest

@@ -17,7 +17,7 @@ STANDARD_GRAVITY = 9.80665  # m/s²
 
 @units("rad/s", "rad/s", "rad/s", returns="rad/s", latex=r"\left|{0}+{1}-2\,{2}\right|")
 def hydrodynamic_speed(journal: Array, sleeve: Array, load: Array) -> Array:
-    """Size of the speed at which the gap is carried past the load [rad/s], from the three speeds [rad/s]."""
+    """Return the magnitude of the hydrodynamic speed [rad/s] from the three speeds [rad/s]."""
     return np.abs(journal + sleeve - 2 * load)
 
 

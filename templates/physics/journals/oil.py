@@ -25,7 +25,7 @@ _CELSIUS = 273.15  # K
 
 @units("kg/m**3", "K", "K", returns="kg/m**3")
 def density(rho_ref: Array, T: Array, T_ref: Array) -> Array:
-    """Density [kg/m³] at the temperature T [K], falling by 0.07 % of rho_ref [kg/m³] per kelvin above T_ref.
+    """Return the density [kg/m³] at T [K]: rho_ref less 0.07 % per kelvin above T_ref.
 
     References
     ----------

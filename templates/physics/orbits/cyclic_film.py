@@ -51,6 +51,8 @@ class CycleFilm:
     """Power 2 psi/(eta Omega² B D²), mean over the cycle, (...)."""
     side_flow: Array
     """Oil that leaves at both ends, Q/(B D c Omega), c the radial clearance, mean over the cycle, (...)."""
+    feed_flow: Array
+    """What the supply pressure drives from a groove besides, likewise; 0 where `side_flow` has it."""
 
 
 def weights(angle: Array, period: float) -> Array:

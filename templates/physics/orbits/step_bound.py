@@ -31,7 +31,7 @@ MARGIN = 3.0
 
 
 def least_between(place: Array, period: float, gap: Array) -> Array:
-    """The smallest gap between the nodes of a ring, by a parabola through the lowest node and its neighbours.
+    """Return the smallest gap around a ring, by a parabola through its lowest node and neighbours.
 
     Parameters
     ----------

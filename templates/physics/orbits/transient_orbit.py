@@ -1,8 +1,8 @@
 """The orbit of a journal with mass-conserving cavities, run in until it repeats: the reference level.
 
-The film of `transient_film`, marched over cycle after cycle from the orbit by mobility and a full film.
-Measured by `benchmarks/film_cycle.py` on big ends against twice as fine a mesh and half the step; it
-reports the cost too. Bounded by `MOST_CYCLES`.
+The march starts from the mobility orbit and a full film, and repeats the cycle with `transient_film` at most
+`MOST_CYCLES` times. `benchmarks/film_cycle.py` measures error and cost on big ends, against a mesh twice as
+fine and half the step.
 """
 
 from dataclasses import dataclass

@@ -244,7 +244,7 @@ def interpolated(values: Array, t: Array) -> tuple[Array, Array]:
 
 
 def finite_pad(a: Array, width: Array, along: int = 64, across_half: int = 16) -> FinitePad:
-    """The solutions for pads (...), extrapolated from the mesh given and one of half as many intervals.
+    """Return the solutions for pads (...), extrapolated from the given mesh and one half as fine.
 
     Parameters
     ----------

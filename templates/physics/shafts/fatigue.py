@@ -68,7 +68,7 @@ def cycles_Basquin_1910(amplitude: Array, coefficient: Array, exponent: Array, e
 
 @units("Pa", "Pa", "1", "1", returns="Pa", latex=r"\max\left({1}\,\left(2\,{3}\right)^{{{2}}},{0}\right)")
 def allowable_amplitude(endurance: Array, coefficient: Array, exponent: Array, life: Array) -> Array:
-    """The reversed amplitude [Pa] that is borne for so many cycles, or for ever where no life is given.
+    """Return the reversed amplitude [Pa] borne for a number of cycles, or for ever without one.
 
     The higher of Basquin's line at that life and the endurance limit [Pa]; NaN where there is neither.
     """

@@ -59,7 +59,7 @@ def is_wider(D: Array, d: Array) -> Any:
 
 @units(None, "1", None, "Pa", None, "Pa", returns="1")
 def notch_is_known(K_t: Array, slope: Array, amplitude: Array, S_a: Array, mean: Array, S_m: Array) -> Any:
-    """True if a factor K_t [1] is given or follows from a shoulder, or no nominal stress [Pa] needs one."""
+    """Return whether K_t [1] is given or follows from a shoulder, or is not needed."""
     needed = (np.isnan(amplitude) & ~np.isnan(S_a)) | (np.isnan(mean) & ~np.isnan(S_m))
     return ~needed | ~np.isnan(K_t) | ~np.isnan(slope)
 

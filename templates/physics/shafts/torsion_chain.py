@@ -67,7 +67,7 @@ def manageable(J: Array, k: Array, orders: Array) -> bool:
 @on_paper("solved numerically by singular values of the chain's bidiagonal matrix")
 @units("kg*m**2", "N*m/rad", None, returns="rad/s", latex=r"\sqrt{{\lambda_m\left({1},{0}\right)}}")
 def angular_frequencies(J: Array, k: Array, ends: str) -> Array:
-    """Natural angular frequencies [rad/s], ascending [..., mode], of a chain of J [kg m²] and k [N m/rad].
+    """Return the natural angular frequencies [rad/s], ascending [..., mode], of J [kg m²], k [N m/rad].
 
     With free ends the first is exactly 0, and k[i] joins J[i] and J[i+1]; with a fixed end k[0] joins J[0] to
     the ground and k[i] joins J[i-1] and J[i]. NaN where numbers overflow.
@@ -79,7 +79,7 @@ def angular_frequencies(J: Array, k: Array, ends: str) -> Array:
 @on_paper("solved numerically by singular values of the chain's bidiagonal matrix")
 @units("kg*m**2", "N*m/rad", None, returns="1", latex=r"\varphi_m\left({1},{0}\right)")
 def mode_shapes(J: Array, k: Array, ends: str) -> Array:
-    """Mode shapes [..., mode, inertia] in the order of the frequencies, each with 1 as its largest entry."""
+    """Return the mode shapes [..., mode, inertia], each with 1 as its largest entry."""
     reduced = _reduced(J, k, ends)
     vectors = _left_vectors(reduced.dense)
     if ends == FIXED:

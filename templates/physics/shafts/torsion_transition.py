@@ -53,7 +53,7 @@ def share_of_wilson(overlap: Array, journal: Array, pin: Array) -> Array:
 @units("1", "N*m/rad", "N*m/rad", returns="N*m/rad",
        latex=r"\left(\frac{{1-{0}}}{{{1}}}+\frac{{{0}}}{{{2}}}\right)^{{-1}}")  # fmt: skip
 def joined_stiffness(share: Array, carter: Array, wilson: Array) -> Array:
-    """The stiffness [N m/rad] whose flexibility is joined from Carter's and a share [1] of Ker Wilson's.
+    """Return the stiffness [N m/rad] blended from Carter's and a share [1] of Ker Wilson's flexibility.
 
     Where the share is 0 or 1 it is that of one formula, to the last digit.
     """

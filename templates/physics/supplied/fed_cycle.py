@@ -7,11 +7,7 @@ Orbit, pressure, loss and flow:
     mobility_grooved  the same, with a groove in the sleeve: where the load passes it, two lands bear
     flooded           mass-conserving cavities in time, oil at ambient pressure along the widest gap and
                       nowhere else; knows no groove, hole or supply pressure; one case at a time
-    supplied          mass-conserving cavities in time, fed by grooves and holes; one case at a time
-
-Two things go beyond `oil_film_cycle` 1 and are asked for by a duty (`FedDuty`): `lift`, what the supply
-pressure bears at rest in a groove, which level mobility_grooved takes from the load; and `near_holes`, meshes
-of level supplied that follow a hole under the load.
+    supplied          mass-conserving cavities in time, fed by grooves and holes; case after case
 
 Everything is dimensionless: P = p psi²/(eta Omega), load S = F psi²/(B D eta Omega), psi the diametral
 clearance over the diameter, Omega the speed of the crank. The load is what the journal pushes with, in a
@@ -19,12 +15,16 @@ frame whose axes sleeve and journal share at crank angle 0; a positive speed tur
 (supplied: nearly so) in a rigid, aligned bearing; isothermal, laminar.
 """
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from templates.core.arrays import Array, Mask
+from templates.core.errors import Fault, InvalidInputs
 from templates.core.language.declare import on_paper
+from templates.core.progress import part_of_progress
 from templates.physics.orbits.cyclic_film import CycleFilm, Duty, cycle_of, weights
 from templates.physics.orbits.grooved_mobility import (
     Groove,
@@ -46,29 +46,41 @@ from templates.physics.orbits.transient_orbit import (
     transient_orbit,
 )
 from templates.physics.orbits.turning import turning
-from templates.physics.supplied.feeding import Feeding, supply_of
+from templates.physics.supplied.feeding import AROUND, Feeding, supplies_of
 from templates.physics.supplied.supplied_orbit import NEAR_HOLES, SuppliedOrbit, Verdict, supplied_orbit
 from templates.physics.supplied.supply import Supply
 
-LEVELS = ("mobility_short", "mobility", "mobility_grooved", "flooded", "supplied")
+MOBILITY = ("mobility_short", "mobility", "mobility_grooved")
+LEVELS = (*MOBILITY, "flooded", "supplied")
 BOUNDARY = {
     "mobility_short": "half film: p = 0 at the ends and wherever the gap widens; always full, no supply",
     "mobility": "p = 0 at the ends alone; rupture where p = dp/dn = 0; always full, no supply",
-    "mobility_grooved": "as mobility; where the load passes the groove, p = 0 at the groove's edges too",
+    "mobility_grooved": "as mobility; where the load passes the groove, p = 0 at the groove's edges too; "
+    "less load, by what the supply bears there at rest",
     "flooded": "Jakobsson-Floberg-Olsson: ambient pressure at the ends, in the cavities and along the "
     "widest gap, where oil is fed",
     "supplied": "Jakobsson-Floberg-Olsson: ambient pressure at the ends and in the cavities, supply pressure "
     "in grooves and holes; oil in a cavity stays where it is",
 }
 """What each level takes for the pressure at the film's borders."""
-BOUNDARY_RELIEVED = BOUNDARY | {
-    "mobility_grooved": BOUNDARY["mobility_grooved"] + "; less load, by what the supply bears there at rest"
-}
-"""The same where a duty has a lift."""
 WIDTHS = {"mobility_short": (0.01, 100.0), **dict.fromkeys(LEVELS[1:], (NARROWEST, WIDEST))}
 """Width ratios B/D that each level takes [-]."""
+OWN_ERRORS = {
+    "maximum_pressure": "pressure",
+    "power_loss": "loss",
+    "side_flow": "side_flow",
+    "supply_flow": "side_flow",
+    "bore_deflection": "pressure",
+}
+"""Outputs of which a march states the error, by its name in `Totals`."""
 UNREPEATED = (Verdict.STARVED, Verdict.UNSETTLED)
 """Verdicts that leave no film to report."""
+REMEDY = {
+    Verdict.STARVED: "move the groove or the hole to where the load seldom points, or add one",
+    Verdict.UNSETTLED: "give less load in kN, or more dynamic_viscosity in mPa*s; under a light load give "
+    "less supply_pressure in bar",
+}
+"""What a user may change where no film repeats."""
 
 
 @dataclass(frozen=True)
@@ -83,13 +95,10 @@ class FedDuty:
     """Where it begins, from the sleeve's axis, (...) [rad]."""
     groove_extent: Array
     """Extent in the sense x to y, (...) [rad]."""
-    supply: Supply | None = None
-    """Grooves and holes and their pressure, of the one point of level supplied."""
-    lift: Array | None = None
-    """What the supply pressure bears at rest in the groove and over its lands, as a load number, (...); level
-    mobility_grooved takes it from the load. None leaves the load as it is [-]."""
-    near_holes: bool = False
-    """Whether level supplied goes on, on finer meshes, where every hole stays under the load."""
+    pressure: Array
+    """Supply pressure above ambient P = p psi²/(eta Omega), NaN where nothing feeds, (...) [-]."""
+    supplies: NDArray[np.object_] | None = None
+    """Grooves and holes and their pressure, a `Supply` or None, (...); level supplied alone needs them."""
 
 
 @dataclass(frozen=True)
@@ -107,8 +116,8 @@ class FedOrbit:
     """Its crank angle, at the mobility levels that of the nearest node [rad]."""
     numerical_error: Array
     """Relative error of the smallest gap by the step, or from cycle to cycle, (...); NaN where unknown."""
-    marched: SuppliedOrbit | None = None
-    """Results of marching in time at level supplied."""
+    marches: tuple[SuppliedOrbit | None, ...] = ()
+    """Results of marching in time at level supplied, of every point; None of one without speed or supply."""
     flooded: TransientOrbit | None = None
     """Results of marching in time at level flooded."""
 
@@ -120,31 +129,44 @@ class FedOrbit:
             hidden = lost[..., None] if np.ndim(values) > np.ndim(lost) else lost
             return np.asarray(np.where(hidden, np.nan, values))[()]
 
-        names = (field.name for field in fields(self) if field.name not in ("marched", "flooded"))
+        names = (field.name for field in fields(self) if field.name not in ("marches", "flooded"))
         values = {name: kept(getattr(self, name)) for name in names}
-        return FedOrbit(**values, marched=self.marched, flooded=self.flooded)
+        return FedOrbit(**values, marches=self.marches, flooded=self.flooded)
+
+    def required(self) -> "FedOrbit":
+        """Return the same if a film repeats, or if there are several points.
+
+        Raises
+        ------
+        InvalidInputs
+            By the name of the verdict, if the film of a single point starves or no orbit was found.
+        """
+        if len(self.marches) == 1 and (marched := self.marches[0]) and marched.verdict in UNREPEATED:
+            detail = f"no film repeats: {marched.reason}; {REMEDY[marched.verdict]}"
+            raise InvalidInputs([Fault("supply", marched.verdict.value, detail)])
+        return self
 
     @property
     def verdict(self) -> str:
-        """End of a march at level supplied; empty without one."""
-        return self.marched.verdict.value if self.marched else ""
+        """End of a march at level supplied, of several points with the number of each; empty without one."""
+        return _of_points([marched.verdict.value if marched else "" for marched in self.marches])
 
     @property
     def reason(self) -> str:
         """Return why no film repeats, in words; empty where one does or level supplied did not march."""
-        return self.marched.reason if self.marched else ""
+        return _of_points([marched.reason if marched else "" for marched in self.marches])
 
     @property
     def cycles(self) -> Array:
         """Return the cycles marched on all meshes; NaN without a march, (...)."""
         if self.flooded:
             return self._everywhere(float(self.flooded.cycles))
-        return self._everywhere(float(sum(self.marched.cycles)) if self.marched else np.nan)
+        return self.of_marches(lambda marched: float(sum(marched.cycles)))
 
     @property
     def mass_balance(self) -> Array:
         """Return oil fed less oil lost and stored, over the oil lost; NaN but at level supplied."""
-        return self._everywhere(self.marched.mass_balance if self.marched else np.nan)
+        return self.of_marches(lambda marched: marched.mass_balance)
 
     @property
     def feed(self) -> Array:
@@ -152,12 +174,29 @@ class FedOrbit:
 
         NaN if no film repeats, (...).
         """
-        if not self.marched or self.marched.verdict in UNREPEATED:
+        return self.of_marches(lambda m: np.nan if m.verdict in UNREPEATED else m.mean_feed)
+
+    def of_marches(self, value: Callable[[SuppliedOrbit], float]) -> Array:
+        """Return a value of the march of each point; NaN without one, (...)."""
+        if not self.marches:
             return self._everywhere(np.nan)
-        return self._everywhere(self.marched.mean_feed)
+        values = [value(marched) if marched else np.nan for marched in self.marches]
+        return np.reshape(values, np.shape(self.eps_max))[()]
+
+    def march_error(self, output: str) -> Array:
+        """Return the numerical error of an output of level supplied; NaN where unknown, (...) [-]."""
+        name = OWN_ERRORS[output]
+        return self.of_marches(lambda m: np.nan if m.verdict in UNREPEATED else getattr(m.error, name))
 
     def _everywhere(self, value: float) -> Array:
         return np.full_like(self.eps_max, value)[()]
+
+
+def _of_points(texts: Sequence[str]) -> str:
+    """Return what holds of all points, or of which point what holds; empty where nothing does."""
+    if len(set(texts)) <= 1:
+        return next(iter(texts), "")
+    return "; ".join(f"point {number}: {text}" for number, text in enumerate(texts, 1) if text)
 
 
 @dataclass(frozen=True)
@@ -169,6 +208,8 @@ class _Cases:
     """(C,) width over diameter; 1 where the level does not take it, and the load has no speed then."""
     sliding: Array
     """(C, N) speed of the journal over the sleeve, over Omega."""
+    pressure: Array
+    """(C,) supply pressure [-]."""
     points: tuple[int, ...]
 
     @property
@@ -193,15 +234,12 @@ def fed_orbit(level: str, fed: FedDuty) -> FedOrbit:
         return _flooded_orbit(cases)
     if level != "supplied":
         return _shaped(_periodic(level, cases), cases)
-    if fed.supply is None or not np.isfinite(cases.load.w).all():
-        return _shaped(_nowhere(cases.load), cases)
-    further = NEAR_HOLES if fed.near_holes else ()
-    marched = supplied_orbit(
-        cases.load, cases.sliding[0], float(cases.ratio[0]), fed.supply, near_holes=further
-    )
-    if marched.verdict in UNREPEATED:
-        return _filmless(_shaped(_nowhere(cases.load), cases, marched))
-    return _shaped(_sampled(marched, cases.load), cases, marched)
+    supplies = np.broadcast_to(np.asarray(fed.supplies, dtype=object), cases.points).ravel()
+    marches: list[SuppliedOrbit | None] = []
+    for number, supply in enumerate(supplies):
+        with part_of_progress(number, supplies.size):
+            marches.append(_marched(cases, number, supply))
+    return _of_marches(cases, tuple(marches))
 
 
 @on_paper(
@@ -223,8 +261,9 @@ def fed_film(level: str, fed: FedDuty, orbit: FedOrbit) -> CycleFilm:
     eps = np.stack([orbit.eps_x, orbit.eps_y]).reshape(2, *load.w.shape)
     if orbit.flooded is not None:
         P, flow, shear, work = along_march(orbit.flooded, load, eps)
-    elif orbit.marched is not None:
-        P, flow, shear, work = _of_march(orbit.marched, load, eps)
+    elif orbit.marches:
+        each = [_of_march(m, load.of(one), eps[:, one]) for one, m in _one_by_one(orbit.marches)]
+        P, flow, shear, work = (np.concatenate(rows) for rows in zip(*each, strict=True))
     else:
         P, flow, shear, work = _of_map(level, cases, eps)
     weight = weights(load.angle, load.period) / load.period
@@ -235,34 +274,65 @@ def fed_film(level: str, fed: FedDuty, orbit: FedOrbit) -> CycleFilm:
         P_angle=np.where(np.isnan(P).any(axis=-1), np.nan, load.angle[top]).reshape(points)[()],
         loss=((shear * cases.sliding**2 + work) @ weight).reshape(points)[()],
         side_flow=(flow @ weight).reshape(points)[()],
+        feed_flow=_driven(level, cases, eps, weight).reshape(points)[()],
     )
 
 
-def fed_duty(duty: Duty, feeding: Feeding, pressure: Array) -> FedDuty:
-    """Return a duty with what feeds it, at a supply pressure P = p psi²/(eta Omega) [-]."""
+def _driven(level: str, cases: _Cases, eps: Array, weight: Array) -> Array:
+    """Return what the supply pressure drives from the groove over both lands, mean over the cycle, (C,).
+
+    The pressure of the film does not hinder it, as ISO 7902-1 has it for a steady load. 0 where the level
+    knows no supply pressure, or counts that flow as side flow.
+    """
+    if level not in MOBILITY:
+        return np.zeros(cases.ratio.shape)
+    groove, sleeve = cases.passing.groove, cases.passing.sleeve
+    angle = cases.load.angle
+    start = sleeve.at(angle, sleeve.swing) + groove.start[:, None]
+    whole = (groove.extent >= AROUND)[:, None]
+    cubes = gap_cubed(eps[0], eps[1], np.where(whole, np.nan_to_num(start), start), groove.extent[:, None])
+    lands = 24 * cases.ratio**2 * (1 - groove.share)
+    return np.where(groove.share > 0, cases.pressure * (cubes @ weight) / lands, 0.0)
+
+
+def gap_cubed(eps_x: Array, eps_y: Array, start: Array, extent: Array) -> Array:
+    """Return the integral of H³ over an arc of a bearing, H = 1 − eps · n, by its antiderivative [rad].
+
+    Parameters
+    ----------
+    eps_x, eps_y
+        Relative eccentricity [-].
+    start, extent
+        Where the arc begins and how far it goes [rad].
+    """
+    eps, centre = np.hypot(eps_x, eps_y), np.arctan2(eps_y, eps_x)
+
+    def up_to(angle: Array) -> Array:
+        sin = np.sin(angle)
+        square = 1.5 * eps**2 * (angle + sin * np.cos(angle))
+        return np.asarray(angle - 3 * eps * sin + square - eps**3 * (sin - sin**3 / 3))
+
+    return up_to(start + extent - centre) - up_to(start - centre)
+
+
+def fed_duty(level: str, duty: Duty, feeding: Feeding, pressure: Array) -> FedDuty:
+    """Return a duty with what feeds it at a level, at a supply pressure P = p psi²/(eta Omega) [-]."""
     share = np.where(feeding.grooved, feeding.groove_width / feeding.W, 0.0)
-    supply = supply_of(feeding, pressure) if np.size(pressure) == 1 else None
-    return FedDuty(duty, share, feeding.groove_start, feeding.groove_extent, supply)
-
-
-def relieved_duty(duty: Duty, feeding: Feeding, pressure: Array) -> FedDuty:
-    """The same with what the supply pressure bears in a groove, and with meshes for holes under the load."""
-    fed = fed_duty(duty, feeding, pressure)
-    return replace(fed, lift=lift_of(fed.groove_share, fed.groove_extent, pressure), near_holes=True)
+    supplies = supplies_of(feeding, pressure) if level == "supplied" else None
+    return FedDuty(duty, share, feeding.groove_start, feeding.groove_extent, pressure, supplies)
 
 
 def _cases(level: str, fed: FedDuty) -> _Cases:
     """Make the points of a duty dimensionless; NaN speeds where the level does not take the width."""
     duty, period = fed.duty, cycle_of(fed.duty.angle)
-    lifted = level == "mobility_grooved" and fed.lift is not None
-    of_groove = (fed.groove_share, fed.groove_start, fed.groove_extent, fed.lift if lifted else 0.0)
-    single = (duty.Omega, duty.scale, duty.ratio, *of_groove)
+    of_groove = (fed.groove_share, fed.groove_start, fed.groove_extent)
+    single = (duty.Omega, duty.scale, duty.ratio, *of_groove, fed.pressure)
     Omega, scale, *flat = (np.asarray(v)[..., None] for v in single)
     speeds = (duty.omega_J / Omega, duty.omega_B / Omega, duty.omega_F / Omega)
     curves = np.broadcast_arrays(duty.F_x * scale, duty.F_y * scale, *speeds, *flat, duty.angle)
     points = curves[0].shape[:-1]
     x, y, journal, sleeve, frame, *rows, _ = (np.reshape(c, (-1, duty.angle.size)) for c in curves)
-    ratio, share, start, extent, lift = (row[:, 0] for row in rows)
+    ratio, share, start, extent, pressure = (row[:, 0] for row in rows)
     groove = Groove(np.nan_to_num(share), np.nan_to_num(start), np.nan_to_num(extent))
     turned = turning(duty.angle, period, sleeve - frame)
     taken = _taken(level, ratio, groove, turned.turns)
@@ -270,10 +340,10 @@ def _cases(level: str, fed: FedDuty) -> _Cases:
     whole = Groove(np.where(taken, groove.share, 0.0), groove.start, groove.extent)
     w = np.where(taken[:, None], (journal + sleeve) / 2 - frame, np.nan)
     S = np.stack([x, y])
-    if lifted:
-        S = S - lifting(lift, rests, whole, duty.angle)
+    if level == "mobility_grooved":
+        S = S - lifting(lift_of(groove.share, groove.extent, pressure), rests, whole, duty.angle)
     passing = Passing(CyclicLoad(duty.angle, period, S, w), rests, whole)
-    return _Cases(passing, np.where(taken, ratio, 1.0), journal - sleeve, points)
+    return _Cases(passing, np.where(taken, ratio, 1.0), journal - sleeve, pressure, points)
 
 
 def _taken(level: str, ratio: Array, groove: Groove, turns: Array) -> Mask:
@@ -305,7 +375,7 @@ def _periodic(level: str, cases: _Cases) -> Orbit:
 
 
 def _of_map(level: str, cases: _Cases, eps: Array) -> tuple[Array, Array, Array, Array]:
-    """Pressure, side flow, shear and the load's work on the film at the mobility levels, (C, N) each."""
+    """Return the pressure, side flow, shear and work on the film at the mobility levels, (C, N) each."""
     S, ratio = cases.load.S, cases.ratio
     size = np.hypot(*S)
     c, s = np.where(size > 0, S / np.where(size > 0, size, 1.0), 0.0)
@@ -323,12 +393,38 @@ def _of_map(level: str, cases: _Cases, eps: Array) -> tuple[Array, Array, Array,
     return P, flow, shear, work
 
 
-def _filmless(orbit: FedOrbit) -> FedOrbit:
-    """Return the same without any eccentricity: there is no film, and no refusal either."""
-    return replace(orbit, eps_max=np.full_like(orbit.eps_max, np.nan)[()])
+def _one_by_one(marches: tuple[SuppliedOrbit | None, ...]) -> Iterator[tuple[Mask, SuppliedOrbit | None]]:
+    """Yield the mask of each case, and its march."""
+    for number, marched in enumerate(marches):
+        yield np.arange(len(marches)) == number, marched
 
 
-def _shaped(orbit: Orbit, cases: _Cases, marched: SuppliedOrbit | None = None) -> FedOrbit:
+def _marched(cases: _Cases, number: int, supply: Supply | None) -> SuppliedOrbit | None:
+    """March one case; None where the level does not take it."""
+    load = cases.load.of(np.arange(cases.ratio.size) == number)
+    if supply is None or not np.isfinite(load.w).all():
+        return None
+    ratio = float(cases.ratio[number])
+    return supplied_orbit(load, cases.sliding[number], ratio, supply, near_holes=NEAR_HOLES)
+
+
+def _of_marches(cases: _Cases, marches: tuple[SuppliedOrbit | None, ...]) -> FedOrbit:
+    """Return the orbits of all cases; a film that starves has no eccentricity, and is not refused for it."""
+    orbits = [
+        _sampled(marched, cases.load.of(one)) if marched and marched.verdict not in UNREPEATED
+        else _nowhere(cases.load.of(one))
+        for one, marched in _one_by_one(marches)
+    ]  # fmt: skip
+    eps, *single = ([getattr(orbit, field.name) for orbit in orbits] for field in fields(Orbit))
+    whole = Orbit(np.concatenate(eps, axis=1), *map(np.concatenate, single))
+    shaped = replace(_shaped(whole, cases), marches=marches)
+    filmless = np.reshape([marched is not None for marched in marches], cases.points) & np.isinf(
+        shaped.eps_max
+    )
+    return replace(shaped, eps_max=np.where(filmless, np.nan, shaped.eps_max)[()])
+
+
+def _shaped(orbit: Orbit, cases: _Cases) -> FedOrbit:
     """Return the cases in the shape of the points."""
     points = cases.points
     x, y = (e.reshape(*points, -1) for e in orbit.eps)
@@ -340,7 +436,6 @@ def _shaped(orbit: Orbit, cases: _Cases, marched: SuppliedOrbit | None = None) -
         eps_max=np.where(np.isnan(gap), np.inf, 1 - gap)[()],
         angle=orbit.least_angle.reshape(points)[()],
         numerical_error=orbit.step_bound.reshape(points)[()],
-        marched=marched,
     )
 
 
@@ -351,10 +446,7 @@ def _nowhere(load: CyclicLoad) -> Orbit:
 def _sampled(marched: SuppliedOrbit, load: CyclicLoad) -> Orbit:
     """Return a marched orbit at the load's angles."""
     eps = np.stack([_at(marched, e, load) for e in marched.eps])
-    gap, angle, error = (
-        np.array([v])
-        for v in (marched.least_gap, marched.least_angle, marched.repeat_error + marched.mesh_error)
-    )
+    gap, angle, error = (np.array([v]) for v in (marched.least_gap, marched.least_angle, marched.error.gap))
     return Orbit(eps[:, None], gap, angle, error, gap, error)
 
 
@@ -362,8 +454,13 @@ def _at(marched: SuppliedOrbit, values: Array, load: CyclicLoad) -> Array:
     return np.interp(load.angle, marched.theta, values, period=load.period)
 
 
-def _of_march(marched: SuppliedOrbit, load: CyclicLoad, eps: Array) -> tuple[Array, Array, Array, Array]:
+def _of_march(
+    marched: SuppliedOrbit | None, load: CyclicLoad, eps: Array
+) -> tuple[Array, Array, Array, Array]:
     """Return the pressure, mean side flow, shear and the load's work on the film, (1, N) each."""
+    if marched is None:
+        nothing = np.full_like(load.w, np.nan)
+        return nothing, nothing, nothing, nothing
     P, shear = (_at(marched, v, load)[None] for v in (marched.P_max, marched.shear))
     flow = np.full_like(P, marched.mean_side_flow)  # of the steps, which are finer than the load's angles
     rate = [_at(marched, _slope(marched.theta, e, load.period), load) for e in marched.eps]

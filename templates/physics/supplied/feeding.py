@@ -5,9 +5,10 @@ the pin counts from the throw, groove and hole of a rod's bore from the rod's ax
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
+from numpy.typing import NDArray
 
 from templates.core.arrays import Array, Mask, Truth
 from templates.core.language.declare import units
@@ -81,25 +82,32 @@ class Feeding:
         yield self.sleeve_holed, self.sleeve_angle, self.sleeve_arc / self.D, self.sleeve_length, False
         yield self.pin_holed, self.pin_angle, self.pin_arc / self.D, self.pin_length, True
 
-    def pockets(self) -> Iterator[Pocket]:
-        """Yield the pockets of a single point; one so small that it rounds to nothing feeds nothing."""
-        for present, middle, half, length, on_journal in self.parts():
-            if np.all(present):
-                whole = min(float(np.ravel(half)[0]), np.pi)
-                across = float(np.ravel(length / self.W)[0])
-                if whole > 0 and across > 0:
-                    yield Pocket(float(np.ravel(middle)[0]), whole, across, on_journal)
+    def pockets(self, shape: tuple[int, ...]) -> Iterator[tuple[Pocket, ...]]:
+        """Yield the pockets of each point of a shape; one that rounds to nothing feeds nothing."""
+        for number in range(int(np.prod(shape))):
+            pockets = []
+            for present, middle, half, length, on_journal in self.parts():
+                of_point = (present, middle, half, length / self.W)
+                exists, centre, extent, across = (np.broadcast_to(v, shape).flat[number] for v in of_point)
+                if exists and min(float(extent), float(across)) > 0:
+                    pockets.append(
+                        Pocket(float(centre), min(float(extent), np.pi), float(across), on_journal)
+                    )
+            yield tuple(pockets)
 
 
-def supply_of(feeding: Feeding, pressure: Array) -> Supply | None:
-    """Return what feeds a single point.
+def supplies_of(feeding: Feeding, pressure: Array) -> NDArray[np.object_]:
+    """Return what feeds each point, a `Supply`, (...).
 
     None where there is nothing, or no pressure P = p psi²/(eta Omega) [-].
     """
-    pockets = tuple(feeding.pockets())
-    if not pockets or not np.all(pressure > 0):
-        return None
-    return Supply(pockets, float(np.ravel(pressure)[0]))
+    sizes = (np.shape(getattr(feeding, field.name)) for field in fields(feeding))
+    shape = np.broadcast_shapes(np.shape(pressure), *sizes)
+    pressures = np.broadcast_to(pressure, shape).ravel().tolist()
+    supplies = np.empty(len(pressures), dtype=object)
+    for number, (pockets, P) in enumerate(zip(feeding.pockets(shape), pressures, strict=True)):
+        supplies[number] = Supply(pockets, P) if pockets and P > 0 else None
+    return supplies.reshape(shape)
 
 
 def supply_kind(feeding: Feeding) -> str:

@@ -120,6 +120,12 @@ class Duty:
         x, y = self.load.S[:, 0, ends]
         return around, x + 1j * y
 
+    def in_frame(self, theta: Array) -> tuple[NDArray[np.complex128], Array]:
+        """Return the load x + i y and the mean speed of journal and sleeve in the frame, (K,) each."""
+        period = self.load.period
+        w = np.interp(theta, self.load.angle, self.load.w[0], period=period)
+        return np.interp(theta % period, *self._force), w
+
     def seen(self, theta: Array) -> tuple[Array, Array]:
         """Load (K, 2), and places of the pockets (K, k, 3) as the kernel takes them, in axes of the mesh."""
         S = np.interp(theta % self.load.period, *self._force) * np.exp(-1j * self.mesh_turning(theta))

@@ -48,7 +48,7 @@ def supplied_mesh(
     gap: float = 1.0,
     finest: float = 1.0,
 ) -> Mesh:
-    """A mesh with rows of nodes on the edges of pockets, and one more row for each edge after the first.
+    """Return a mesh with nodes on pocket edges, with one extra row for each edge after the first.
 
     Parameters
     ----------

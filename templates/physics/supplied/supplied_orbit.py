@@ -6,7 +6,7 @@ smeared. A coarse mesh is run in until the orbit repeats, or it is clear that th
 whose cells follow the least gap. Measured by `python -m benchmarks.supplied_orbits`.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from enum import StrEnum
 
 import numpy as np
@@ -73,15 +73,52 @@ NEAR_HOLES = (
 )
 """Meshes that follow where every hole stays under the load: there all oil enters against the film's pressure,
 through the hole's edges, and the mesh at these edges decides how much."""
-REMAINS = 3.0
-"""Error that the last of them leaves over its change of the least gap: an error of first order goes from 2/3
-to 1/2 of that of the mesh before them, so three times the change is left [-]."""
 NEAR_EDGES = 0.4
 """Spacing of their rows at the edges over that of equal ones, at most [-]."""
 STAYS = 0.6
 """Share of the cycle under the load above which they do [-]."""
 THIN, MORE_ROWS = 0.002, 4
 """Least gap below which a mesh after the first has so many more rows across [-]."""
+
+
+@dataclass(frozen=True)
+class Totals:
+    """What one cycle on one mesh comes to; dimensionless."""
+
+    gap: float
+    """Smallest gap, between the angles too."""
+    pressure: float
+    """Largest pressure p psi²/(eta Omega)."""
+    loss: float
+    """Mean of shear times sliding speed squared, and of the load's work on the film."""
+    side_flow: float
+    """Mean of the oil that leaves at both ends, Q/(B D c Omega), c the radial clearance."""
+
+    def change(self, before: "Totals") -> "Totals":
+        """Return the change from another mesh, relative to this one [-]."""
+        pairs = zip(astuple(self), astuple(before), strict=True)
+        return Totals(*(abs(old / new - 1) for new, old in pairs))
+
+    def error(self, repeat: float, least: "Totals") -> "Totals":
+        """Return the error left by mesh and step where this is the change from the mesh before [-].
+
+        `repeat` is the change from cycle to cycle, `least` what is left at least.
+        """
+        parts = zip(astuple(self), astuple(least), astuple(LEAVES), astuple(COARSE_BEYOND), strict=True)
+        return Totals(*(
+            repeat + low + leaves * min(c, knee) + max(c - knee, 0) / 4 for c, low, leaves, knee in parts
+        ))  # fmt: skip
+
+
+UNKNOWN = Totals(np.nan, np.nan, np.nan, np.nan)
+LEAST = Totals(gap=5e-3, pressure=0.05, loss=5e-3, side_flow=0.01)
+LEAST_OF_HOLES = replace(LEAST, pressure=0.2)
+"""Where holes alone feed, a starved film may end in an impact, whose pressure follows the step."""
+LEAVES = Totals(gap=3.0, pressure=3.0, loss=1.5, side_flow=2.0)
+COARSE_BEYOND = Totals(gap=0.012, pressure=0.1, loss=0.02, side_flow=0.05)
+"""The error that mesh and step leave is `LEAST` and `LEAVES` times the change from the mesh before. Of a
+change beyond the third, which is the coarse mesh's own, a quarter counts. Chosen on marches with finer
+meshes, and checked on others, by `python -m benchmarks.film_cycle_engines` [-]."""
 
 
 @dataclass(frozen=True)
@@ -112,9 +149,8 @@ class SuppliedOrbit:
     repeat_error: float
     """Change of the least gap from the cycle before, relative; unless it repeats the largest of the last
     three, infinite if there were not two cycles."""
-    mesh_error: float
-    """Error of the least gap by the mesh, from its change, where holes under the load asked for further
-    meshes; else 0, which says nothing of the mesh [-]."""
+    error: Totals
+    """Relative error by mesh and step, and by what the cycle lacks of repeating; NaN where unknown [-]."""
     drift: float
     """Change of the eccentricity from the cycle before, over the gap, mean over the cycle; likewise."""
     cycles: tuple[int, ...]
@@ -131,6 +167,8 @@ class SuppliedOrbit:
     """Number of halvings in the last cycle, of steps that had not converged."""
     under_load: float
     """Share of the cycle in which every pocket lies under the load, within 60° of its direction [-]."""
+    change: Totals
+    """Change of the cycle from the mesh before, relative; NaN if there was none [-]."""
 
     @property
     def reason(self) -> str:
@@ -203,17 +241,7 @@ def supplied_orbit(
         runs.append(run_in(mesh, duty, state, meshing.step, meshing.most, progress))
         if runs[-1].ending is Ending.THINNING:
             break
-    return _measured(duty, runs, mesh_error=_mesh_error(runs) if further else 0.0)
-
-
-def _mesh_error(runs: list[Run]) -> float:
-    """Return the error of the least gap by its change from the last but one mesh.
-
-    Infinite without a cycle there [-].
-    """
-    if not (len(runs) > 1 and runs[-1].gaps and runs[-2].gaps):
-        return np.inf
-    return REMAINS * abs(runs[-1].gaps[-1] / runs[-2].gaps[-1] - 1)
+    return _measured(duty, runs)
 
 
 def _cells(gap: float, times: float = 1.0) -> int:
@@ -271,8 +299,9 @@ def _require_return(duty: Duty) -> None:
         )
 
 
-def _measured(duty: Duty, runs: list[Run], mesh_error: float = 0.0) -> SuppliedOrbit:
+def _measured(duty: Duty, runs: list[Run]) -> SuppliedOrbit:
     """Return what the last cycle was like."""
+    change = _change(duty, runs)
     run = next((run for run in reversed(runs) if run.gaps), runs[-1])
     mesh, states = run.mesh, run.states[1:] or run.states
     theta, z = in_frame(duty, states)
@@ -296,7 +325,7 @@ def _measured(duty: Duty, runs: list[Run], mesh_error: float = 0.0) -> SuppliedO
         least_angle=angle + shift,
         verdict=_verdict(runs[-1], share),
         repeat_error=run.repeat_error,
-        mesh_error=mesh_error,
+        error=change.error(run.repeat_error, LEAST if duty.supply.grooved else LEAST_OF_HOLES),
         drift=run.drift,
         cycles=tuple(len(run.gaps) for run in runs),
         around=mesh.order.size,
@@ -305,6 +334,33 @@ def _measured(duty: Duty, runs: list[Run], mesh_error: float = 0.0) -> SuppliedO
         mass_balance=(fed - lost - _stored(mesh, run.states)) / max(lost, 1e-300),
         halvings=run.halvings,
         under_load=share,
+        change=change,
+    )
+
+
+def _change(duty: Duty, runs: list[Run]) -> Totals:
+    """Return the change of what the last two meshes come to; NaN without a whole cycle on both."""
+    if len(runs) < 2 or not (runs[-2].gaps and runs[-1].gaps):
+        return UNKNOWN
+    return _totals(duty, runs[-1]).change(_totals(duty, runs[-2]))
+
+
+def _totals(duty: Duty, run: Run) -> Totals:
+    """Return what the last cycle of a run comes to."""
+    states, mesh = run.states[1:], run.mesh
+    theta, z = in_frame(duty, run.states)
+    fill = np.array([(1 - state.void) @ mesh.width for state in states])
+    H = np.array([gap_at(mesh, state.e) for state in states])
+    shear = (fill / H).sum(axis=1) / mesh.width.sum() * np.pi / mesh.order.size
+    load, w = duty.in_frame((theta[1:] + theta[:-1]) / 2)
+    middle, step = (z[1:] + z[:-1]) / 2, np.diff(theta)
+    work = (load.conj() * (np.diff(z) - 1j * w * middle * step)).real.sum()
+    at_ends = np.interp(theta[1:] % duty.load.period, duty.load.angle, duty.sliding, period=duty.load.period)
+    return Totals(
+        gap=run.gaps[-1],
+        pressure=max(float(state.P.max()) for state in states),
+        loss=float((shear * at_ends**2) @ step + work) / duty.load.period,
+        side_flow=_flows(run.states)[1] / duty.load.period,
     )
 
 

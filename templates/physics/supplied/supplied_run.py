@@ -146,7 +146,7 @@ def thins(gaps: list[float]) -> bool:
 
 
 def in_frame(duty: Duty, states: list[State]) -> tuple[Array, Array]:
-    """Crank angles [rad] and relative eccentricities e_x + i e_y [-] of states in the frame, (K,) each."""
+    """Return the crank angles [rad] and eccentricities e_x + i e_y [-] of states, (K,) each."""
     theta = np.array([state.theta for state in states])
     e = np.array([state.e for state in states])
     return theta, (e[:, 0] + 1j * e[:, 1]) * np.exp(1j * duty.mesh_turning(theta))

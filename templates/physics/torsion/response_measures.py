@@ -160,7 +160,7 @@ def power_error(put_in: Array, lost: Array, response: Response) -> Array:
 
 @units(None, "1", returns="rad/s", latex=r"h\omega\left|\Phi_{{{1}}}\right|")
 def speed_spectrum(response: Response, number: Array) -> Array:
-    """Amplitude of each order of the angular speed of one inertia, numbered from 1 [rad/s], (…, V, H)."""
+    """Return the amplitude of each order, from 1, of one inertia's angular speed [rad/s], (…, V, H)."""
     return np.asarray(response.frequency * np.abs(response.angles[..., int(number) - 1]))
 
 

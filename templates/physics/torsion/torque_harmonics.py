@@ -120,7 +120,7 @@ def _harmonics(T: Array, cycle: Cycle, orders: Array) -> Phasors:
 
 
 def half_swing(amplitudes: Phasors) -> Array:
-    """Half the swing over the cycle of Re Σ c e^{ikx}, k = 1 … H, (…), of amplitudes (…, H), in their unit.
+    """Return half the swing of Re Σ c e^{ikx}, k = 1 … H, over the cycle, (…), of c (…, H).
 
     The curve is sampled at least sixteen times in each period of its highest order. Parabolas through the
     samples rank its peaks, and Newton's method leads to the largest and the smallest.

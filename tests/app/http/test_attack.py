@@ -14,7 +14,7 @@ from described import APP, description
 from serving import API
 from sqlalchemy import func, select
 
-from app.http.access import needs_of, routes_of
+from app.http.access import needs_of
 from app.storage.tables import AuditRow
 
 sys.path.append(str(Path(__file__).parents[1] / "worksheet_import"))  # mathcad_files
@@ -23,7 +23,7 @@ from mathcad_files import define, math, prime, scale
 DESCRIBED = {f"{method.upper()} {path}" for path, item in description()["paths"].items() for method in item}
 NEEDED = {
     f"{method} {path}": needs_of(route)
-    for route in routes_of(APP)
+    for route in APP.router.routes
     for method in getattr(route, "methods", None) or ()
     for path in {route.path, getattr(route, "path_format", route.path)}
 }

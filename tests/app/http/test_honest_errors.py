@@ -39,6 +39,7 @@ def test_the_cycle_serves_costs_and_no_errors_of_level_flooded(http):
 def test_no_stated_error_answers_at_the_default_level(http):
     plain = {name: raw for name, raw in OilFilmCycle.example.items() if "groove" not in name}
     del plain["supply_pressure"]
+    plain["oil_supply"] = "flooded_ends"
     answer = evaluated(http, CYCLE, plain, tolerance=0.01)
     assert (answer["level"], answer["error"]) == ("mobility", {FILM: None})
     assert [w["code"] for w in answer["warnings"]] == ["tolerance_unmet"]

@@ -1,6 +1,7 @@
 """Each construct of Mathcad as a line of a worksheet, its value held against a stored result."""
 
 import math as python
+from pathlib import Path
 
 import pytest
 from mathcad_files import (
@@ -27,6 +28,7 @@ from mathcad_files import (
 )
 
 from app.worksheets.imports.job import imported
+from templates.core.language.evaluate import evaluate
 from templates.core.sheets import read
 
 
@@ -335,3 +337,52 @@ def test_a_sheet_of_mathcad_15_is_read_alike():
         "verified",
         "verified",
     ]
+
+
+class TestRates:
+    """To Mathcad rad, 1/s and Hz are alike; here a frequency in Hz stays one."""
+
+    SPEED = math(define("N", scale(5000, "rpm")))
+
+    def lines(self, *regions):
+        _, written = regions_of(self.SPEED, *regions)
+        return written.splitlines()
+
+    def test_a_frequency_shown_in_hz_stays_in_hz(self):
+        """The case syn_omega.mcdx: 5000 rpm are 83.33 Hz, and no angular speed of 83.33 rad/s."""
+        turned = apply("div", name("N"), apply("mult", real(2), constant("π")))
+        shown_f = math(shown(name("f"), unit("Hz")), real(83.33333333333333))
+        records, written = regions_of(self.SPEED, math(define("f", turned)), shown_f)
+        assert 'f [Hz] = N / (2 * pi) "f"' in written.splitlines()
+        assert records[-1]["state"] == "verified"
+
+    def test_the_case_of_a_sheet_with_speeds_and_frequencies(self):
+        """`f` shown in Hz, 83.33 of them; `w2` shown in rpm and `w3` in rad/s, each v/r."""
+        content = (Path(__file__).parent / "cases" / "syn_omega.mcdx").read_bytes()
+        lines = imported(content, "Sheet").text.splitlines()
+        assert 'f [Hz] = N / (2 * pi) "f"' in lines
+        assert 'w2 [rad/s] = 2 * v / D "w2"' in lines
+        assert 'w3 [rad/s] = 2 * v / D "w3"' in lines
+        assert any(line.startswith("S [1] = ") for line in lines)
+        cls = read("\n".join(line for line in lines if not line.startswith("//")) + "\n").template("case", 1)
+        evaluation = evaluate(cls, cls.example)
+        assert evaluation.outputs["f"].value == pytest.approx(5000 / 60)
+        assert [warning.name for warning in evaluation.warnings if warning.code == "turns"] == ["v", "s"]
+
+    def test_a_frequency_that_is_shown_in_no_unit_is_no_angular_speed(self):
+        turned = apply("div", name("N"), apply("mult", real(2), constant("π")))
+        assert 'f [1/s] = N / (2 * pi) "f"' in self.lines(math(define("f", turned)))
+        assert 'g [Hz] = 2 * f "g"' in self.lines(
+            math(define("f", scale(50, "Hz"))), math(define("g", apply("mult", real(2), name("f"))))
+        )
+
+    @pytest.mark.parametrize("asked", ["rpm", "rad"])
+    def test_a_rate_that_is_shown_as_a_speed_is_one(self, asked):
+        per_second = unit("rpm") if asked == "rpm" else apply("div", unit("rad"), unit("s"))
+        rate = apply("div", scale(10, "m"), apply("mult", scale(2, "m"), scale(1, "s")))
+        lines = self.lines(math(define("w", rate)), math(shown(name("w"), per_second)))
+        assert any(line.startswith("w [rad/s] = ") or line.startswith("given w [rad/s] = ") for line in lines)
+
+    def test_a_number_made_of_a_speed_in_turns_is_a_pure_number(self):
+        product = apply("mult", name("N"), scale(2, "s"))
+        assert 'S [1] = N * 2 s "S"' in self.lines(math(define("S", product)))

@@ -146,3 +146,36 @@ class TestJumps:
                     one, other = many[output][k] if many[output].ndim else many[output], alone[output]
                     scale = np.abs(other).max()
                     assert one == pytest.approx(other, rel=1e-9, abs=1e-9 * scale), (name, output)
+
+
+class TestSilentOptimism:
+    """What is left out, or read in one of two ways, is said in the answer."""
+
+    WEIGHTS = {Engine: ("web_unbalance", "counterweights"),
+               BearingLoad: ("crankpin_mass", "crank_mass", "counterweight_mass"),
+               Flywheel: ("crankpin_mass", "crank_mass", "counterweight_mass")}  # fmt: skip
+
+    @pytest.mark.parametrize("cls", [Engine, BearingLoad, Flywheel])
+    def test_a_crank_that_weighs_nothing_is_named(self, cls):
+        bare = {name: value for name, value in cls.example.items() if name not in self.WEIGHTS[cls]}
+        assert "massless_crank" in codes(cls, bare)
+        assert "massless_crank" not in codes(cls, cls.example)
+
+    @pytest.mark.parametrize("cls", [Engine, BearingLoad, Flywheel])
+    def test_a_crankcase_without_air_is_named(self, cls):
+        """Absolute pressures of the cycle and none in the crankcase: loads too large by an atmosphere."""
+        bare = {name: value for name, value in cls.example.items() if name != "crankcase_pressure"}
+        assert "vacuum_in_crankcase" in codes(cls, bare)
+        assert "vacuum_in_crankcase" not in codes(cls, cls.example)
+
+    @pytest.mark.parametrize("cls", [Engine, BearingLoad, Flywheel])
+    @pytest.mark.parametrize(
+        ("lowest", "crankcase", "is_named"),
+        [(0.9, "0 bar", True), (0.9, "1 bar", False), (-0.1, "0 bar", False), (-0.1, "1 bar", True)],
+    )
+    def test_a_table_and_a_crankcase_of_two_kinds_are_named(self, cls, lowest, crankcase, is_named):
+        angle = np.arange(0, 720, 15)
+        p = lowest + 40 * np.exp(-(((angle - 370) / 40) ** 2))
+        raw = {**cls.example, "gas_cycle": "table", "crankcase_pressure": crankcase,
+               "pressure": {"value": p.tolist(), "unit": "bar"}}  # fmt: skip
+        assert ("gauge_or_absolute" in codes(cls, raw)) == is_named

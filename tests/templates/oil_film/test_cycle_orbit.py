@@ -19,6 +19,9 @@ COUNT = 72
 ANGLE = np.arange(COUNT) * 2 * np.pi / COUNT
 
 
+FEEDS = {"groove_width", "sleeve_hole_length", "pin_hole_length"}
+
+
 def si(value, unit):
     return {"value": np.asarray(value, dtype=float).tolist(), "unit": unit}
 
@@ -39,6 +42,7 @@ def inputs(x, y, ratio=0.5, **changes):
         "bearing_width": si(D * ratio, "m"),
         "diametral_clearance": si(D * PSI, "m"),
         "dynamic_viscosity": si(ETA, "Pa*s"),
+        **({} if FEEDS & changes.keys() else {"oil_supply": "flooded_ends"}),
         **changes,
     }
 
@@ -208,9 +212,10 @@ class TestAnswers:
     def test_analytic_limits_warn(self):
         raw = inputs(X, Y, permissible_film=si(1e-3, "m"), permissible_pressure=si(1e3, "Pa"))
         reported = {warning.code for warning in evaluate(OilFilmCycle, raw, level="mobility").warnings}
-        assert reported == {"below_permissible_film", "above_permissible_pressure"}
+        assert reported == {"below_permissible_film", "above_permissible_pressure", "elasticity_left_out"}
         raw = inputs(X, Y, permissible_film=si(1e-9, "m"), permissible_pressure=si(1e12, "Pa"))
-        assert evaluate(OilFilmCycle, raw, level="mobility").warnings == []
+        left = evaluate(OilFilmCycle, raw, level="mobility").warnings
+        assert {warning.code for warning in left} == {"elasticity_left_out"}
 
     @pytest.mark.slow
     def test_analytic_flooded_level_is_near_the_others(self):

@@ -5,13 +5,15 @@ A table of errors may come to state one, or another: the verdicts with it are no
 
 from math import cos, hypot, pi, sin
 
+import numpy as np
 import pytest
 
 from templates.core.language import levels
 from templates.core.language.evaluate import evaluate
 from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
+from templates.physics.elastic.elastic_journal import deflection_in_steel
 
-RIGID = 231e3 * 0.055 / 48  # MPa
+STIFF = {"dynamic_viscosity": "1 Pa*s"}
 THIN = {"dynamic_viscosity": "0.02 mPa*s"}
 PUSHED = hypot(14.4, 1.9) * 1e3 / (48 * 18)  # MPa
 # A load that turns with the pin, and so with its hole.
@@ -27,6 +29,7 @@ EXACT = [
     ("hole_leaves_the_load", {}, HOLE, "not_met", 1, 0.6),
 ]
 VALUES = {"film": 2.85679, "pressure": 76.0539, "thin_film": 0.0142908, "thin_pressure": 673.886}
+VALUES |= {"deflection": 3.824594, "thick_deflection": 1.851124}
 CASES = [
     ("film", {"permissible_film": "2 um"}, "met", "film", 2),
     ("film", {"permissible_film": "3 um"}, "not_met", "film", 3),
@@ -34,8 +37,8 @@ CASES = [
     ("pressure", {"permissible_pressure": "70 MPa"}, "not_met", "pressure", 70),
     ("film_exists", {}, "met", "film", 0.05),
     ("film_exists", THIN, "not_met", "thin_film", 0.05),
-    ("rigid", {}, "met", "pressure", RIGID),
-    ("rigid", THIN, "not_met", "thin_pressure", RIGID),
+    ("rigid", STIFF, "met", "thick_deflection", 22.782389 / 2),
+    ("rigid", {}, "not_met", "deflection", 2.85679 / 2),
     ("isoviscous", {}, "met", "pressure", 500),
     ("isoviscous", THIN, "not_met", "thin_pressure", 500),
 ]
@@ -67,3 +70,11 @@ def test_every_criterion_has_a_case_of_both_verdicts():
     for wanted in ("met", "not_met"):
         shown = {name for name, _, verdict, *_ in CASES if verdict == wanted}
         assert shown | {name for name, _, _, verdict, *_ in EXACT if verdict == wanted} == declared
+
+
+def test_literature_deflection_of_a_bore_under_even_pressure_is_that_of_lame():
+    """Of a bore in an endless body: (1 + nu) p R/E. A cosine squared has half its height as mean."""
+    radius, width, pressure = 0.024, 0.018, 60e6
+    around = 10 * pressure * radius * width  # more than the pressed zone can bear: all of the bore is pressed
+    found = deflection_in_steel(*(np.asarray(v) for v in (pressure, around, radius, width)))
+    assert found == pytest.approx(1.3 / 210e9 * (2 / 3 * pressure / 2) * radius, rel=1e-5)

@@ -35,6 +35,9 @@ HOLE = {"sleeve_hole_length": "8 mm", "sleeve_hole_arc": "10 mm", "supply_pressu
 FILM = ("minimum_film_thickness", "film_thickness", "maximum_pressure", "power_loss", "side_flow")
 
 
+FEEDS = {"groove_width", "sleeve_hole_length", "pin_hole_length"}
+
+
 def si(value, unit):
     return {"value": np.asarray(value, dtype=float).tolist(), "unit": unit}
 
@@ -50,6 +53,7 @@ def inputs(x, y, **changes):
         "bearing_width": si(D * RATIO, "m"),
         "diametral_clearance": si(D * PSI, "m"),
         "dynamic_viscosity": si(ETA, "Pa*s"),
+        **({} if FEEDS & changes.keys() else {"oil_supply": "flooded_ends"}),
         **changes,
     }
 
@@ -89,7 +93,7 @@ class TestLift:
         assert lift > 0.02
         found = outputs(inputs(X, Y, **HALF))
         fed = OilFilmCycle.from_quantities(inputs(X - lift, Y, **HALF)).at("mobility_grooved").fed
-        orbit = fed_orbit("mobility_grooved", replace(fed, lift=None))
+        orbit = fed_orbit("mobility_grooved", replace(fed, pressure=np.float64(0.0)))
         clearance = D * PSI / 2 * 1e6
         assert found["film_thickness"] == pytest.approx(clearance * orbit.gap, rel=1e-9)
         assert found["minimum_film_thickness"] == pytest.approx(clearance * (1 - orbit.eps_max), rel=1e-9)
@@ -161,7 +165,7 @@ class TestRefusals:
 class TestWarnings:
     def test_property_inputs_that_a_level_does_not_read_are_named(self):
         assert unused(inputs(X, Y, **HALF)) == set()
-        assert unused(inputs(X, Y, **HALF), "mobility") == {"groove_width", "supply_pressure"}
+        assert unused(inputs(X, Y, **HALF), "mobility") == {"groove_width"}
         assert unused(inputs(X, Y, **PIN)) == {"pin_hole_length", "supply_pressure"}
         assert unused(inputs(X, Y, **PIN | HALF)) == {"pin_hole_length"}
         assert unused(inputs(X, Y)) == set()
@@ -191,7 +195,9 @@ class TestStatedErrors:
         for axis in ("load_x", "load_y"):
             raw[axis] = si(np.asarray(raw[axis]["value"]) * ratio / RATIO, "N")
         tables = accuracy(OilFilmCycle).cases[kind][level]
-        for name, bound in stated(raw, level).items():
+        found = stated(raw, level)
+        assert np.isnan(found.pop("side_flow"))  # what the supply drives was not in the duties' flow
+        for name, bound in found.items():
             assert np.isfinite(bound), name
             assert bound == tables[name][row, column], name
 
@@ -217,10 +223,21 @@ class TestStatedErrors:
             inputs(X, Y, **PIN, pin_hole_angle="180 deg"),
             inputs(X, Y, **HOLE, sleeve_hole_angle="0 deg"),
             inputs(X, Y),
+            inputs(X, Y, **FULL | {"supply_pressure": f"{4.0 / P_S * 3} bar"}),
         ],
     )
     def test_property_none_outside_the_bands_and_for_other_supplies(self, raw):
         assert np.isnan(list(stated(raw).values())).all()
+
+    @pytest.mark.slow
+    def test_property_level_supplied_states_the_error_of_each_answer(self):
+        names = ("minimum_film_thickness", "maximum_eccentricity", "power_loss", "side_flow")
+        raw = inputs(X, Y, **FULL)
+        found, errors = outputs(raw, "supplied"), stated(raw, "supplied", names)
+        assert errors["minimum_film_thickness"] == found["numerical_error"] > 5e-3
+        gap = found["minimum_film_thickness"] / (D * PSI / 2 * 1e6)
+        assert errors["maximum_eccentricity"] == pytest.approx(found["numerical_error"] * gap / (1 - gap))
+        assert all(0 < errors[name] < 0.06 for name in names), errors
 
     @pytest.mark.parametrize("groove", [FULL, HALF])
     def test_property_pressures_have_none(self, groove):
@@ -251,7 +268,11 @@ class TestStatedErrors:
                 cheap = fed_orbit(level, asked)
                 answer = values(cheap, fed_film(level, asked, cheap))
                 checked += [
-                    [error(answer[name], truth[name]) <= table[level][name][row, column] for name in OUTPUTS]
+                    [
+                        error(answer[name], truth[name]) <= table[level][name][row, column]
+                        for name in OUTPUTS
+                        if name != "side_flow"
+                    ]
                 ]
         assert np.mean(checked) >= 0.93
         assert np.mean(checked, axis=0)[OUTPUTS.index("minimum_film_thickness")] >= 7 / 8
@@ -272,4 +293,4 @@ class TestSupplied:
         assert len(orbit.cycles) == 4
         missed = orbit.least_gap / 0.037242 - 1
         assert abs(missed) < 0.005
-        assert abs(missed) < orbit.mesh_error < 0.05
+        assert abs(missed) < orbit.error.gap < 0.06

@@ -33,6 +33,7 @@ class TestLoadDiagram:
             "load_y": {"value": np.zeros(cls.angle.size).tolist(), "unit": "kN"},
             "speed": "2000 rpm", "bearing_diameter": "63.5 mm", "bearing_width": "25.4 mm",
             "diametral_clearance": "71.12 um", "dynamic_viscosity": "4.16 mPa*s",
+            "oil_supply": "flooded_ends",
         }  # fmt: skip
         return evaluate(OilFilmCycle, raw, level=level).outputs
 

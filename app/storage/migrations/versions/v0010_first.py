@@ -1,4 +1,4 @@
-"""The schema of the first release: all tables, the counters, what the database refuses and sums."""
+"""The schema of the first release: all tables, counters, constraints and triggers."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -403,7 +403,7 @@ def create_records() -> None:
 
 
 def begin_counters(dialect: str) -> None:
-    """Counters of one server; of several also a sequence, and the moment for which the clock stands."""
+    """Create the counters of one server; for several also a sequence, and the moment when the clock stops."""
     op.execute("INSERT INTO counter (name, value) VALUES ('identity', 0), ('operation', 0)")
     if dialect == "postgresql":
         op.execute("CREATE SEQUENCE identity AS bigint START WITH 1")

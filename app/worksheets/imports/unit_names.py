@@ -1,0 +1,101 @@
+"""Units among names that carry no label, as in the sheets of Mathcad 11 to 15.
+
+A name that nothing defines is a unit only if Mathcad has a unit of this name and if it stands where a unit
+does: as a factor of a product or quotient. A single letter needs more, since it is also how a quantity is
+called: a number stands before it, `3*m`, or does so elsewhere in the sheet. Every other name is refused as
+undefined: none is taken for a constant, so that `c` is never the speed of light.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+from typing import Literal
+
+from app.worksheets.imports.names import key_of
+from app.worksheets.imports.regions import Original
+from app.worksheets.imports.trees import Node
+
+UNLABELLED = ("", "*", "None")
+"""Labels of a name that say nothing."""
+
+_LETTERS = frozenset("m s K N J W V A L".split())
+_WORDS = frozenset(
+    "km cm mm μm µm um nm ft in inch yd mi mil furlong kg gm mg tonne lb lbm oz slug ton tonf sec ms min hr"
+    " day yr year Hz kHz MHz GHz rpm RPM rps rad deg ° mol mole amp mA volt kV mV ohm Ω acre hectare"
+    " liter mL ml gal mph kph fps newton kN MN lbf kgf kip dyne Pa kPa MPa GPa hPa psi psf ksi bar"
+    " atm torr joule kJ MJ mJ kcal cal BTU kWh watt kW MW mW hp poise stokes kelvin meter kilogram second"
+    " mm² m²".split()
+)
+_FACTORS = ("mult", "scale", "div", "pow")
+
+_Place = Literal["", "factor", "quantity"]
+
+
+def letters_of(regions: Iterable[Original]) -> frozenset[str]:
+    """Return the single letters that stand behind a number somewhere in a sheet, and so are units in it."""
+    found = set[str]()
+    for region in regions:
+        if region.math is not None:
+            found.update(
+                key_of(name) for name, place in _placed(region.math, frozenset()) if place == "quantity"
+            )
+    return frozenset(found & _LETTERS)
+
+
+def label_units(math: Node, defined: Collection[str], letters: Collection[str]) -> None:
+    """Label the names that are units, as Mathcad Prime does.
+
+    Parameters
+    ----------
+    defined
+        The names that have a meaning here, which are never units.
+    letters
+        The single letters that are units in this sheet.
+    """
+    for name, place in _placed(math, defined):
+        key = key_of(name)
+        if place and key not in defined and (key in _WORDS or (key in letters and key in _LETTERS)):
+            name.attributes["labels"] = "UNIT"
+
+
+def _placed(math: Node, defined: Collection[str]) -> Iterator[tuple[Node, _Place]]:
+    """Yield the names without a label, each with where it stands."""
+    waiting: list[tuple[Node, _Place]] = [(math, "")]
+    while waiting:
+        node, place = waiting.pop()
+        sign = node.parts[0].tag if node.tag == "apply" and node.parts else ""
+        if node.tag == "id":
+            if node.attributes.get("labels", "") in UNLABELLED:
+                yield node, place
+        elif sign in _FACTORS and len(node.parts) == 3:
+            inner: _Place = "quantity" if place == "quantity" or _is_quantity(node, defined) else "factor"
+            waiting += [(node.parts[1], inner), (node.parts[2], "" if sign == "pow" else inner)]
+        else:
+            kept = node.tag == "parens" or sign == "neg"
+            waiting += [(part, place if kept else "") for part in node.parts]
+
+
+def _is_quantity(node: Node, defined: Collection[str]) -> bool:
+    """Return whether a product is a number, or a list of such, times names that may all be units."""
+    leaves = list(_leaves(node))
+    names = [leaf for leaf in leaves if leaf.tag == "id"]
+    keys = [key_of(name) for name in names]
+    return leaves[0].tag in ("real", "matrix") and all(
+        leaf.tag in ("real", "id")
+        or (leaf.tag == "matrix" and all(part.tag in ("real", "apply") for part in leaf.parts))
+        for leaf in leaves
+    ) and all(key not in defined and (key in _LETTERS or key in _WORDS) for key in keys)  # fmt: skip
+
+
+def _leaves(node: Node) -> Iterator[Node]:
+    """Yield the factors of a product or quotient from left to right; of a power its base."""
+    waiting = [node]
+    while waiting:
+        node = waiting.pop()
+        sign = node.parts[0].tag if node.tag == "apply" and node.parts else ""
+        if sign in _FACTORS and len(node.parts) == 3:
+            waiting += [node.parts[1]] if sign == "pow" else [node.parts[2], node.parts[1]]
+        elif node.parts and (node.tag == "parens" or sign == "neg"):
+            waiting.append(node.parts[-1])
+        else:
+            yield node

@@ -1,0 +1,151 @@
+"""Random engine bearings of every supply, marched at level `supplied`, and a share of them twice as fine.
+
+    nice python -m benchmarks.film_cycle_engines SEED [duties] [finer]     marches what is not kept yet
+    python -m benchmarks.film_cycle_engines                                prints the tables
+
+Duties are the engines of `supplied_duties`: big ends and main bearings of idealised two- and four-stroke
+cylinders; load number 0.3 … 105, B/D 0.15 … 1.2, supply pressure 0.02 … 4 (relative). Supplies take turns:
+half groove, full groove, hole in the pin, hole in the sleeve, slot, a groove of any extent, and a groove with
+a hole in the pin; holes are anywhere, under the load too. Each duty is one line of
+benchmarks/results/film_cycle_engines.jsonl. `finer` marches so many of the duties on a mesh that is 1.5 times
+as fine each way, and in time, as well.
+"""
+
+import json
+import sys
+from dataclasses import astuple, replace
+from pathlib import Path
+from time import process_time
+from typing import Any
+
+import numpy as np
+
+from benchmarks.supplied_duties import RandomDuty, random_duty
+from templates.physics.orbits.cyclic_film import Duty
+from templates.physics.supplied.fed_cycle import UNREPEATED, FedDuty, fed_film, fed_orbit
+from templates.physics.supplied.supplied_orbit import (
+    COARSE,
+    FINE,
+    MORE_ROWS,
+    NEAR_HOLES,
+    STAYS,
+    THIN,
+    SuppliedOrbit,
+    supplied_orbit,
+)
+from templates.physics.supplied.supply import Pocket, Supply
+
+KEPT = Path("benchmarks/results/film_cycle_engines.jsonl")
+SUPPLIES = ("half_groove", "full_groove", "pin_hole", "sleeve_hole", "slot", "part_groove", "several")
+GROOVED = ("half_groove", "full_groove", "part_groove", "several")
+FINER = 1.5
+LOWEST, HIGHEST = 0.02, 4.0
+"""Relative supply pressures [-]."""
+CHEAP = ("mobility_short", "mobility", "mobility_grooved")
+Line = dict[str, Any]
+
+
+def engine_duty(seed: int, number: int) -> RandomDuty:
+    """Return an engine's bearing; the supplies take turns."""
+    fed_by = SUPPLIES[number % len(SUPPLIES)]
+    known = {"part_groove": "half_groove", "several": "full_groove"}.get(fed_by, fed_by)
+    duty = random_duty(seed, 2 * number, known)
+    rng = np.random.default_rng([seed, number, 7])
+    (pocket,) = duty.supply.pockets
+    pockets: tuple[Pocket, ...] = (pocket,)
+    if fed_by == "half_groove":
+        pockets = (replace(pocket, half_angle=float(rng.uniform(np.pi / 3, 2 * np.pi / 3))),)
+    elif fed_by == "part_groove":
+        pockets = (replace(pocket, half_angle=float(rng.uniform(np.pi / 12, np.pi))),)
+    elif fed_by == "several":
+        hole = float(np.radians(rng.uniform(3, 10)))
+        turned = float(rng.uniform(-np.pi, np.pi))
+        pockets = (pocket, Pocket(turned, hole, pocket.half_length, on_journal=True))
+    pressure = float(np.exp(rng.uniform(np.log(LOWEST), np.log(HIGHEST))))
+    return replace(duty, supply=Supply(pockets, pressure), fed_by=fed_by)
+
+
+def fed(duty: RandomDuty) -> FedDuty:
+    """Return the same as templates know it; dimensionless: the crank turns at 1, F is S."""
+    load, one = duty.load, np.float64(1.0)
+    journal, sleeve = load.w[0] + duty.sliding / 2, load.w[0] - duty.sliding / 2
+    asked = Duty(load.angle, *load.S[:, 0], journal, sleeve, np.zeros(1), one, one, np.float64(duty.ratio))
+    pocket = duty.supply.pockets[0]
+    start, extent = pocket.centre - pocket.half_angle, 2 * pocket.half_angle
+    share = pocket.half_length if duty.fed_by in GROOVED else 0.0
+    groove = tuple(np.float64(v) for v in (share, start, extent))
+    pressure = np.float64(duty.supply.pressure)
+    return FedDuty(asked, *groove, pressure, np.array(duty.supply, dtype=object))
+
+
+def compared(seed: int, number: int, *, finer: bool) -> Line:
+    """Return one duty at every level: a line of the record."""
+    duty = engine_duty(seed, number)
+    asked, begin = fed(duty), process_time()
+    orbit = fed_orbit("supplied", asked)
+    (marched,) = orbit.marches
+    assert marched is not None
+    seconds = process_time() - begin
+    line: Line = {
+        "seed": seed, "number": number, "fed_by": duty.fed_by, "load": duty.kind,
+        "S": digits(np.hypot(*duty.load.S).max()), "b": digits(duty.ratio), "P": digits(duty.supply.pressure),
+        "under_load": digits(marched.under_load), "verdict": marched.verdict.value,
+        "repeat": digits(marched.repeat_error), "cycles": list(marched.cycles), "seconds": round(seconds, 2),
+    }  # fmt: skip
+    if marched.verdict in UNREPEATED:
+        return line
+    film = fed_film("supplied", asked, orbit)
+    own = [marched.least_gap, film.P_max, film.loss, film.side_flow, marched.mean_feed]
+    line["own"] = [digits(value, 7) for value in own]
+    line["change"] = [digits(value) for value in astuple(marched.change)]
+    line["cheap"] = {level: cheap(level, asked) for level in CHEAP if level != CHEAP[2] or asked.groove_share}
+    if finer:
+        line["finer"] = finer_march(duty, marched)
+    return line
+
+
+def cheap(level: str, asked: FedDuty) -> list[float | None]:
+    """Return the same values of a cheap level."""
+    orbit = fed_orbit(level, asked)
+    film = fed_film(level, asked, orbit)
+    return [digits(v, 7) for v in (1 - orbit.eps_max, film.P_max, film.loss, film.side_flow)]
+
+
+def finer_march(duty: RandomDuty, marched: SuppliedOrbit) -> list[float | None] | None:
+    """Return the changes on a mesh `FINER` times as fine, also in time; None where that has no film."""
+    near = NEAR_HOLES if marched.under_load > STAYS else ()
+    last = near[-1] if near else FINE
+    thin = MORE_ROWS if marched.least_gap < THIN else 0
+    across = round(FINER * (last.across + thin)) - thin  # the orbit adds them
+    finest = replace(last, around=round(FINER * marched.around), across=across, step=last.step / FINER,
+                     cells=FINER * last.cells)  # fmt: skip
+    meshes = (COARSE, FINE, *near, finest)
+    orbit = supplied_orbit(duty.load, duty.sliding, duty.ratio, duty.supply, meshes)
+    return None if orbit.verdict in UNREPEATED else [digits(v) for v in astuple(orbit.change)]
+
+
+def digits(value: Any, count: int = 4) -> float | None:
+    """Return a number in so many digits; None where there is no value."""
+    return float(f"{float(value):.{count}g}") if np.isfinite(value) else None
+
+
+def kept() -> list[Line]:
+    """Return all lines of the record."""
+    if not KEPT.exists():
+        return []
+    return [json.loads(line) for line in KEPT.read_text(encoding="utf-8").splitlines()]
+
+
+def march(seed: int, duties: int, finer: int) -> None:
+    """March what is not kept yet."""
+    done = {(line["seed"], line["number"]) for line in kept()}
+    for number in range(duties):
+        if (seed, number) not in done:
+            line = compared(seed, number, finer=number < finer)
+            with KEPT.open("a", encoding="utf-8") as file:
+                file.write(json.dumps(line, separators=(",", ":")) + "\n")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1:
+        march(*(int(one) for one in sys.argv[1:4]))
