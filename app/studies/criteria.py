@@ -21,7 +21,7 @@ def criterion_of(net: DesignEngine, name: str) -> Criterion:
 
 
 JUDGED = "judged/"
-SIDES = ("value", "limit", "low", "high", "known")
+SIDES = ("value", "limit", "low", "high", "is_known")
 """The values of a criterion that a search needs, in arrays `judged/<criterion>/<side>`; 1 is known."""
 
 

@@ -285,9 +285,9 @@ class _Book:
         ]
         which = call.arrays["reason"].tolist()
         reasons = {n: call.reasons[place][2] for n, place in enumerate(which) if place >= 0}
-        value, limit, low, high, known = (side(name) for name in SIDES)
+        value, limit, low, high, is_known = (side(name) for name in SIDES)
         both = np.stack(objectives, axis=-1)
-        return Columns(both, value, limit, low, high, reasons, call.seconds, known=known == 1)
+        return Columns(both, value, limit, low, high, reasons, call.seconds, is_known=is_known == 1)
 
 
 def _array(call: _Call, name: str) -> AnyArray:

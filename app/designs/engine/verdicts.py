@@ -306,11 +306,11 @@ class Verdicts:
         """Return where the errors of all that is upstream are known, beside the values."""
         if not (upstream.unknown or upstream.stopped):
             return True
-        known = ~self._shifts.unknown(upstream)
+        certain = ~self._shifts.unknown(upstream)
         if not any(one.has_rows for one in estimates.values()):
-            return bool(known.all())
+            return bool(certain.all())
         axes = max(one.one.axes for one in estimates.values())
-        return known.reshape(-1, *(1,) * (rank + axes))
+        return certain.reshape(-1, *(1,) * (rank + axes))
 
     def _estimate(self, reference: Reference) -> RowEstimate | Absent:
         """Return the value of a name with the error of its own step, or why there is none."""
@@ -467,14 +467,14 @@ def _padded(
 
 def _column(criterion: Criterion, sides: list[Array]) -> JudgedColumn:
     """Return the numbers of each row, as a report of a single design has them."""
-    value, limit, low, high, *_, known = sides
+    value, limit, low, high, *_, certain = sides
     is_least = criterion.sign == ">="
     with np.errstate(all="ignore"):
         share = limit / value if is_least else value / limit
     is_share = (value > 0) & (limit > 0) & np.isfinite(share) & (not criterion.is_temperature)
     margin = value - limit if is_least else limit - value
     share = np.where(is_share, share, np.nan)
-    return JudgedColumn(value, limit, low, high, share, margin, bool(known.all()))
+    return JudgedColumn(value, limit, low, high, share, margin, bool(certain.all()))
 
 
 def _explained(result: Judgement, sides: _Sides) -> Judgement:

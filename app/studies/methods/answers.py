@@ -68,7 +68,7 @@ class Columns:
         Why a row is refused, by its number.
     seconds
         What the rows cost; an answer from storage repeats what they cost when they were calculated.
-    known
+    is_known
         Where the error of a criterion that is met is known, shape (N, m); everywhere, if None.
     """
 
@@ -79,7 +79,7 @@ class Columns:
     high: Array
     reasons: Mapping[int, str] = field(default_factory=dict)
     seconds: float = 0.0
-    known: Mask | None = None
+    is_known: Mask | None = None
 
     def row(self, number: int) -> Columns:
         """Return one row, as columns of a single row."""
@@ -87,8 +87,8 @@ class Columns:
         arrays = (self.objectives, self.values, self.limits, self.low, self.high)
         objectives, values, limits, low, high = (array[part] for array in arrays)
         reasons = {0: self.reasons[number]} if number in self.reasons else {}
-        known = None if self.known is None else self.known[part]
-        return Columns(objectives, values, limits, low, high, reasons, known=known)
+        certain = None if self.is_known is None else self.is_known[part]
+        return Columns(objectives, values, limits, low, high, reasons, is_known=certain)
 
     def worst(self, problem: Problem) -> Array:
         """Return the margin of each criterion at the bad end of its band, shape (N, m).
@@ -101,8 +101,8 @@ class Columns:
     def codes(self, problem: Problem) -> tuple[int, ...]:
         """Return the verdict on each criterion in the first row, as places in `VERDICTS`."""
         margins = problem.signs * (self.values - self.limits)
-        known = np.ones_like(margins, dtype=bool) if self.known is None else self.known
-        codes = verdicts(">=", margins, 0.0, (self.low, self.high), (0.0, 0.0), known)
+        certain = np.ones_like(margins, dtype=bool) if self.is_known is None else self.is_known
+        codes = verdicts(">=", margins, 0.0, (self.low, self.high), (0.0, 0.0), certain)
         return tuple(np.asarray(codes)[0].tolist())
 
 
