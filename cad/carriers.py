@@ -1,4 +1,4 @@
-"""Find the faces of a part that carry a dimension: by what the model declares, and by their size.
+"""Find the faces of a part that carry a dimension: from the model's declaration and from their size.
 
 A face never gets the tolerance of another dimension: where none has the parameter's size, or two dimensions
 claim the same face, the build is refused.
@@ -209,7 +209,9 @@ class Carriers:
 
     def _missing(self, one: ToleranceFaces, size: float) -> tuple[int, ...]:
         detail = f"{one.name} has a tolerance, but no face of {one.part} shows its {size:g} mm"
-        raise GeometryError("tolerance", f"{detail}; leave the tolerance out, or give it a size", (one.name,))
+        raise GeometryError(
+            "tolerance", f"{detail}; omit the tolerance, or give the dimension a size above 0", (one.name,)
+        )
 
 
 def _is_beside(other: ToleranceFaces, one: ToleranceFaces) -> bool:

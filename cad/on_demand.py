@@ -1,9 +1,9 @@
-"""The kernel on demand: a process that draws nothing, such as the server, does without importing it.
+"""Import the kernel on demand: a process that draws nothing, such as the server, never imports it.
 
-CadQuery, OpenCASCADE and what writes drawings take seconds to import, and more memory than all the rest of
-the server, which needs of a model its parameters only. After `postpone`, what a module imports from them is
-a stand-in. The first use of one (a call, an attribute) imports the kernel and puts the real thing in place of
-every stand-in that a module holds. So nothing fails for this; it comes later.
+CadQuery, OpenCASCADE and the drawing libraries take seconds to import, and more memory than the rest of the
+server, which needs only the parameters of a model. After `postpone`, what a module imports from them is a
+stand-in. The first use of one (a call, an attribute) imports the kernel and puts the real thing in place of
+every stand-in that a module holds. So every use works; only the import comes later.
 
 Modules that need the kernel while they are imported say so by `constant` and `once_loaded`.
 

@@ -1,7 +1,7 @@
 """Responses of routes: how long a client waits, in which threads, 202 with a job, JSON and its compression.
 
-Routes that may wait for the pool of calculation processes have threads of their own, so that those of the
-others are free.
+Routes that may wait for the pool of calculation processes have their own threads, so that they never block
+the other routes.
 """
 
 from __future__ import annotations

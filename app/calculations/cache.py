@@ -1,4 +1,4 @@
-"""Results that are kept to be used again, all together within a limit of the memory that they hold."""
+"""A cache of results, limited by the total memory that they occupy."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 `crank angle [deg], pressure [bar]` or `crank_angle_deg,pressure_bar`. `tables` reads a file as it reads what
 is pasted on a page, `indicator` makes one cycle of several. Nothing is stored; what is assumed is stated,
-and what is not plain is refused with its line.
+and an unclear cell is refused with its line number.
 """
 
 from __future__ import annotations

@@ -194,7 +194,7 @@ def table_of(
         if heading is not None and one is not None and (fault := heading(name, one.text)):
             faults.add(lines[0].fault(fault.code, fault.detail, name))
     if not rest:
-        faults.add(Fault("table", "empty", "there is no row of numbers"))
+        faults.add(Fault("table", "empty", "the table has no row of numbers"))
     marks = _Marks(is_comma)
     rows = [_numbers(line, names, marks, faults) for line in rest]
     if not is_sheet and (ambiguous := marks.fault()):
@@ -293,7 +293,9 @@ def _cells(row: int, line: str, separator: str) -> list[str]:
     try:
         (cells,) = csv.reader([line], delimiter=separator, skipinitialspace=separator != "\t")
     except (csv.Error, ValueError):
-        raise _wrong(f"row {row}", "not_a_row", "its quotes cannot be read; remove them") from None
+        raise _wrong(
+            f"row {row}", "not_a_row", "the quotes in this row cannot be read; remove them"
+        ) from None
     return [cell.strip() for cell in cells]
 
 

@@ -1,4 +1,4 @@
-"""The job behind a revision: build what is not built, measure, calculate what waited, iterate if declared."""
+"""The job behind a revision: build and measure missing solids, calculate dependent steps, iterate."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Fields that a revision has for the surface of a crankshaft: use of its fillets, shapes of torsional modes.
 
-They follow from steps that take what finite elements answered about the model: from a `fatigue_life` whose
-tensors are those of `unit_loads`, and from a `forced_torsion` whose stiffnesses are those of `chain`. Nothing
-is declared for them, and nothing is stored.
+They come from steps that use finite-element results of the model: a `fatigue_life` with the tensors of
+`unit_loads`, and a `forced_torsion` with the stiffnesses of `chain`. A user declares nothing for them, and
+the service stores none.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A design as it is sent to a calculation process: its document and the files that its steps are made of."""
+"""A design as it is sent to a calculation process: its document and the files of its templates."""
 
 from __future__ import annotations
 

@@ -1,12 +1,12 @@
 """Who sends a request: its principal, its client, and the role that its route needs.
 
-Every request acts for the principal whose key or session it carries. Limits and turns are counted by client:
-who has signed in is the client as a principal. Where nothing asks for a key, a client is the header
-`Crankwright-Client`, else the session of a page, else the address that the request came from.
+Every request acts for the principal whose key or session it carries. Limits and turns are counted by client.
+If keys are in use, the client is the principal. Otherwise it is the header `Crankwright-Client`, else the
+session of a page, else the address that the request came from.
 
-The role that a route needs is that of its declaration, else it follows from its method; it is checked before
-the route runs. A router or a route declares by `dependencies=[needs("author")]`; of several declarations the
-last one counts.
+A route declares the role that it needs; without a declaration its HTTP method decides. The role is checked
+before the route runs. A router or a route declares by `dependencies=[needs("author")]`; of several
+declarations the last one counts.
 """
 
 from __future__ import annotations

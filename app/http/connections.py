@@ -1,7 +1,7 @@
-"""Connections that nobody holds for ever: uvicorn's protocol, with limits on heads and on slow clients.
+"""Limits on connections: uvicorn's protocol with limits on request headers and on slow clients.
 
-uvicorn waits without limit for the head of a request, and until a client has read its answer. It reads a
-head of any length, and copies all of it again whenever another piece comes in.
+uvicorn sets no time limit on receiving request headers or on a client that reads its answer slowly. It
+accepts headers of any length, and copies all of them again whenever another piece arrives.
 
 From a target that is no mere path, such as `GET http://evil.example/healthz`, uvicorn drops the host and
 serves the path, although RFC 9112 wants that host to count instead of the header `Host`. No client of this

@@ -1,10 +1,10 @@
-"""The outermost layer of the application: no other site reads, writes or frames anything through a browser.
+"""The outermost layer of the application: it keeps other sites from reading, writing or framing pages.
 
 Three rules, before any route (docs/decisions/018-hosts-and-origins.md has the reasons):
 
 1. The header `Host` names a host that the service answers to.
-2. What changes something comes from the service's own pages, or from no page at all. Other sites may link to
-   a page; they may not load anything from here.
+2. A request that changes something must come from the service's own pages, or from no page at all. Other
+   sites may link to a page; they may not load anything from here.
 3. Every answer forbids sniffing, framing and reading by other origins.
 """
 

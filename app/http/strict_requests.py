@@ -1,4 +1,4 @@
-"""Requirements for every request: a small body, valid JSON, a precondition on changes.
+"""Requirements on every request: a bounded body, valid JSON, a precondition on changes.
 
 `StrictRoute` replaces FastAPI's lenient reading of bodies: pydantic's parser refuses lone surrogates and deep
 nesting, and nothing is guessed from a missing or wrong content type. `PlainRoute` reads just as strictly, and

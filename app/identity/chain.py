@@ -1,7 +1,8 @@
 """The hash chain of the audit: each sealed row has the next number and the hash of the previous row.
 
-A hash is the SHA-256 of what a row says, its number and the hash before, as canonical JSON. Whoever changes,
-takes out or puts in a row has to write all that follow again, and then meets no hash that was exported.
+A hash is the SHA-256 of a row's content, its number and the previous hash, as canonical JSON. Anybody who
+changes, removes or inserts a row must rewrite all later rows, and their hashes then differ from an exported
+hash.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Designs of one form calculated together: each is a row of the same array calls.
 
-What cannot be is left to `alone`: steps whose level follows from a tolerance, values that are measured on
-solids, iterations, inputs at several points. So is a call that refuses as a whole.
+`alone` calculates the other designs: those with steps whose level follows from a tolerance, values that are
+measured on solids, iterations, or inputs at several points. It also takes over when a whole array call is
+refused.
 """
 
 from __future__ import annotations

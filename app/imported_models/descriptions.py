@@ -110,7 +110,7 @@ def described_creo(
     for one in described.parameters:
         if one.role and not shows(one, sizes):
             raise UnreadableModel(
-                "check", f"{one.name}: no {one.role} of {one.value:g} {one.unit} on the solid"
+                "check", f"{one.name}: the solid has no {one.role} of {one.value:g} {one.unit}"
             )
     return described
 

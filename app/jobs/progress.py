@@ -1,6 +1,6 @@
 """Progress of running jobs for other servers: stored in their rows, and read from there.
 
-Progress is not an event that is kept: only the latest counts, and it costs one small write now and then.
+Progress is not an event: only the latest value counts, and it costs one small write at most once a second.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """A question is answered at once if that is cheap, else by a job.
 
 `Questions` does this for evaluations, solutions and worksheets of templates, and for previews, decisions,
-solutions, analyses of tolerances, single variants and the impact of versions. What was begun for a client who
-waits no longer goes on: the job takes it over and keeps the answer as an artifact, and the client comes back
-for it. A job is known by the key of its question, so an equal question finds its job, or the answer itself.
+solutions, analyses of tolerances, single variants and the impact of versions. If a client stops waiting, a
+job takes over the running calculation and stores the answer as an artifact, which the client fetches later. A
+job is known by the key of its question, so an equal question finds its job, or the answer itself.
 """
 
 from __future__ import annotations

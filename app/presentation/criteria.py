@@ -1,4 +1,4 @@
-"""Criteria in words, for pages and reports alike: what was compared, what is used, left, and missing.
+"""Criteria in words, for pages and reports: the comparison, the utilisation, the margin, and what is missing.
 
 Every sentence is about the case: "minimum film thickness 1.53 µm < 2 µm", never the docstring of a rule.
 `app/web/verdict/criteria.js` writes the same while a user types; `tests/app/web` compares the two.
@@ -13,6 +13,7 @@ from typing import Protocol
 
 from app.presentation import numbers
 from app.reference import Reference
+from templates.core.judging.judgement import is_model
 
 WORDS = {"met": "met", "not_met": "not met", "undecided": "undecided", "not_checked": "not checked"}
 _SIGN = re.compile(r"^(.*?)\s*(>=|<=)\s*(.*)$", re.DOTALL)
@@ -86,6 +87,8 @@ class JudgedCriterion(Protocol):
     def unverified(self) -> str | None: ...  # noqa: D102
     @property
     def waived(self) -> str | None: ...  # noqa: D102
+    @property
+    def truth(self) -> str | None: ...  # noqa: D102
 
 
 @dataclass(frozen=True)
@@ -219,12 +222,13 @@ def missing(criterion: JudgedCriterion) -> str:
 def remarks(criterion: JudgedCriterion) -> tuple[str, ...]:
     """Return restrictions of the verdict.
 
-    An error not stated, a limit not verified, a waiver, the worst place.
+    An error not stated, a limit not verified, a waiver, the model, the worst place.
     """
     said = (
         NOT_STATED if criterion.value is not None and not criterion.error_stated else "",
         f"unverified: {criterion.unverified}" if criterion.unverified else "",
         f"waived: {criterion.waived}" if criterion.waived else "",
+        criterion.truth if criterion.truth and is_model(criterion.truth) else "",
         _where(criterion),
         criterion.reason if criterion.reason and missing(criterion) != criterion.reason else "",
     )

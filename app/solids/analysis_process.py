@@ -134,7 +134,7 @@ def throw_of(shape: CadModel, question: Question) -> Crank | None:
     whole = shaft_of_throws(shape)
     sizes = shape.throw_sizes() if whole is None else sizes_of_throw(whole)
     if sizes is None and whole is not None:
-        raise AnalysisError("no_throw", f"{UNIT_LOADS} does not know split pins: give pin_split 0")
+        raise AnalysisError("no_throw", f"{UNIT_LOADS} does not support split pins: give pin_split 0")
     if sizes is None:
         raise AnalysisError("no_throw", f"{shape.id} is not one throw of a crank")
     return sizes

@@ -3,7 +3,7 @@
 An optimiser asks for the same rows in the same order whenever it begins with the same seed. So a search that
 was interrupted begins again and receives the answers that are stored, by the bytes of the rows, until it asks
 for the first that is not. Generations of NSGA-II are stored as well: finished ones are not repeated.
-A slice ends by estimated seconds, not by a clock: equal studies, equal chunks.
+A slice ends after a number of estimated seconds, not by the clock, so that equal studies have equal chunks.
 """
 
 from __future__ import annotations

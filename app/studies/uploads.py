@@ -1,4 +1,4 @@
-"""The rows of a study as a spreadsheet's file: CSV, or the first sheet of an XLSX file. In a process.
+"""Read the rows of a study from a CSV file or the first sheet of an XLSX file, in a calculation process.
 
 A cell that is not a number, or that holds a formula, is refused with its row and column.
 """

@@ -1,4 +1,4 @@
-"""Stress tensors at points of a throw under unit loads: what a history of loads is superposed from.
+"""Stress tensors at points of a throw under unit loads, from which a load history is superposed.
 
 Five loads, each of 1 N or 1 N·mm, in axes that turn with the throw. It is held at one end face.
 

@@ -1,6 +1,6 @@
 """Broken-out sections (ISO 128-3): around a hole that no section shows, a view is cut open to its axis.
 
-One of several equal holes is opened, that farthest to the right in the view. The cut is a box, whose sides
+Of several equal holes, the one farthest to the right in the view is opened. The cut is a box, whose sides
 are drawn as thin lines with zigzags (ISO 128-2, 01.1.19).
 """
 

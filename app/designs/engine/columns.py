@@ -1,4 +1,4 @@
-"""Values of many rows of a design, and how far off they may be.
+"""Values of many rows of a design, with their error bounds.
 
 The row is the first axis, a place along a curve the last. A value that does not follow from the rows has no
 axis for them. So whether the first axis of an array counts rows is part of the column, and 360 rows are not
@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.arrays import Array, Mask
+from templates.core.errors import FaultyText
 from templates.core.judging.bands import Estimate
 from templates.core.units.units import Value
 
@@ -102,16 +103,25 @@ def stacked(items: Sequence[Column]) -> Column:
     return Column(np.stack(list(values), axis=-1), is_row=True)
 
 
+UNEQUAL = (
+    "its curve has more places in some rows than in others, and rows of one table have curves of one length: "
+    "leave this output out, or vary something else"
+)
+
+
 def scattered(count: int, parts: Iterable[tuple[Indices | slice, Column]]) -> Column:
     """Return one column of so many rows from columns of parts of the rows; NaN in the others.
 
     Raises
     ------
-    ValueError
-        If the parts have curves of different lengths.
+    FaultyText
+        With code `shape`, if the parts have curves of different lengths.
     """
     pieces = list(parts)
-    places: tuple[int, ...] = reduce(np.broadcast_shapes, (column.places for _, column in pieces), ())
+    try:
+        places: tuple[int, ...] = reduce(np.broadcast_shapes, (column.places for _, column in pieces), ())
+    except ValueError:
+        raise FaultyText("shape", UNEQUAL) from None
     whole = np.full((count, *places), np.nan)
     for rows, column in pieces:
         whole[rows] = column.padded(len(places))

@@ -1,9 +1,9 @@
 """Propagate errors of steps to later values: each uncertain output is shifted to both ends.
 
-The error of a step leaves out that of its inputs. So whatever follows from an uncertain output is calculated
-again with that output at the lower and at the upper end of its band, in all rows at once. What cannot be
-calculated again at once (solids, expensive steps) is named, and the error of what follows is then not stated.
-Which outputs a value follows from is the same in all rows; how uncertain they are is not.
+The error of a step leaves out that of its inputs. So the engine recalculates everything that depends on an
+uncertain output, with that output at the lower and at the upper end of its band, in all rows at once. It
+names what it cannot recalculate quickly (solids, expensive steps), and states no error for the values that
+depend on it. Which outputs a value follows from is the same in all rows; how uncertain they are is not.
 """
 
 from __future__ import annotations

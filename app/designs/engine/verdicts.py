@@ -141,12 +141,12 @@ class Verdicts:
         return self._subjects[name].references
 
     def uncertain(self, name: str) -> frozenset[Reference]:
-        """Return the outputs of steps whose stated errors make the band of a criterion."""
+        """Return the outputs of steps whose errors make the band of a criterion, or are unknown."""
         subject = self._subjects[name]
         judged = [subject, *(one for _, one in subject.instead)]
         references = (reference for one in judged for reference in one.references.values())
-        origins = (self._shifts.behind(reference).uncertain for reference in references)
-        return reduce(or_, origins, frozenset())
+        upstream = (self._shifts.behind(reference) for reference in references)
+        return reduce(or_, (one.uncertain | one.unknown | one.unstated for one in upstream), frozenset())
 
     def rows(self, subject: Subject) -> tuple[RowCodes, JudgedColumn]:
         """Return the verdict of a criterion in each row, and the numbers behind it."""

@@ -1,4 +1,4 @@
-"""`/me`, `/principals` and their keys: who may use the service, and what each of them has used."""
+"""`/me`, `/principals` and their keys: who may use the service, and the usage of each principal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Answers of a design to an optimisation: objectives and criteria for rows of varied values."""
+"""The functions that an optimiser calls: objectives and criteria of a design for rows of varied values."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The Pareto front of several objectives, found by pymoo's NSGA-II.
 
-The front is searched at the coarse level, where places spread over it are polished too. The fine level
+The search runs at the coarse level, where points spread along the front are polished too. The fine level
 confirms them, which corrects the coarse level for the next round, as for one objective.
 """
 

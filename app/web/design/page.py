@@ -1,4 +1,4 @@
-"""The design page: worksheet and part, side by side."""
+"""The design page, which shows worksheet and part side by side."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The services for the one who sent the request of a page.
+"""The services, bound to the principal and client of a page request.
 
 A page is a route like those of the interface: the same gate lets the same roles in, the same services decide
 and act for the same principal, and their models are what the interface answers. An error is the problem that

@@ -1,4 +1,4 @@
-"""Signing in and out, and the page of whoever has: roles, limits, keys.
+"""Sign-in, sign-out, and the account page: roles, limits, keys.
 
 A session is a matter of browsers alone, so these pages begin and end it themselves.
 """

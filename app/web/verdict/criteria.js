@@ -58,11 +58,12 @@ export function missing({ give, verdict, needs, reason }) {
 }
 
 export function remarks(criterion) {
-  const { value, error_stated: isStated = true, unverified, waived, reason } = criterion;
+  const { value, error_stated: isStated = true, unverified, waived, truth, reason } = criterion;
   return [
     value && !isStated && NOT_STATED,
     unverified && `unverified: ${unverified}`,
     waived && `waived: ${waived}`,
+    truth?.includes(" ") && truth,
     where(criterion),
     reason && missing(criterion) !== reason && reason,
   ].filter(Boolean);

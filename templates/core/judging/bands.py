@@ -130,6 +130,13 @@ def band_relative_to(value: Value, error: Value, scale: Value) -> Bounds:
         return value - half, value + half
 
 
+def largest_true(size: Value, error: Value) -> Value:
+    """Return the largest size that the truth may have for a size calculated with a relative error."""
+    with np.errstate(all="ignore"):
+        most = np.where(np.asarray(error) < 1, size / (1 - error), np.inf)
+        return np.where(np.isnan(error), np.nan, most)[()]
+
+
 def value_and_bounds(
     side: Relation, estimates: Mapping[str, Estimate], shifts: Sequence[Shift] = ()
 ) -> tuple[Value, Bounds]:
@@ -197,6 +204,6 @@ def _aligned(estimate: Estimate, axes: int) -> Estimate:
     if estimate.axes == axes or not np.ndim(estimate.value):
         return estimate
     if estimate.axes:
-        raise FaultyText("shape", "curves and tables of different axes are compared")
+        raise FaultyText("shape", "curves and tables over different axes cannot be compared")
     value, error = spread(estimate.value, axes), spread(estimate.error, axes)
     return replace(estimate, value=value, error=error)

@@ -87,7 +87,13 @@ def sentence(judgement: Judgement) -> str:
         _with_value(right, judgement.limit, judgement.unit),
     )
     used = f" ({judgement.utilisation * 100:.3g} %)" if judgement.utilisation is not None else ""
-    return f"{sides[0]} {opposite} {sides[1]}{used}: {judgement.verdict.replace('_', ' ')}"
+    model = f", {judgement.truth}" if is_model(judgement.truth) else ""
+    return f"{sides[0]} {opposite} {sides[1]}{used}: {judgement.verdict.replace('_', ' ')}{model}"
+
+
+def is_model(truth: str | None) -> bool:
+    """Return whether a truth is a model named in words, such as `rigid film`; others are names of levels."""
+    return truth is not None and " " in truth
 
 
 def not_judged(judgement: Judgement) -> str:

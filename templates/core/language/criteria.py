@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from templates.core.judging.bands import Estimate
+from templates.core.judging.bands import Estimate, largest_true
 from templates.core.judging.criterion import Criterion, Limit, MissingValue, is_angle
 from templates.core.judging.judgement import Judgement, not_judged, sentence
 from templates.core.judging.judging import Absent, Along, Instead, judge
@@ -257,8 +257,8 @@ def _where_it_has_a_scale(error: Any, scale: Value) -> tuple[Any, bool, Value | 
 def _scale(evaluated: EvaluatedValues, name: str) -> Value | None:
     """Return what an output's error is relative to [SI], as its table says; None if to the output itself.
 
-    The largest of several outputs, such as the four stiffnesses, counts; NaN stands for a size that is no
-    output. The error of an angle is relative to 90°.
+    The largest of several outputs, such as the four stiffnesses, counts, as large as the truth may be by
+    their own errors; NaN stands for a size that is no output. The error of an angle is relative to 90°.
     """
     table = evaluated.measured.content.get("relative_to", {}) if evaluated.measured else {}
     if name not in table:
@@ -266,9 +266,11 @@ def _scale(evaluated: EvaluatedValues, name: str) -> Value | None:
     others = table[name]
     if not isinstance(others, list):
         return float("nan") if others is None else float(others)
-    formulas = evaluated.template.formulas
-    sizes = [np.abs(getattr(evaluated.template, formulas[other].attribute)) for other in others]
-    return reduce(np.fmax, sizes)
+    assert evaluated.measured is not None
+    template, errors = evaluated.template, evaluated.measured.of(evaluated.template, [name, *others])
+    sizes = {other: np.abs(getattr(template, template.formulas[other].attribute)) for other in others}
+    largest = reduce(np.fmax, [largest_true(sizes[other], errors[other]) for other in others])
+    return largest * np.maximum(1 - errors[name], 1e-12)  # `band_relative_to` divides by it
 
 
 def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Absent:

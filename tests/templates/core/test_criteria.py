@@ -259,7 +259,7 @@ def test_a_bad_criterion_is_refused_with_its_class(bad):
 
 
 def test_criteria_are_a_dict():
-    with pytest.raises(TypeError, match="Worse: criteria is a dict"):
+    with pytest.raises(TypeError, match="Worse: criteria must be a dict"):
         type("Worse", (Beam,), {"criteria": ["stress <= 3 MPa"], "__doc__": "Worse."})
 
 

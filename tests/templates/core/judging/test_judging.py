@@ -354,7 +354,7 @@ def test_a_limit_may_have_a_default_and_a_value_a_reason_for_its_absence():
     (LIMITED, {"film": {**REASON, "with": "loads"}}, "loads"),
     (LIMITED, {"film": {"with": "load"}}, "reason"),
     (LIMITED, {"film": "it has no end"}, "reason"),
-    (LIMITED, "no end", "objects by name"),
+    (LIMITED, "no end", "objects keyed by name"),
 ])  # fmt: skip
 def test_a_wrong_default_or_reason_is_refused_with_the_class(limit, absent, message):
     with pytest.raises(FaultyText, match=message):
