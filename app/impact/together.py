@@ -26,7 +26,7 @@ from app.impact.outcome import JudgedCriterion, Outcome
 from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import Fault, TemplateError
-from templates.core.judging.comparison import WORST_FIRST
+from templates.core.judging.comparison import VERDICTS
 from templates.core.language.spec import Choice, Curve, Given, Table, Text
 from templates.core.language.template import Template
 
@@ -118,7 +118,7 @@ class Together:
                 units=self.units,
                 judged={
                     name: JudgedCriterion.in_row(
-                        WORST_FIRST[int(codes[row])],
+                        VERDICTS[int(codes[row])],
                         self.subjects[name].criterion,
                         float(column.margin[row]),
                     )

@@ -54,7 +54,7 @@ class StoredRows:
         return np.concatenate([np.empty(0), *self._each(name, np.nan)]).astype(np.float64)
 
     def codes(self, criterion: str) -> AnyArray:
-        """Return the verdicts on a criterion, as places in `WORST_FIRST`."""
+        """Return the verdicts on a criterion, as places in `VERDICTS`."""
         return np.concatenate([np.empty(0, np.int8), *self._each(f"{VERDICT}{criterion}", NOT_CHECKED)])
 
     def worst(self, criteria: Sequence[str]) -> AnyArray:

@@ -278,13 +278,16 @@ class _Book:
     def _columns(self, call: _Call) -> Columns:
         def side(name: str) -> Array:
             parts = [call.arrays[f"{JUDGED}{one.name}/{name}"] for one in self._problem.held]
-            return np.stack(parts, axis=-1) if parts else np.empty((call.count, 0))
+            return np.stack(parts, axis=-1).astype(float) if parts else np.empty((call.count, 0))
 
-        objectives = [call.arrays[f"{OUTPUT}{one.name}"] for one in self._problem.objectives]
+        objectives = [
+            np.asarray(call.arrays[f"{OUTPUT}{one.name}"], np.float64) for one in self._problem.objectives
+        ]
         which = call.arrays["reason"].tolist()
         reasons = {n: call.reasons[place][2] for n, place in enumerate(which) if place >= 0}
-        value, limit, low, high = (side(name) for name in SIDES)
-        return Columns(np.stack(objectives, axis=-1), value, limit, low, high, reasons, call.seconds)
+        value, limit, low, high, is_known = (side(name) for name in SIDES)
+        both = np.stack(objectives, axis=-1)
+        return Columns(both, value, limit, low, high, reasons, call.seconds, is_known=is_known == 1)
 
 
 def _array(call: _Call, name: str) -> AnyArray:

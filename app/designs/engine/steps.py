@@ -321,11 +321,10 @@ def estimate_rows(step: StepRows, evaluations: Evaluations, member: str) -> RowE
     axes = max(one.axes for _, one in present)
     value = _column(step, present, lambda one: one.value, axes)
     error = _column(step, present, lambda one: one.error, 0)
-    is_stated = all(one.is_stated or bool(np.isnan(one.error).any()) for _, one in present)
     if all(one.scale is None for _, one in present):
-        return RowEstimate(Estimate(value.value, error.value, is_stated, axes), value.is_row, error.is_row)
+        return RowEstimate(Estimate(value.value, error.value, axes), value.is_row, error.is_row)
     scale = _column(step, present, lambda one: np.nan if one.scale is None else one.scale, 0)
-    whole = Estimate(value.value, error.value, is_stated, axes, scale.value)
+    whole = Estimate(value.value, error.value, axes, scale.value)
     return RowEstimate(whole, value.is_row, error.is_row, scale.is_row)
 
 

@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from app.studies.methods.answers import Answer, Problem
-from app.studies.methods.confirmation import WITHIN, Round, Run, State, unmet
+from app.studies.methods.confirmation import WITHIN, Round, Run, State, state_of_met, unmet
 from app.studies.methods.correction import CorrectedAnswer
 from app.studies.methods.evolution import evolved
 from app.studies.methods.polish import ScaledProblem, polished
@@ -123,7 +123,7 @@ def _state(rounds: list[Round]) -> State | None:
     if not all(one.agrees for one in rounds):
         return None
     if all(one.is_met for one in rounds):
-        return "settled"
+        return state_of_met(rounds)
     if any(one.fell_short for one in rounds):
         return None
     return unmet(rounds)
