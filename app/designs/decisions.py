@@ -115,6 +115,7 @@ def _shown(number: int, asked: DecisionQuestion, decision: ClimbResult) -> Decis
         **judged,
         asked=list(decision.asked),
         undecided=decision.undecided,
+        error_unknown=decision.error_unknown,
         tried=[_tried(trial) for trial in decision.trials],
         skipped=[_tried(trial) for trial in decision.skipped],
         seconds=sum(trial.seconds for trial in decision.trials),
@@ -129,6 +130,8 @@ def _tried(trial: Trial) -> LevelTrial:
         tried["reason"] = trial.reason
     if trial.rows:
         tried |= {"rows": trial.rows, "seconds": trial.seconds, "decided": list(trial.decided)}
+    if trial.expected:
+        tried["expected"] = trial.expected
     return LevelTrial.model_validate(tried)
 
 

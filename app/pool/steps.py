@@ -202,6 +202,13 @@ def call_as(caller: Caller) -> None:
     _caller.set(caller)
 
 
+def announce(text: str) -> None:
+    """Tell the job of this context, if there is one, what is calculated next."""
+    caller = _caller.get()
+    if caller is not None and caller.report is not None:
+        caller.report(0.0, text)
+
+
 def present_caller() -> Caller | None:
     """Return for whom this context evaluates steps."""
     return _caller.get()

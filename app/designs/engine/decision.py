@@ -1,8 +1,8 @@
-"""Decide criteria of a design: steps climb to finer levels only where a criterion is undecided.
+"""Decide criteria of a design: steps climb where a criterion is undecided, or its error unknown.
 
-Each round calculates one step at its next level: that which takes away most of the error for its cost. It
-ends when all criteria are decided, when no level states a smaller error of the same truth, or when the
-budget is spent. Nothing is saved, and solids stay as they are.
+Each round calculates one step at its next level: the step that removes most of the error for its cost. It
+ends when all criteria are decided, when no level states a smaller error of the same truth, or when the budget
+is spent. Nothing is saved, and solids stay as they are.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import Verdicts
 from app.designs.network import Block
 from app.pool.cost import estimated_seconds
+from app.pool.steps import announce
 from app.reference import Reference
 from templates.core.judging.judgement import Judgement
 from templates.core.judging.summary import worst_first
@@ -30,7 +31,10 @@ Stop = Literal["decided", "no_finer_level", "budget", "pending"]
 
 @dataclass(frozen=True)
 class Trial:
-    """One step at one level: what it decided, what it took [s], and why it was of no use."""
+    """One step at one level: what it decided, what it took [s], and why it was of no use.
+
+    `expected` is the time that was estimated before [s].
+    """
 
     step: str
     level: str
@@ -38,6 +42,7 @@ class Trial:
     seconds: float
     decided: tuple[str, ...] = ()
     reason: str | None = None
+    expected: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -55,6 +60,12 @@ class ClimbResult:
         """Return the criteria asked for that are still undecided."""
         return [j.name for j in self.criteria if j.verdict == "undecided" and j.name in self.asked]
 
+    @property
+    def error_unknown(self) -> list[str]:
+        """Return the criteria asked for that follow from values whose error is still unknown."""
+        asked = [j for j in self.criteria if j.name in self.asked]
+        return [j.name for j in asked if j.is_open and j.verdict != "undecided"]
+
 
 @dataclass(frozen=True)
 class _Move:
@@ -69,7 +80,7 @@ class _Move:
     @property
     def gain(self) -> float:
         """Return the error that it takes away, for its cost."""
-        return (min(self.before, 1e6) - self.after) / max(self.seconds, 1e-6)
+        return (min(self.before, 1e6) - min(self.after, 1e6)) / max(self.seconds, 1e-6)
 
 
 @dataclass
@@ -84,19 +95,25 @@ class Climb:
     _tried: set[tuple[str, str]] = field(default_factory=set)
 
     def decide(self) -> ClimbResult:
-        """Climb until there is nothing more to do."""
+        """Refine levels until no step can improve a verdict."""
         start = time.monotonic()
         verdicts = Verdicts(self.calculation)
         judgements = {judgement.name: judgement for judgement in verdicts.all()}
-        asked = tuple(n for n, j in judgements.items() if j.verdict == "undecided" and self._is_wanted(n))
+        asked = tuple(n for n, j in judgements.items() if self._is_wanted(n) and self._is_asked(j))
         stopped: Stop | None = None
         while stopped is None:
-            open_now = [name for name in asked if judgements[name].verdict == "undecided"]
+            open_now = [name for name in asked if judgements[name].is_open]
             stopped = self._next(open_now, self.budget - (time.monotonic() - start))
             if stopped is None:
                 judgements |= self._judged(open_now)
         ordered = worst_first(judgements.values())
         return ClimbResult(ordered, asked, tuple(self.trials), tuple(self.skipped.values()), stopped)
+
+    def _is_asked(self, judgement: Judgement) -> bool:
+        """Return whether a criterion is undecided, or of an unknown error that a level would state."""
+        if judgement.verdict == "undecided":
+            return True
+        return judgement.is_open and next(self._moves([judgement.name]), None) is not None
 
     def _is_wanted(self, name: str) -> bool:
         return self.wanted is None or name in self.wanted
@@ -174,9 +191,10 @@ class Climb:
         self.skipped.pop((name, level), None)
         needed = {name: self._needed(move.block, open_now)}
         levels = {**self.calculation.levels_used(), name: level}
-        finer = recalculated(self.calculation, {}, levels, again=[name], outputs=needed)
         rows = math.prod(self.calculation.evaluations[name].template.shape_of_points())
-        trial = Trial(name, level, rows, time.perf_counter() - start)
+        announce(f"{name} at level {level}: {rows} points, about {move.seconds:.2g} s")
+        finer = recalculated(self.calculation, {}, levels, again=[name], outputs=needed)
+        trial = Trial(name, level, rows, time.perf_counter() - start, expected=move.seconds)
         if finer.deferred:
             self.trials.append(replace(trial, reason="it is still calculated"))
             return "pending"
@@ -186,7 +204,7 @@ class Climb:
             return None
         self.calculation = finer
         judged = self._judged(open_now).values()
-        decided = sorted(judgement.name for judgement in judged if judgement.verdict != "undecided")
+        decided = sorted(judgement.name for judgement in judged if not judgement.is_open)
         self.trials.append(replace(trial, decided=tuple(decided)))
         return None
 
@@ -196,6 +214,6 @@ class Climb:
 
 
 def _largest(error: object) -> float:
-    """Return the largest error of several points; infinite where it is not stated."""
+    """Return the largest error of several points; infinite where it is unknown at any."""
     errors = np.asarray(error if error is not None else np.nan, dtype=float)
-    return float(np.nanmax(errors)) if np.isfinite(errors).any() else math.inf
+    return float(np.max(np.where(np.isnan(errors), np.inf, errors)))

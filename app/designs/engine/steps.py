@@ -1,8 +1,8 @@
 """One step, or one model, over many rows: array calls of its template, and which rows it refuses.
 
-In arrays a template masks the points that it would refuse alone; such rows are refused here with the words
-of the mask. Where it refuses a whole array, the rows are halved until those are found that it refuses. A row
-that is refused has no value in any output of the step, as in a design of its own.
+In an array call, a template masks the points that it would refuse alone. This module refuses those rows, with
+the message of the mask. If a template refuses a whole array, the rows are halved until the faulty ones are
+found. A refused row has no value in any output of the step, as in a design of one row.
 
 A step of which nothing differs from row to row is evaluated once, and its latest evaluations are kept: a
 change of a design recomputes only what depends on it.
@@ -25,7 +25,7 @@ from app.plain import Raw
 from app.pool.cost import shape
 from app.pool.steps import evaluated_step, fingerprint
 from templates.core.arrays import Mask
-from templates.core.errors import InvalidInputs
+from templates.core.errors import FaultyText, InvalidInputs
 from templates.core.judging.bands import Estimate
 from templates.core.judging.judging import Absent
 from templates.core.language.answer import Answer
@@ -100,15 +100,25 @@ class StepRows:
         return cls(block, 1, has_rows=False, level=level, parts=[part], evaluation=evaluation)
 
     def refused(self) -> Mask:
-        """Return which rows are refused."""
+        """Return a mask of the refused rows."""
         refused = np.zeros(self.count, dtype=bool)
         refused[list(self.refusals)] = True
         return refused
 
     def column(self, name: str) -> Column:
-        """Return the values [SI] of an input or output; NaN where there is none."""
+        """Return the values [SI] of an input or output; NaN where there is none.
+
+        Raises
+        ------
+        InvalidInputs
+            If its curve has another length in some rows.
+        """
         if name not in self._columns:
-            self._columns[name] = self._joined([(part.rows, self._value(part, name)) for part in self.parts])
+            values = [(part.rows, self._value(part, name)) for part in self.parts]
+            try:
+                self._columns[name] = self._joined(values)
+            except FaultyText as error:
+                raise InvalidInputs([error.fault(f"{self.block.name}.{name}")]) from None
         return self._columns[name]
 
     def error(self, output: str) -> Column:
@@ -122,8 +132,10 @@ class StepRows:
             if answer.value is None:
                 return answer.reason or NO_VALUE
             if answer.reasons is not None:
-                reasons = np.broadcast_to(answer.reasons, part.rows.shape)
-                for row, reason in zip(part.rows.tolist(), reasons.tolist(), strict=True):
+                reasons = answer.reasons.ravel().tolist()
+                if len(reasons) != part.rows.size:  # one for all rows, or those of a list in one row
+                    reasons = [next(filter(None, reasons), None)] * part.rows.size
+                for row, reason in zip(part.rows.tolist(), reasons, strict=True):
                     if reason is not None and row not in self.refusals:
                         return str(reason)
         return None
@@ -196,13 +208,15 @@ def _grouped(block: Block, columns: Mapping[str, Column], rows: Indices) -> Iter
 
     Those of equal inputs where an input is one value for all points.
     """
+    if not rows.size:
+        return
     shared = [
         np.asarray(column.value)[rows].reshape(len(rows), -1)
         for name, column in columns.items()
         if _is_one_for_all(block, name)
     ]
     if not shared:
-        yield from [rows] if rows.size else []
+        yield rows
         return
     _, group = np.unique(np.hstack(shared), axis=0, return_inverse=True)
     for number in range(int(group.max(initial=-1)) + 1):
@@ -307,11 +321,10 @@ def estimate_rows(step: StepRows, evaluations: Evaluations, member: str) -> RowE
     axes = max(one.axes for _, one in present)
     value = _column(step, present, lambda one: one.value, axes)
     error = _column(step, present, lambda one: one.error, 0)
-    is_stated = all(one.is_stated or bool(np.isnan(one.error).any()) for _, one in present)
     if all(one.scale is None for _, one in present):
-        return RowEstimate(Estimate(value.value, error.value, is_stated, axes), value.is_row, error.is_row)
+        return RowEstimate(Estimate(value.value, error.value, axes), value.is_row, error.is_row)
     scale = _column(step, present, lambda one: np.nan if one.scale is None else one.scale, 0)
-    whole = Estimate(value.value, error.value, is_stated, axes, scale.value)
+    whole = Estimate(value.value, error.value, axes, scale.value)
     return RowEstimate(whole, value.is_row, error.is_row, scale.is_row)
 
 

@@ -17,6 +17,7 @@ class LevelTrial(Answer):
     level: str
     rows: int = Field(0, description="points that were calculated")
     seconds: float = Field(0.0, description="time that they took, in s")
+    expected: float = Field(0.0, description="time that was estimated before, in s")
     decided: list[str] = Field([], description="criteria that it decided")
     reason: str | None = Field(None, description="why it was left out, or of no use")
 
@@ -27,8 +28,11 @@ class Decision(Answer):
     revision: int = Field(description="the revision that was judged")
     criteria: list[Criterion] = Field(description="all of them, worst first")
     verdict: Verdict | None = Field(None, description="over all criteria; absent where there are none")
-    asked: list[str] = Field(description="the criteria that were undecided, of those asked for")
-    undecided: list[str] = Field(description="those that still are")
+    asked: list[str] = Field(
+        description="of those wanted, the criteria that were undecided, or whose error a level would state"
+    )
+    undecided: list[str] = Field(description="those that still are undecided")
+    error_unknown: list[str] = Field([], description="those that follow from values of unknown error")
     tried: list[LevelTrial] = Field(description="what was calculated, in order")
     skipped: list[LevelTrial] = Field(description="levels that were left out, and why")
     seconds: float = Field(description="time that all levels took, in s")

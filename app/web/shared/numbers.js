@@ -1,6 +1,6 @@
 // Numbers and units as app/web/numbers.py writes them: five digits, aligned at the point, the unit once.
 const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
-const WORDS = { deg: "°", degC: "°C", degF: "°F", um: "µm", ohm: "Ω", thou: "mil", inch: "in", ureyn: "µreyn" };
+const WORDS = { deg: "°", degC: "°C", degF: "°F", delta_degC: "K", delta_degF: "Δ°F", um: "µm", ohm: "Ω", thou: "mil", inch: "in", ureyn: "µreyn" };
 const raised = (text) => [...text].map((sign) => RAISED[sign]).join("");
 
 export function aligned(value) {

@@ -22,6 +22,7 @@ from templates.core.units.units import (
     Unit,
     compatible,
     difference_in,
+    is_rate,
     registry,
     require_same_kind,
     unit,
@@ -225,7 +226,7 @@ def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
     sides = _SIGN.split(text)
     if len(sides) != 3 or "=" in sides[0] + sides[2]:
         form = "write it like film.minimum_film_thickness >= 3 um"
-        raise FaultyText("syntax", f"a criterion compares two sides by one >= or <=; {form}")
+        raise FaultyText("syntax", f"a criterion needs exactly one >= or <=; {form}")
     sign: Sign = ">=" if sides[1] == ">=" else "<="
     value, limit = parse(sides[0].strip()), parse(sides[2].strip())
     if items := value.items + limit.items:
@@ -243,7 +244,7 @@ def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
 
 def _check_keys(raw: Any, keys: frozenset[str], needed: str) -> None:
     if not isinstance(raw, Mapping) or needed not in raw:
-        raise FaultyText("syntax", f"a text, or an object with {needed!r}, is wanted, not {excerpt(raw)}")
+        raise FaultyText("syntax", f"give a text, or an object with {needed!r}, not {excerpt(raw)}")
     for key, value in raw.items():
         if key not in keys:
             raise FaultyText("unknown_name", unknown_name(str(key), sorted(keys), "key").detail)
@@ -253,7 +254,7 @@ def _check_keys(raw: Any, keys: frozenset[str], needed: str) -> None:
 
 def _mapping(raw: Any) -> Mapping[str, Any]:
     if not isinstance(raw, Mapping):
-        raise FaultyText("syntax", f"limits and absent are objects by name, not {excerpt(raw)}")
+        raise FaultyText("syntax", f"limits and absent must be objects keyed by name, not {excerpt(raw)}")
     return raw
 
 
@@ -310,7 +311,7 @@ def _as_compared(
 def _shared_kind(sign: Sign, value: Relation, limit: Relation, kinds: Mapping[str, Kind]) -> Kind:
     """Return the kind of both sides."""
     one, other = value.kind(kinds), limit.kind(kinds)
-    if not compatible(one, other):
+    if not compatible(one, other) and not (is_rate(one.base) and is_rate(other.base)):
         raise FaultyText(
             "unit_mismatch",
             f"{value.text} gives {in_words(one)}, but {limit.text} gives {in_words(other)}",

@@ -120,15 +120,15 @@ class Accuracy:
         tables = levels.get(level or SINGLE, {})
         there = template if level == template.level else template.at(level)
         exact = {name for name in names if _same_at_all_levels(template, name)} if template.levels else set()
+        own = self.own(level or SINGLE)
         available = tables if there.is_measured() else {}
-        measured = [name for name in names if name in available and name not in exact]
+        measured = [name for name in names if name in available and name not in exact and name not in own]
         cell = self._cell(template) if measured else None
         estimates = {name: _looked_up(tables[name], cell) for name in measured}
         errors: dict[str, Any] = estimates
         if len(estimates) < len(names):
             none = np.zeros(template.shape_of_points())[()]
-            own = self.own(level or SINGLE)
-            estimates |= {name: none + own[name] for name in names if name in own and name not in estimates}
+            estimates |= {name: none + own[name] for name in names if name in own and name not in exact}
             unknown = none + np.nan
             errors = {n: estimates[n] if n in estimates else none if n in exact else unknown for n in names}
         return {name: error + self._added(there, name) for name, error in errors.items()}

@@ -315,7 +315,7 @@ class Builder:
         return self._in_kind(statement, meant)
 
     def _in_kind(self, statement: ParsedStatement, meant: Meaning) -> Meaning:
-        """Return what is declared in K by the kind of its formula: a difference, or a temperature."""
+        """Return the meaning of a declaration in K: a difference or a temperature, by its formula."""
         sort = self.names.sorts[str(statement.parts[0])] if statement.kind in ("formula", "given") else None
         if sort is None or sort.kind == kind_of(meant.unit) or sort.kind.unit not in ("degC", "delta_degC"):
             return meant

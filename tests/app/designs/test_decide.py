@@ -32,6 +32,20 @@ def decided(raw, criteria=("own",), budget=60.0):
     return Climb(calculation, criteria, budget).decide()
 
 
+CYCLE = built_in().get("oil_film_cycle", 1)
+
+
+def cycle_document(require, level="mobility_grooved", **inputs):
+    raw = {**CYCLE.example, **inputs}
+    step = {
+        "template": "oil_film_cycle",
+        "version": 1,
+        "level": level,
+        "inputs": {name: value for name, value in raw.items() if value is not None},
+    }
+    return {"name": "cycle", "steps": {"film": step}, "criteria": {"own": {"require": require}}}
+
+
 def own(decision):
     return next(judgement for judgement in decision.criteria if judgement.name == "own")
 
@@ -56,6 +70,39 @@ def test_an_undecided_criterion_is_decided_by_a_finer_level(limit, verdict):
     levels = [trial.level for trial in decision.trials]
     assert "mass_conserving" not in levels
     assert own(decision).value == pytest.approx(film_at(levels[-1]))
+
+
+@pytest.mark.parametrize(("limit", "verdict"), [("75 MPa", "not_met"), ("120 MPa", "met")])
+def test_a_level_that_states_an_error_is_climbed_to_where_the_error_is_unknown(limit, verdict):
+    """No mobility level states an error of the largest pressure; level supplied does: 75.5 MPa within 6 %."""
+    decision = decided(cycle_document(f"film.maximum_pressure <= {limit} * 0.9"))
+    assert (own(decision).verdict, decision.stopped, decision.error_unknown) == (verdict, "decided", [])
+    assert [(trial.level, trial.decided) for trial in decision.trials] == [("supplied", ("own",))]
+    assert own(decision).truth == "rigid film"
+    assert 0 < own(decision).relative_error < 0.1
+    assert decision.trials[0].expected > 0
+
+
+@pytest.mark.slow
+def test_every_bearing_of_a_table_is_decided():
+    widths = {"value": [16, 18, 24], "unit": "mm"}
+    decision = decided(cycle_document("film.minimum_film_thickness >= 2 um", bearing_width=widths))
+    assert (decision.trials[-1].level, decision.trials[-1].rows) == ("supplied", 3)
+    assert (own(decision).verdict, own(decision).points, decision.stopped) == ("met", 3, "decided")
+
+
+@pytest.mark.slow
+def test_a_film_that_starves_is_refused_by_name():
+    """A load that turns with the pin, and so with its hole."""
+    turn = np.arange(24) * np.pi / 12
+    turning = {
+        "load_x": {"value": (10 * np.cos(turn)).tolist(), "unit": "kN"},
+        "load_y": {"value": (10 * np.sin(turn)).tolist(), "unit": "kN"},
+        "groove_width": None, "groove_start": None, "groove_extent": None, "pin_hole_length": "4 mm",
+    }  # fmt: skip
+    decision = decided(cycle_document("film.minimum_film_thickness >= 1 um", "mobility", **turning))
+    reasons = {trial.level: trial.reason for trial in decision.trials}
+    assert "it refuses: no film repeats: starved" in reasons["supplied"]
 
 
 def test_at_the_value_itself_it_stays_undecided_and_says_why():

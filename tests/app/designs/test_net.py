@@ -21,7 +21,8 @@ from row_designs import (
 from app.designs.document import Document
 from app.designs.engine.columns import Column, aligned, scattered
 from app.designs.engine.design_engine import DesignEngine
-from templates.core.errors import InvalidInputs
+from templates.core.errors import FaultyText, InvalidInputs
+from templates.core.language.spec import Text
 from templates.door import built_in
 
 
@@ -300,3 +301,29 @@ def test_no_rows_give_empty_columns():
     table = net_of(BEARING, "clearance")({ref("clearance"): np.empty(0)}, [FILM], judge=True)
     assert table.count == 0
     assert table.columns[FILM].shape == (0,)
+
+
+TORSION = built_in().get("forced_torsion", 1)
+
+
+def torsion(**relations):
+    """A shaft in forced torsion, some of whose inputs follow from a parameter of the design."""
+    step = {"template": "forced_torsion", "version": 1, "inputs": {**TORSION.example, **relations}}
+    return {"name": "torsion", "parameters": {"p": {"value": 2.0, "unit": "1"}}, "steps": {"s": step}}
+
+
+def test_curves_of_different_lengths_are_refused_in_words():
+    parts = [
+        (np.array([0]), Column(np.zeros((1, 3)), is_row=True)),
+        (np.array([1]), Column(np.zeros((1, 4)), is_row=True)),
+    ]
+    with pytest.raises(FaultyText, match="more places in some rows than in others") as refused:
+        scattered(2, parts)
+    assert refused.value.code == "shape"
+
+
+def test_rows_that_all_lack_an_input_are_refused_and_not_grouped():
+    net = net_of(torsion(highest_order="= sqrt(p)"), "p")
+    wanted = [ref(f"s.{name}") for name in TORSION.formulas if not isinstance(TORSION.formulas[name], Text)]
+    table = net({ref("p"): np.array([-1.0, -4.0])}, wanted[:1])
+    assert sorted(table.refusals) == [0, 1]

@@ -126,7 +126,7 @@ def test_a_body_is_read_once_and_joined_once():
         assert [len(part) for part in await request.parts()] == [len(LARGE), 3]
         assert await request.body() == LARGE + b"end"
         assert await request.body() is await request.body()
-        assert await request.parts() is await request.pieces()
+        assert await request.parts() is await request.parts()
 
     asyncio.run(read())
 
@@ -204,7 +204,7 @@ def test_it_is_refused_without_being_kept(full, http, monkeypatch):
     async def kept(self):
         raise AssertionError("the body was kept")
 
-    monkeypatch.setattr(StrictRequest, "pieces", kept)
+    monkeypatch.setattr(StrictRequest, "parts", kept)
     answer = http.post(PLACE, content=PADDING, headers={**JSON, "Crankwright-Client": "flood"})
     problem(answer, 429, "queue-full")
 

@@ -1,6 +1,7 @@
 """Each construct of Mathcad as a line of a worksheet, its value held against a stored result."""
 
 import math as python
+from pathlib import Path
 
 import pytest
 from mathcad_files import (
@@ -27,6 +28,7 @@ from mathcad_files import (
 )
 
 from app.worksheets.imports.job import imported
+from templates.core.language.evaluate import evaluate
 from templates.core.sheets import read
 
 
@@ -353,6 +355,19 @@ class TestRates:
         records, written = regions_of(self.SPEED, math(define("f", turned)), shown_f)
         assert 'f [Hz] = N / (2 * pi) "f"' in written.splitlines()
         assert records[-1]["state"] == "verified"
+
+    def test_the_case_of_a_sheet_with_speeds_and_frequencies(self):
+        """`f` shown in Hz, 83.33 of them; `w2` shown in rpm and `w3` in rad/s, each v/r."""
+        content = (Path(__file__).parent / "cases" / "syn_omega.mcdx").read_bytes()
+        lines = imported(content, "Sheet").text.splitlines()
+        assert 'f [Hz] = N / (2 * pi) "f"' in lines
+        assert 'w2 [rad/s] = 2 * v / D "w2"' in lines
+        assert 'w3 [rad/s] = 2 * v / D "w3"' in lines
+        assert any(line.startswith("S [1] = ") for line in lines)
+        cls = read("\n".join(line for line in lines if not line.startswith("//")) + "\n").template("case", 1)
+        evaluation = evaluate(cls, cls.example)
+        assert evaluation.outputs["f"].value == pytest.approx(5000 / 60)
+        assert [warning.name for warning in evaluation.warnings if warning.code == "turns"] == ["v", "s"]
 
     def test_a_frequency_that_is_shown_in_no_unit_is_no_angular_speed(self):
         turned = apply("div", name("N"), apply("mult", real(2), constant("π")))
