@@ -47,10 +47,23 @@ def _read_one(declared: Input, raw: Any) -> TypedQuantity | str:
         option = (
             raw["value"] if isinstance(raw, dict) and raw.keys() == {"value"} else raw
         )  # as answers write it
-        if isinstance(option, str) and option in declared.options:
-            return option
+        if isinstance(option, str) and (meant := option_named(declared.options, option)):
+            return meant
         raise FaultyText("not_an_option", f"{excerpt(raw)} is not one of {', '.join(declared.options)}")
     return read(raw, declared.meaning.accepted)
+
+
+def option_named(options: tuple[str, ...], text: str) -> str | None:
+    """Return the option that a text names, also as it is printed: `ISO VG 46` is iso_vg_46."""
+    if text in options:
+        return text
+    letters = _letters(text)
+    named = [option for option in options if letters and _letters(option) in (letters, f"iso{letters}")]
+    return named[0] if len(named) == 1 else None
+
+
+def _letters(text: str) -> str:
+    return "".join(sign for sign in text[:LONGEST_TEXT].lower() if sign.isalnum())
 
 
 def _example(declared: Input) -> str:
