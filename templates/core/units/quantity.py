@@ -42,7 +42,7 @@ from templates.core.units.units import (
 
 __all__ = [
     "Tolerance", "TypedQuantity", "Unit", "Value", "beside", "compatible", "read", "read_any", "read_beside",
-    "registry", "require_same_kind", "unit",
+    "registry", "require_same_kind", "scaled", "unit",
 ]  # fmt: skip
 
 _PATTERN = re.compile(rf"([+-]?{NUMBER})\s*(.*)", re.DOTALL)  # of a text without blanks at its ends
@@ -122,6 +122,22 @@ def _beside(raw: Any) -> Any:
 
 def _as_difference(match: re.Match[str]) -> str:
     return difference_of(match[0])
+
+
+def scaled(typed: TypedQuantity, factor: float) -> TypedQuantity:
+    """Return a multiple of a quantity, its tolerance with it."""
+    tolerance = typed.tolerance
+    if tolerance is not None:
+        tolerance = replace(
+            tolerance, lower=tolerance.lower * factor, upper=tolerance.upper * factor, zone=None
+        )
+    extra = {
+        key: value * factor if isinstance(value, float | int) else value
+        for key, value in typed.extra.items()
+        if key != "zone"
+    }
+    value = (np.asarray(typed.value, dtype=float) * factor).tolist()
+    return replace(typed, value=value, si=typed.si * factor, extra=extra, tolerance=tolerance)
 
 
 def read_any(raw: Any) -> TypedQuantity:
