@@ -91,13 +91,13 @@ def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
     unknown = Reference.parse(question.unknown)
     [(name, raw)] = question.target.items()
     target = Reference.parse(name)
-    net = DesignEngine.of(document, catalogues, [unknown], wanted=[target], pending=True)
-    low, high = (_single(read, end, net.accepted(unknown), "between") for end in question.between)
+    engine = DesignEngine.of(document, catalogues, [unknown], wanted=[target], pending=True)
+    low, high = (_single(read, end, engine.accepted(unknown), "between") for end in question.between)
     if low >= high:
         detail = "the first bound must be below the second"
         raise InvalidInputs([Fault("between", "not_ascending", detail)])
-    value = _single(read_beside, raw, net.accepted(target), f"target.{name}")
-    solution = roots_of_design(net, RootQuestion(unknown, (low, high), target, value, question.tolerance))
+    value = _single(read_beside, raw, engine.accepted(target), f"target.{name}")
+    solution = roots_of_design(engine, RootQuestion(unknown, (low, high), target, value, question.tolerance))
     return _SolutionText(solution, document, catalogues).answer(revision)
 
 
