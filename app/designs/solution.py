@@ -26,7 +26,7 @@ from app.schemas.bounds import Bounded, at_most
 from app.schemas.criteria import Word
 from app.schemas.values import Given
 from templates.core.errors import Fault, FaultyText, InvalidInputs
-from templates.core.language.confirming import Root
+from templates.core.language.confirmation import Root
 from templates.core.language.roots import Jump as FoundJump
 from templates.core.units.quantity import TypedQuantity, read, read_beside
 

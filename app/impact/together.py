@@ -25,8 +25,8 @@ from app.designs.network import Block, Graph, Subject
 from app.impact.outcome import JudgedCriterion, Outcome
 from app.reference import Reference
 from templates.core.arrays import Array
+from templates.core.criteria.comparison import VERDICTS
 from templates.core.errors import Fault, TemplateError
-from templates.core.judging.comparison import VERDICTS
 from templates.core.language.spec import Choice, Curve, Given, Table, Text
 from templates.core.language.template import Template
 

@@ -8,8 +8,8 @@ from app.designs.engine.design_engine import DesignEngine, Table
 from app.designs.network import subjects
 from app.studies.archive import AnyArray
 from templates.core.arrays import Array
-from templates.core.judging.comparison import MET_ERROR_UNKNOWN, is_met
-from templates.core.judging.criterion import Criterion
+from templates.core.criteria.comparison import MET_ERROR_UNKNOWN, is_met
+from templates.core.criteria.criterion import Criterion
 
 
 def criterion_of(engine: DesignEngine, name: str) -> Criterion:

@@ -22,8 +22,8 @@ from app.studies.row_table import Rows, given_rows
 from app.studies.solid_count import counted
 from app.studies.task import Task, TaskState, prepared
 from templates.core.arrays import Array
+from templates.core.criteria.comparison import NOT_CHECKED
 from templates.core.errors import Fault, InvalidInputs, unknown_names
-from templates.core.judging.comparison import NOT_CHECKED
 
 CHUNK_SECONDS = 0.5  # estimated, of the rows of a chunk: cancelling and a crash lose less than a second
 MOST_IN_CHUNK, STEP_OF_CHUNK = 8192, 4096

@@ -8,8 +8,7 @@ import pytest
 from row_designs import BEARING, CURVES, FILM, alone, calculated, engine_of, ref, spread
 
 from app.designs.engine.verdicts import judged
-from templates.core.errors import InvalidInputs
-from templates.core.judging.comparison import (
+from templates.core.criteria.comparison import (
     MET,
     MET_ERROR_UNKNOWN,
     NOT_CHECKED,
@@ -17,6 +16,7 @@ from templates.core.judging.comparison import (
     VERDICTS,
     WORST_FIRST,
 )
+from templates.core.errors import InvalidInputs
 from templates.core.language.criteria import EvaluatedValues, estimate_of
 from templates.core.language.evaluate import evaluate
 from templates.core.language.levels import accuracy
