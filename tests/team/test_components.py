@@ -71,9 +71,9 @@ STARTER = """
     import signal, sys, time
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell in the background ignores it
     from pathlib import Path
-    from app.team.processes import Tied
+    from app.team.processes import ChildProgram
     sleeper = [sys.executable, "-c", "import subprocess, sys; subprocess.run(['sleep', '600'])"]
-    print(Tied("sleeper", sleeper, Path(sys.argv[1])).pid, flush=True)
+    print(ChildProgram("sleeper", sleeper, Path(sys.argv[1])).pid, flush=True)
     time.sleep(600)
 """
 

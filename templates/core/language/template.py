@@ -64,7 +64,7 @@ __all__ = [
 
 
 def _remark_of(declared: Declaration) -> str:
-    """Return how a formula of a worksheet may be read otherwise than it is; empty if it can not."""
+    """Return how a worksheet formula may be misread; empty if it is unambiguous."""
     return str(getattr(getattr(declared, "function", None), "remark", ""))
 
 

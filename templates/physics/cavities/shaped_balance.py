@@ -65,7 +65,7 @@ class Loaded:
     """Whether cavities conserve mass."""
 
     def pockets(self, attitude: float) -> list[Pocket]:
-        """Return where oil comes in, if the journal's middle is displaced in a direction."""
+        """Return the oil inlets if the journal's middle is displaced in a direction."""
         if self.feed.grooves:
             return [Pocket(angle, width, self.feed.pressure) for angle, width in self.feed.grooves]
         if self.bore.is_lobed:

@@ -149,7 +149,8 @@ def _areas(T: Array, grid: CrankGrid) -> list[list[Area]]:
     theta = np.broadcast_to(grid.ascending, T.shape).reshape(swing.shape)
     varies = np.abs(swing).max(axis=-1) > 1e-12 * np.abs(T).reshape(swing.shape).max(axis=-1)
     return [
-        areas_of(*one, grid.cycle) if moves else [] for *one, moves in zip(theta, swing, varies, strict=True)
+        areas_of(angles, curve, grid.cycle) if moves else []
+        for angles, curve, moves in zip(theta, swing, varies, strict=True)
     ]
 
 

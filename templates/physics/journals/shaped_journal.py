@@ -106,7 +106,7 @@ class StaticFilm:
 
 @units(None, returns="1")
 def middle_of_least_gap(bore: str) -> Array:
-    """Return which share of a lobe's arc lies before its least gap.
+    """Return the share of a lobe's arc before its least gap.
 
     All if halves are offset, else half [-].
     """

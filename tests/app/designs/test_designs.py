@@ -122,7 +122,7 @@ class TestPreview:
         patch = {"models": {"model": {"parameters": {"inner_diameter": "= film.radial_load"}}}}
         shown = self.preview(http, tied, patch)["model_parameters"]["model.inner_diameter"]
         assert shown["status"] == "unit_mismatch"
-        assert "kg·m/s²" in shown["detail"]
+        assert shown["detail"] == "model.inner_diameter is in mm, but this gives N"
 
     def test_missing(self, http, tied):
         patch = {"models": {"model": {"parameters": {"inner_diameter": None}}}}
