@@ -221,7 +221,7 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
 
 
 def _annotations(model: CadModel, parts: Sequence[Part]) -> Annotations | None:
-    """Return what the file says beside the shape; nothing where no dimension has a tolerance."""
+    """Return the file's statements beside the shape; none if no dimension has a tolerance."""
     if not (within := limits(model)):
         return None
     solids = {part.name: part.solid for part in parts}

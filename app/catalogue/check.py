@@ -1,6 +1,6 @@
 """Check one file of a team in a process of its own, since it may hang, crash or exhaust memory.
 
-What passes is loaded by the server from the very bytes that were checked.
+If the file passes, the server loads the same bytes that were checked.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A team's own files: which there are, which can be used, and what is wrong with the others."""
+"""The files of a team: list them, load the valid ones, and report the faults of the others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Questions about a design that are calculated in the pool as a whole, and what their answers follow from."""
+"""Questions about a design that the pool calculates, and the data on which their answers depend."""
 
 from __future__ import annotations
 

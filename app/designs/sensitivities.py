@@ -177,7 +177,7 @@ class DifferenceRows:
             )
         if values > MOST_VALUES or count * self.calculation.operations > MOST_OPERATIONS:
             raise self._refused(
-                "too_many_values", f"{count} rows of lists this long would take long; {STUDY}"
+                "too_many_values", f"{count} rows of lists this long would take too long; {STUDY}"
             )
 
     def _at(self) -> str:
@@ -189,7 +189,7 @@ class DifferenceRows:
     def _check(self, value: Array, table: Table) -> None:
         """Refuse a value that has no slope."""
         if value.ndim > 1:
-            raise self._refused("shape", f"{self.asked.name} is a list; a slope is that of a single number")
+            raise self._refused("shape", f"{self.asked.name} is a list; sensitivities need a single number")
         if not math.isfinite(value[0]):
             raise self._refused("no_value", self._missing(table))
 

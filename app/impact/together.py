@@ -1,7 +1,8 @@
 """Designs of one form calculated together: each is a row of the same array calls.
 
-What cannot be is left to `alone`: steps whose level follows from a tolerance, values that are measured on
-solids, iterations, inputs at several points. So is a call that refuses as a whole.
+`alone` calculates the other designs: those with steps whose level follows from a tolerance, values that are
+measured on solids, iterations, or inputs at several points. It also takes over when a whole array call is
+refused.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from app.impact.outcome import JudgedCriterion, Outcome
 from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import Fault, TemplateError
-from templates.core.judging.comparison import WORST_FIRST
+from templates.core.judging.comparison import VERDICTS
 from templates.core.language.spec import Choice, Curve, Given, Table, Text
 from templates.core.language.template import Template
 
@@ -117,7 +118,7 @@ class Together:
                 units=self.units,
                 judged={
                     name: JudgedCriterion.in_row(
-                        WORST_FIRST[int(codes[row])],
+                        VERDICTS[int(codes[row])],
                         self.subjects[name].criterion,
                         float(column.margin[row]),
                     )

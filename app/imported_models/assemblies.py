@@ -64,7 +64,7 @@ def described_assembly(
     for fixed, there in sources:
         if id in there.holds:
             raise UnreadableModel(
-                "cycle", f"{fixed.name}: {there.origin} is made of {id} itself; choose another"
+                "cycle", f"{fixed.name}: {there.origin} contains {id} itself; choose another part"
             )
         if there.sha not in files:
             files[there.sha] = store.read(there.sha)

@@ -1,7 +1,7 @@
 """Estimate how long a calculation will take, from measured costs of the levels and the number of points.
 
-An order of magnitude, known before anything is calculated, and rather too high than too low: what is
-expensive leaves the server's process (see `app.pool.pool`).
+The estimate is an order of magnitude, known before the calculation, and rather too high than too low. An
+expensive calculation leaves the server's process (see `app.pool.pool`).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Plan a study before it begins: levels, size of a chunk, units, estimate. In a process."""
+"""Plan a study before it begins, in a calculation process: levels, chunk size, units, estimate."""
 
 from __future__ import annotations
 

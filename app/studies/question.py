@@ -70,13 +70,15 @@ def _contradictions(body: StudyIn, varied: Sequence[str]) -> Iterator[Fault]:
     if body.method == "optimise" and not has_goal:
         yield Fault("minimise", "missing", "name an output to minimise or maximise")
     elif not (body.outputs or has_goal):
-        yield Fault("outputs", "missing", "name what each row keeps, such as film.minimum_film_thickness")
+        yield Fault(
+            "outputs", "missing", "name the outputs that each row keeps, such as film.minimum_film_thickness"
+        )
     if body.points is not None and (body.method in ("grid", "table") or _is_local(body)):
         yield Fault("points", "contradiction", _WITHOUT_POINTS[body.method])
     if body.steps is not None and body.method != "grid":
         yield Fault("steps", "contradiction", f"{body.method} takes no `steps`, only grid does; leave it out")
     for name in sorted({*body.minimise} & {*body.maximise}):
-        yield Fault("maximise", "contradiction", f"{name} is minimised as well")
+        yield Fault("maximise", "contradiction", f"{name} cannot be both minimised and maximised")
 
 
 def _is_local(body: StudyIn) -> bool:
@@ -144,7 +146,9 @@ def _steps(body: StudyIn, space: Space) -> dict[str, int]:
     intervals = [variable.name for variable in space.variables if isinstance(variable, Interval)]
     given = body.steps if isinstance(body.steps, Mapping) else dict.fromkeys(intervals, body.steps)
     strange = (name for name in given if name not in intervals)
-    faults = [Fault("steps", "unknown_name", f"{name} has no bounds to vary between") for name in strange]
+    faults = [
+        Fault("steps", "unknown_name", f"{name} has no bounds; give it bounds in `vary`") for name in strange
+    ]
     for name in intervals:
         if (given.get(name) or 0) < 2:
             faults.append(Fault("steps", "missing", f"give at least 2 steps for {name}"))

@@ -1,6 +1,6 @@
-"""Find the solid of each row of a study, and put its measures into columns. In a calculation process.
+"""Find the solid of each row of a study and put its measures into columns, in a calculation process.
 
-A row waits for its solids: until all are known, a chunk answers which ones it lacks. A model may take a
+A row waits for its solids: until all are known, a chunk reports the missing ones. A model may take a
 measure of another, so its parameters are known only once that one is built.
 """
 

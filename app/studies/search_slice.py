@@ -3,7 +3,7 @@
 An optimiser asks for the same rows in the same order whenever it begins with the same seed. So a search that
 was interrupted begins again and receives the answers that are stored, by the bytes of the rows, until it asks
 for the first that is not. Generations of NSGA-II are stored as well: finished ones are not repeated.
-A slice ends by estimated seconds, not by a clock: equal studies, equal chunks.
+A slice ends after a number of estimated seconds, not by the clock, so that equal studies have equal chunks.
 """
 
 from __future__ import annotations
@@ -174,7 +174,7 @@ class _Journal:
     changed: set[str]
 
     def stored(self, name: str) -> Stage | None:
-        """Return the stage of a name, as it was kept last."""
+        """Return the latest stored stage of a name."""
         return self.stages.get(f"{self.level}: {name}")
 
     def keep(self, name: str, stage: Stage) -> None:
@@ -278,13 +278,16 @@ class _Book:
     def _columns(self, call: _Call) -> Columns:
         def side(name: str) -> Array:
             parts = [call.arrays[f"{JUDGED}{one.name}/{name}"] for one in self._problem.held]
-            return np.stack(parts, axis=-1) if parts else np.empty((call.count, 0))
+            return np.stack(parts, axis=-1).astype(float) if parts else np.empty((call.count, 0))
 
-        objectives = [call.arrays[f"{OUTPUT}{one.name}"] for one in self._problem.objectives]
+        objectives = [
+            np.asarray(call.arrays[f"{OUTPUT}{one.name}"], np.float64) for one in self._problem.objectives
+        ]
         which = call.arrays["reason"].tolist()
         reasons = {n: call.reasons[place][2] for n, place in enumerate(which) if place >= 0}
-        value, limit, low, high = (side(name) for name in SIDES)
-        return Columns(np.stack(objectives, axis=-1), value, limit, low, high, reasons, call.seconds)
+        value, limit, low, high, is_known = (side(name) for name in SIDES)
+        both = np.stack(objectives, axis=-1)
+        return Columns(both, value, limit, low, high, reasons, call.seconds, is_known=is_known == 1)
 
 
 def _array(call: _Call, name: str) -> AnyArray:

@@ -152,7 +152,7 @@ class Analysis:
             if np.isfinite(errors).any():
                 self._errors[output] = max(self._errors.get(output, 0.0), float(np.nanmax(errors)))
         for name, column in table.judged.items():
-            self.stated[name] = self.stated.get(name, True) and column.is_stated
+            self.stated[name] = self.stated.get(name, True) and column.is_known
         margins = {name: column.margin for name, column in table.judged.items()}
         return Rows(_stacked(table, self.outputs), table.verdicts, margins)
 

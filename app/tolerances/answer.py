@@ -1,4 +1,4 @@
-"""An analysis as the interface shows it: declared units instead of SI, and what is absent with its reason."""
+"""An analysis as the interface shows it: in declared units, with a reason for each missing value."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 """Examine a text; runs in a calculation process, because the text is a user's.
 
-Reading is bounded by the language: so many bytes, statements and operations, no loops. What is left to bound
-are time and memory, which the process does.
+The language limits bytes, statements and operations, and has no loops. The process limits time and memory.
 """
 
 from __future__ import annotations

@@ -9,7 +9,14 @@ from row_designs import BEARING, CURVES, FILM, alone, calculated, net_of, ref, s
 
 from app.designs.engine.verdicts import judged
 from templates.core.errors import InvalidInputs
-from templates.core.judging.comparison import MET, NOT_CHECKED, NOT_MET, UNDECIDED, WORST_FIRST
+from templates.core.judging.comparison import (
+    MET,
+    MET_ERROR_UNKNOWN,
+    NOT_CHECKED,
+    NOT_MET,
+    VERDICTS,
+    WORST_FIRST,
+)
 from templates.core.language.criteria import EvaluatedValues, estimate_of
 from templates.core.language.evaluate import evaluate
 from templates.core.language.levels import accuracy
@@ -87,7 +94,7 @@ def assert_equal_numbers(judgement, column, row):
     if judgement.band is not None:
         assert_close([column.low[row], column.high[row]], judgement.band, judgement.name)
     elif judgement.verdict != "not_checked":
-        assert np.isnan(column.low[row] + column.high[row])
+        assert not judgement.error_known
     if judgement.utilisation is not None:
         np.testing.assert_allclose(column.utilisation[row], judgement.utilisation, rtol=1e-12)
     if judgement.margin is not None:
@@ -108,8 +115,11 @@ def assert_judged_as_designs(raw, varied, count):
         judgements = judged(calculated(alone(raw, rows, row, net)))
         assert {judgement.name for judgement in judgements} == table.verdicts.keys()
         for judgement in judgements:
-            verdict = WORST_FIRST[table.verdicts[judgement.name][row]]
+            code = table.verdicts[judgement.name][row]
+            verdict = VERDICTS[code]
             assert (judgement.name, verdict) == (judgement.name, judgement.verdict)
+            if verdict == "met":
+                assert (code == MET) == judgement.error_known, judgement.name
             assert_equal_numbers(judgement, table.judged[judgement.name], row)
             verdicts[verdict] += 1
     return verdicts
@@ -166,19 +176,19 @@ def test_chunks_make_no_difference_to_verdicts():
     for name, codes in whole.verdicts.items():
         np.testing.assert_array_equal(parts.verdicts[name], codes)
         np.testing.assert_allclose(parts.judged[name].low, whole.judged[name].low, rtol=1e-12)
-        assert parts.judged[name].is_stated == whole.judged[name].is_stated
+        assert parts.judged[name].is_known == whole.judged[name].is_known
 
 
 def test_errors_that_are_not_stated_are_said():
     table = net_of(chained(), "clearance")({ref("clearance"): np.array([5e-5, 6e-5])}, [], judge=True)
-    assert table.judged["film"].is_stated
-    assert table.judged["given"].is_stated
+    assert table.judged["film"].is_known
+    assert table.judged["given"].is_known
     loads = net_of(curves(), "speed")({ref("speed"): np.array([300.0])}, [], criteria=["load"], judge=True)
-    assert not loads.judged["load"].is_stated
+    assert not loads.judged["load"].is_known
 
 
 @pytest.mark.slow
-def test_error_upstream_that_is_not_known_in_some_rows_leaves_these_undecided():
+def test_error_upstream_that_is_not_known_in_some_rows_is_said_of_these():
     """The error of the speed at which a very wide bearing whirls was not measured."""
     raw = copy.deepcopy(BEARING)
     raw["steps"]["film"]["outputs"].append("whirl_threshold_speed")
@@ -193,10 +203,10 @@ def test_error_upstream_that_is_not_known_in_some_rows_leaves_these_undecided():
     unknown = np.isnan(table.errors[whirl])
     assert unknown.any()
     assert not unknown.all()
-    assert table.verdicts["film"].tolist() == np.where(unknown, UNDECIDED, MET).tolist()
+    assert table.verdicts["film"].tolist() == np.where(unknown, MET_ERROR_UNKNOWN, MET).tolist()
     for row in range(table.count):
         for one in judged(calculated(alone(raw, rows, row, net))):
-            assert (one.name, WORST_FIRST[table.verdicts[one.name][row]]) == (one.name, one.verdict)
+            assert (one.name, VERDICTS[table.verdicts[one.name][row]]) == (one.name, one.verdict)
 
 
 def test_criteria_on_measures_wait_for_them():

@@ -1,4 +1,4 @@
-"""`/templates`: which calculations there are, and all that is known of each version."""
+"""`/templates`: list the templates and describe each version."""
 
 from __future__ import annotations
 

@@ -161,7 +161,7 @@ class LevelSearch:
         return [rows.step(self.block.name) or nothing for rows in self.passes(level)]
 
     def _expected(self, measured: Accuracy, level: str) -> Mask:
-        """Return where an expensive level is expected to serve, by the errors that it states for the rows."""
+        """Return a mask of the rows for which an expensive level should suffice, by its stated errors."""
         met = np.ones(sum(step.count for step in self._started), dtype=bool)
         for name in self.outputs:
             errors = _joined(_expected(measured, step, level, name) for step in self._started)

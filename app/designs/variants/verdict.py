@@ -23,7 +23,7 @@ def merged(base: Sequence[Judgement], variants: Judged) -> list[Judgement]:
 
     As it is where there are no variants.
 
-    Points are variants, the design itself one of them. Whatever is not certain of one is not certain of all.
+    Points are variants, the design itself one of them. A limit that is not verified for one is so for all.
     """
     if not variants:
         return list(base)
@@ -43,7 +43,6 @@ def _worst(judgements: Sequence[Judgement]) -> Judgement:
         worst,
         points=len(judgements),
         counts=_ordered(counts),
-        is_stated=all(judgement.is_stated for judgement in judgements),
         unverified=next((j.unverified for j in (worst, *judgements) if j.unverified), None),
     )
 

@@ -34,7 +34,7 @@ _SILENT = frozenset({"ctx", "kind", "type_comment"})  # fields that repeat what 
 
 
 def digest(cls: type[Template]) -> str:
-    """Return the digest of a version, computed from its file as it stands."""
+    """Return the digest of a version, computed from its current file."""
     return cls.sheet.digest() if cls.sheet else digest_of(_sources(cls))
 
 

@@ -8,7 +8,8 @@ from starlette.requests import cookie_parser
 
 from app.api.responses import patience
 from app.calculations.bodies import OIL_FILM, EvaluateIn
-from app.calculations.curves import _NUMBER, LONGEST_LINE, read_curves
+from app.calculations.curves import read_curves
+from app.calculations.tables import _NUMBER, LONGEST_LINE
 from app.designs.document import Document, merge
 from app.designs.graph import MOST_RELATION_TEXT, Catalogues, Graph, build_graph
 from app.designs.routes.files import _accepted
