@@ -78,9 +78,9 @@ def frame_of(name: str, datum: str, parts: Mapping[str, Part]) -> Location:
     if numbered := _AXIS.fullmatch(place):
         axes = _axes_of(part, middle)
         if int(numbered[1]) > len(axes):
-            raise _no_datum(name, f"{part_name} has {len(axes)} axes of cylinders, and no {place}")
+            raise _no_datum(name, f"{part_name} has {len(axes)} cylinder axes, so there is no {place}")
         return _frame(*axes[int(numbered[1]) - 1])
-    raise _no_datum(name, f"{place!r} is none of low_x, high_x, …, high_z, centre, axis_1, axis_2, …")
+    raise _no_datum(name, f"{place!r} is not one of low_x, high_x, …, high_z, centre, axis_1, axis_2, …")
 
 
 def box_of(solids: Sequence[object]) -> Box:

@@ -43,7 +43,7 @@ def require_turn(step: Step, taken: Sequence[ApprovalRow], number: int) -> None:
             raise OutOfOrder(f"revision {number} was {row.step} by {row.name} at {row.at}")
     following = next_step(taken)
     if following is not None and step != following:
-        raise OutOfOrder(f"revision {number} is to be {following} before it is {step}")
+        raise OutOfOrder(f"revision {number} must be {following} before it is {step}")
     if following is None and step != "withdrawn":
         raise OutOfOrder(f"revision {number} is released")
 

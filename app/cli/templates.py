@@ -1,7 +1,7 @@
 """`crankwright evaluate | template | freeze`: the templates in this process, without a service.
 
-Where the settings name no folders of a team, `evaluate` imports only the template that it evaluates. The
-settings, the models with the geometry kernel, and the schema are imported by the commands that need them.
+If the settings name no team folders, `evaluate` imports only the template that it evaluates. The settings,
+the models with the geometry kernel, and the schema are imported by the commands that need them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from app.cli import start  # noqa: F401  # before all that imports Pint
 from app.catalogue.discovery import find_templates
 from app.cli.arguments import argument
 from app.plain import Raw
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
 from templates.core.language.answer import Answer
 from templates.core.language.evaluate import evaluate as evaluate_template
@@ -150,7 +150,9 @@ def freeze_command(id: str, version: int, folder: Path) -> None:
         cls = snapshot.models.get(id, version) if is_model else snapshot.templates.get(id, version)
         click.echo(f"written: {freeze(cls, folder)}")
     except FileExistsError as error:
-        raise click.ClickException(f"{error}: a released version is not changed; make a new one") from None
+        raise click.ClickException(
+            f"{error}: a released version cannot change; create a new version"
+        ) from None
 
 
 def _find(id: str, version: int | None) -> type[Template]:

@@ -154,7 +154,9 @@ def review_command(id: str, reviewer: str, digest: str, url: str | None, data: P
     with connected(url, data) as client:
         sheet = client.read_worksheet(id)
         if len(digest) < 12 or not (sheet.digest or "").startswith(digest):
-            raise click.ClickException(f"{id} has digest {sheet.digest}, not {digest}: read its text again")
+            raise click.ClickException(
+                f"{id} has digest {sheet.digest}, not {digest}: read its current text first"
+            )
         _say(client.review_worksheet(sheet, reviewer))
 
 

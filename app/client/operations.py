@@ -166,7 +166,7 @@ def solve(
 
 
 def curves(table: bytes | str) -> Exchange[Curves]:
-    """Read curves from a CSV file, in UTF-8; each can be an input."""
+    """Read curves from a CSV or XLSX file; each can be an input. `assumed` says what was assumed."""
     content = table.encode() if isinstance(table, str) else table
     request = Request("POST", f"{BASE}/curves", content, headers={"Content-Type": "text/csv"})
     return answered(Curves, request)

@@ -1,7 +1,7 @@
 """Analyses that models of a design declare: the outputs that relations use, and their faults.
 
 `"throw": {…, "analyses": {"torsion": {"tolerance": 0.005}}}` lets relations use `throw.torsion.stiffness`.
-Only what a relation, or an iteration, uses is ever computed; an analysis that nobody uses costs nothing.
+The service computes only outputs that a relation or an iteration uses. An unused analysis costs nothing.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A design as its user wrote it: parameters, steps, models, iterations. This is what a revision keeps.
+"""A design as its user wrote it: parameters, steps, models, iterations. A revision stores this document.
 
 Values stay as typed: a quantity, a relation that begins with `=`, or a list of both.
 """

@@ -1,4 +1,4 @@
-"""Other values for a design in a question about it: nothing of them is saved."""
+"""Temporary values that a question uses instead of those of the design; they are never saved."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def _faults(graph: Graph, others: Overrides, unknown: str) -> Iterator[Fault]:
         yield from unknown_names(absent, list(places(graph)), "parameter or input")
     for name, raw in others.items():
         if name == unknown:
-            yield Fault(name, "conflict", f"{name} is what is solved for; it has no other value")
+            yield Fault(name, "conflict", f"{name} is the unknown that is solved for; do not give it a value")
         elif name not in absent and not is_relation(raw) and not isinstance(raw, list):
             yield from _misfit(graph, name, raw)
 

@@ -1,4 +1,4 @@
-"""Questions about a design that are calculated in the pool as a whole, and what their answers follow from."""
+"""Questions about a design that the pool calculates, and the data on which their answers depend."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from app.presentation.units import System
 from app.schemas.answers import Answer
 from app.storage.database import Database
 from templates.core.catalogue.digests import digest
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import UnknownTemplate
 from templates.core.language.template import Template
 

@@ -1,4 +1,4 @@
-"""The job behind a revision: build what is not built, measure, calculate what waited, iterate if declared."""
+"""The job behind a revision: build and measure missing solids, calculate dependent steps, iterate."""
 
 from __future__ import annotations
 
@@ -179,7 +179,7 @@ class Regeneration:
 
 
 def _lane(job: Job) -> Lane:
-    """Return the lane of a job: whoever changes a bearing does not wait for calculations of minutes."""
+    """Return the lane of a job, so that a change of a bearing never waits for long calculations."""
     return "answers" if job.kind == REGENERATE else "jobs"
 
 

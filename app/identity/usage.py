@@ -95,7 +95,7 @@ def admit(session: Session, limits: Limits) -> None:
 
 
 def check(limits: Limits, used: PrincipalUsage, name: str) -> None:
-    """Refuse whoever has used all.
+    """Refuse a principal that has used up a limit.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def check(limits: Limits, used: PrincipalUsage, name: str) -> None:
         raise LimitReached(f"{name} has used {amounts}", seconds_to_midnight())
     if used.bytes >= limits.storage_mb * MIB:
         amounts = f"{used.bytes / MIB:.0f} MiB of {limits.storage_mb:.0f} MiB of storage"
-        raise LimitReached(f"{name} has used {amounts}, which neither waiting nor deletion restores", None)
+        raise LimitReached(f"{name} has used {amounts}; neither waiting nor deleting files frees it", None)
 
 
 @contextmanager

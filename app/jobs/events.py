@@ -2,10 +2,10 @@
 
 The topics are `design:<id>` and `job:<id>`; events are numbered within a topic without a gap. An event gets
 its number under the lock of its design's or job's own row, in the unit of work that makes it true. So a
-reader who sees a number sees all below it as well. A sequence does not promise that: its numbers precede the
-commits.
+reader who sees a number also sees all lower ones. A database sequence does not guarantee that, because it
+assigns numbers before the commit.
 
-The rows are the truth. What a subscriber is sent is a hint with its event at hand; see `Subscription`.
+The rows are authoritative. A subscriber receives a hint together with the event; see `Subscription`.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Progress of running jobs for other servers: stored in their rows, and read from there.
 
-Progress is not an event that is kept: only the latest counts, and it costs one small write now and then.
+Progress is not an event: only the latest value counts, and it costs one small write at most once a second.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class ProgressKeeper:
         self._thread.start()
 
     def stop(self) -> None:
-        """End; what is not stored is not: who goes on with the job begins from zero."""
+        """Stop; progress that is not stored is lost, and a server that resumes the job begins from zero."""
         self._stopping.set()
         self._some.set()
         if self._thread.ident is not None:

@@ -1,7 +1,7 @@
 """Figures for Prometheus at `/metrics`: requests, jobs, commits, pools, failures, memory and processor time.
 
-To answer costs the same however many designs there are: of the database only the jobs that have not ended
-are counted, by an index.
+The cost of an answer does not depend on the number of designs: the only database query counts unfinished
+jobs, by an index.
 """
 
 from __future__ import annotations

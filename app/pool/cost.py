@@ -1,7 +1,7 @@
 """Estimate how long a calculation will take, from measured costs of the levels and the number of points.
 
-An order of magnitude, known before anything is calculated, and rather too high than too low: what is
-expensive leaves the server's process (see `app.pool.pool`).
+The estimate is an order of magnitude, known before the calculation, and rather too high than too low. An
+expensive calculation leaves the server's process (see `app.pool.pool`).
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ import numpy as np
 from app.plain import Raw
 from templates.core.errors import InvalidInputs
 from templates.core.language.body import Body
-from templates.core.language.climbing import reachable
-from templates.core.language.confirming import POLISHES
+from templates.core.language.confirmation import POLISHES
+from templates.core.language.level_choice import reachable
 from templates.core.language.levels import SINGLE, accuracy
 from templates.core.language.scan import SAMPLES
 from templates.core.language.spec import Curve, Table

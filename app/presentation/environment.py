@@ -1,4 +1,4 @@
-"""Jinja as pages and reports use it: everything is escaped, formulas become MathML, numbers are aligned."""
+"""Jinja for pages and reports: it escapes everything, writes formulas as MathML and aligns numbers."""
 
 from __future__ import annotations
 

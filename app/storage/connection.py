@@ -80,7 +80,7 @@ def require_connection(url: str) -> None:
     except DBAPIError as error:
         reason = str(error.orig).strip().partition("\n")[0]
         raise DatabaseUnavailable(
-            f"CRANKWRIGHT_DATABASE_URL does not lead to a database ({reason})"
+            f"CRANKWRIGHT_DATABASE_URL does not point to a database ({reason})"
         ) from error
     finally:
         engine.dispose()

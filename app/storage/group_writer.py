@@ -1,9 +1,9 @@
 """The writer of SQLite: one thread commits all waiting units of work in one transaction.
 
 SQLite takes one writer at a time and syncs the disk at every commit. One thread that runs all waiting units
-in one transaction pays one sync for all of them, and nobody ever meets a locked database.
+in one transaction needs one sync for all of them, and no writer ever finds the database locked.
 
-The file is watched while it is in use: once damage has shown, nothing is written any more.
+The writer watches for damage of the file, and writes nothing more once it has found any.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Estimate the processor time of a study from a few rows, calculated before it is accepted.
 
-The tables of levels know neither criteria nor a heat balance. The size of chunks still follows from them: a
-measured one would make equal studies unequal.
+The cost tables of levels include neither criteria nor a heat balance. The chunk size still comes from them,
+because a measured size would make equal studies unequal.
 """
 
 from __future__ import annotations

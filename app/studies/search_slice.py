@@ -3,7 +3,7 @@
 An optimiser asks for the same rows in the same order whenever it begins with the same seed. So a search that
 was interrupted begins again and receives the answers that are stored, by the bytes of the rows, until it asks
 for the first that is not. Generations of NSGA-II are stored as well: finished ones are not repeated.
-A slice ends by estimated seconds, not by a clock: equal studies, equal chunks.
+A slice ends after a number of estimated seconds, not by the clock, so that equal studies have equal chunks.
 """
 
 from __future__ import annotations
@@ -105,7 +105,7 @@ def _problem(ready: TaskState, search: Search) -> Problem:
     body = ready.asked.body
     objectives = [Objective(name) for name in body.minimise]
     objectives += [Objective(name, "maximise") for name in body.maximise]
-    held = tuple(Held(name, criterion_of(ready.net, name).sign) for name in search.required)
+    held = tuple(Held(name, criterion_of(ready.engine, name).sign) for name in search.required)
     return Problem(ready.asked.space, tuple(objectives), held)
 
 
@@ -174,7 +174,7 @@ class _Journal:
     changed: set[str]
 
     def stored(self, name: str) -> Stage | None:
-        """Return the stage of a name, as it was kept last."""
+        """Return the latest stored stage of a name."""
         return self.stages.get(f"{self.level}: {name}")
 
     def keep(self, name: str, stage: Stage) -> None:
@@ -255,15 +255,15 @@ class _Book:
                 f"the search needs more than {self._search.most} rows; narrow the bounds, or raise `points`"
             )
             raise TooManyRows([Fault("points", "too_many_rows", detail)])
-        net, asked = self._ready.net, self._ready.asked
+        engine, asked = self._ready.engine, self._ready.asked
         levels = self._levels[level]
         criteria = self._search.criteria  # by tables: what was measured would differ from run to run
-        seconds = net.seconds(len(rows), asked.wanted, levels, criteria=criteria, by_tables=True)
+        seconds = engine.seconds(len(rows), asked.wanted, levels, criteria=criteria, by_tables=True)
         self._spent += seconds + CALL_SECONDS
         table = called(self._ready, rows, levels, criteria, judge=True)
         arrays = {**columns_of(self._task.varied, rows), **results_of(table, asked.wanted)}
         for name in self._search.required:
-            arrays |= judged_of(net, name, table)
+            arrays |= judged_of(engine, name, table)
         reasons, arrays["reason"] = reasons_of(table)
         arrays["level"] = np.full(len(rows), level, dtype=np.int16)
         call = _Call(level, arrays, reasons, seconds)
@@ -278,13 +278,16 @@ class _Book:
     def _columns(self, call: _Call) -> Columns:
         def side(name: str) -> Array:
             parts = [call.arrays[f"{JUDGED}{one.name}/{name}"] for one in self._problem.held]
-            return np.stack(parts, axis=-1) if parts else np.empty((call.count, 0))
+            return np.stack(parts, axis=-1).astype(float) if parts else np.empty((call.count, 0))
 
-        objectives = [call.arrays[f"{OUTPUT}{one.name}"] for one in self._problem.objectives]
+        objectives = [
+            np.asarray(call.arrays[f"{OUTPUT}{one.name}"], np.float64) for one in self._problem.objectives
+        ]
         which = call.arrays["reason"].tolist()
         reasons = {n: call.reasons[place][2] for n, place in enumerate(which) if place >= 0}
-        value, limit, low, high = (side(name) for name in SIDES)
-        return Columns(np.stack(objectives, axis=-1), value, limit, low, high, reasons, call.seconds)
+        value, limit, low, high, is_known = (side(name) for name in SIDES)
+        both = np.stack(objectives, axis=-1)
+        return Columns(both, value, limit, low, high, reasons, call.seconds, is_known=is_known == 1)
 
 
 def _array(call: _Call, name: str) -> AnyArray:

@@ -46,7 +46,7 @@ def hang_on(reader: int, group: int | None = None) -> None:
         fcntl.fcntl(own, fcntl.F_SETSIG, signal.SIGKILL)
         fcntl.fcntl(own, fcntl.F_SETFL, os.O_NONBLOCK | os.O_ASYNC)
     if has_hung_up(reader):
-        raise ProcessLookupError("the server has gone")
+        raise ProcessLookupError("the server has stopped")
 
 
 def has_hung_up(descriptor: int) -> bool:

@@ -1,7 +1,8 @@
 """Sharp inner edges of a solid, at which stress has no limit and elements have to be small.
 
-For `cad.analysis.mesh`. They are seen on triangles that are small enough to turn by less than `SHARP` where a
-fillet begins: at a sharp inner edge two triangles of two faces meet at a larger angle, and open outward.
+For `cad.analysis.mesh`. The surface is divided into triangles so small that neighbours turn by less than
+`SHARP` where a fillet begins. At a sharp inner edge, triangles of two faces meet at a larger angle that opens
+outward.
 """
 
 from __future__ import annotations

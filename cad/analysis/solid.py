@@ -1,4 +1,4 @@
-"""The solid in a STEP file as it is to be analysed: its end faces named, and halved where it mirrors itself.
+"""Prepare the solid of a STEP file for analysis: name its end faces, and halve it if it is symmetric.
 
 Faces are recognised by geometry, never by number. A mirror plane is used only if both halves are proven to be
 images of each other: equal volume, centre, inertia, and one face for each face.

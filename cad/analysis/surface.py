@@ -1,4 +1,4 @@
-"""The surface of an analysed solid as data for a picture: where it is, how far it moves, how it is stressed.
+"""The surface of an analysed solid as data for a picture: points, displacements, stresses.
 
 From the response of one mesh, of one order, under a load of 1 N·m. Every curved surface element is divided
 into plane triangles, so that a shaft looks round; points are shared between triangles, so the surface is

@@ -1,8 +1,8 @@
 """Parameters of a crank throw, which the models of a throw and of a shaft share, and what follows from them.
 
-A model adds how much of a main journal it draws on each side of the throw (`L_s`). Parameters that are 0
-stand for what is not there: bores, fillet, oil drilling, counterweight, inclination. Without a
-`counterweight_radius` its angle means nothing.
+A model adds how much of a main journal it draws on each side of the throw (`L_s`). A parameter of 0 omits the
+feature: bores, fillet, oil drilling, counterweight, inclination. Without a `counterweight_radius`, the
+counterweight angle has no effect.
 
 The *face inclination* is the angle by which the outer face of each web leans towards the middle of the throw,
 from beside the journal's fillet to the end beyond the pin. 0 is a flat face and the heaviest web; the larger

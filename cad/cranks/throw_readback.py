@@ -92,7 +92,7 @@ def fillet(seen: PartSurfaces) -> float:
     if not radii:
         return 0.0
     if len(radii) != 4 or max(radii) - min(radii) > _CLEAR:
-        raise LookupError(f"four fillets alike; there are {radii}")
+        raise LookupError(f"the four fillets must have one radius; the file has {radii}")
     return radii[0]
 
 

@@ -1,4 +1,4 @@
-"""Centre lines of a view, and what marks its section: label, cutting line, arrows (ISO 128-2, ISO 128-3)."""
+"""Centre lines of a view, and its section marks: label, cutting line, arrows (ISO 128-2, ISO 128-3)."""
 
 from __future__ import annotations
 

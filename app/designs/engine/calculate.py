@@ -1,7 +1,7 @@
 """Calculate a design: all values known now, those that wait for a solid or a job, and the faults.
 
-Nothing stops at the first fault, so that a user sees all of them at once. Where rows give values, what
-follows from these is calculated for all rows at once, and a row that is refused has no value there.
+The calculation does not stop at the first fault, so that a user sees all faults at once. Values that depend
+on varied parameters are calculated for all rows at once. A refused row has no value there.
 """
 
 from __future__ import annotations

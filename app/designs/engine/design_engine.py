@@ -1,9 +1,9 @@
 """A design as a function of N rows: built and checked once, calculated in array calls.
 
-A row is one set of values for some places of the design. All values are in SI; arrays have the row first and
-the place along a curve last. Each step has one level for all rows of a call, so that a switch of levels makes
-no jump in a column. Only what the wanted values follow from is calculated. Between calls nothing is kept but
-what is one for all rows.
+A row is one set of values for some parameters and inputs of the design. All values are in SI; arrays have the
+row first and the place along a curve last. Each step has one level for all rows of a call, so that a switch
+of levels makes no jump in a column. The engine calculates only what the requested values depend on. Between
+calls it keeps only values that are equal for all rows.
 """
 
 from __future__ import annotations

@@ -96,7 +96,7 @@ async def save(id: Id, request: Request, services: ThePageServices) -> Response:
     patch = patch_of(design, typed)
     try:
         if based != str(design.revision):
-            raise Refused.because(STALE, f"revision {design.revision} was saved since")
+            raise Refused.because(STALE, f"revision {design.revision} was saved in the meantime")
         await services.change(id, based, patch, typed.get("note", ""))
     except Refused as refused:
         return await _again(request, services, id, typed, refused)

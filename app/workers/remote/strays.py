@@ -1,7 +1,7 @@
 """Find tasks that no machine works on, from the scheduler's repeated reports.
 
-Dask keeps a task whose machine has gone before it came there, in case that machine returns. Ours never do: a
-machine that connects again has another address. So such a task would be waited for without end.
+If a machine disconnects before its task arrives, Dask keeps the task in case the machine returns. Our
+machines never return under the same address, so a server would wait for such a task for ever.
 """
 
 from __future__ import annotations
@@ -47,4 +47,4 @@ class Strays:
         if key in self._without_machine:
             raise NeverBegun
         if key in self._lost:
-            raise WorkerLost("the scheduler does not have it")
+            raise WorkerLost("the scheduler does not know the task")

@@ -1,7 +1,6 @@
-"""The worksheet is read and calculated; its values are held against those that Mathcad stored.
+"""Read and calculate the worksheet, and compare its values with those that Mathcad stored.
 
-The language has the last word: a line that it refuses is a region that is refused, and what needs it is
-blocked.
+If the language refuses a line, the region of that line is refused, and regions that depend on it are blocked.
 """
 
 from __future__ import annotations

@@ -144,7 +144,7 @@ _defaults: WeakKeyDictionary[type[Calculation], LeftOut] = WeakKeyDictionary()
 
 
 def _left_out(cls: type[Calculation]) -> LeftOut:
-    """Return what stands for the inputs of a version that are not given."""
+    """Return the defaults for missing inputs of a version."""
     intake, needed = Intake(), set[str]()
     for name, declared in cls.inputs.items():
         default = None if isinstance(declared, Derived) else declared.default

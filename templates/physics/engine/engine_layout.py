@@ -217,14 +217,14 @@ def pins_are_shared(layout: Layout, pins_of_a_throw: str) -> Truth:
 
 @units(None, returns="rad")
 def pin_angles(layout: Layout) -> Array:
-    """Return where the pin of each cylinder stands from the reference line, from 0° to 360° [rad]."""
+    """Return the angle of each cylinder's pin from the reference line, from 0 to 2π [rad]."""
     around = layout.pin % TURN
     return np.where(TURN - around < _ROUNDING, 0.0, around)
 
 
 @units(None, returns="rad")
 def firing_angles(layout: Layout) -> Array:
-    """Return where each cylinder fires, within one cycle [rad]."""
+    """Return the firing angle of each cylinder within one cycle [rad]."""
     around = layout.firing % layout.cycle
     return np.where(layout.cycle - around < _ROUNDING, 0.0, around)
 

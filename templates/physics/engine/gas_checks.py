@@ -42,7 +42,7 @@ def valves_in_order(io: Array, ic: Array, eo: Array, ec: Array) -> Truth:
 
 @units(None, None, returns="1")
 def burns_before_exhaust(name: str, gas: Callable[[], GasCycle]) -> Truth:
-    """Return whether combustion ends before the exhaust opens; other rules report what is not given."""
+    """Return whether combustion ends before the exhaust opens; other rules report missing inputs."""
     if name not in POLYTROPIC or not isinstance(cycle := gas(), Polytropic):
         return True
     return ~(cycle.v_cut >= cycle.v_opened)

@@ -152,7 +152,7 @@ class GroovedLaw:
 
 
 def lift_of(share: Array, extent: Array, pressure: Array) -> Array:
-    """Return what a supply pressure bears at rest in a groove and over its lands, as a load number.
+    """Return the load number that a supply pressure supports at rest in a groove and over its lands.
 
     0 without one.
 

@@ -149,7 +149,7 @@ def heated(film: Pressed, heating: Heating, edges: Array) -> Heated:
     system = _System(flow, heating, edges)
     T = splu(system.matrix()).solve(system.right)
     if not np.isfinite(T).all():
-        raise RuntimeError("nothing removes the heat")
+        raise RuntimeError("no oil flow or surface removes the heat")
     return system.read(T)
 
 

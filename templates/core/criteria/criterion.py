@@ -226,7 +226,7 @@ def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
     sides = _SIGN.split(text)
     if len(sides) != 3 or "=" in sides[0] + sides[2]:
         form = "write it like film.minimum_film_thickness >= 3 um"
-        raise FaultyText("syntax", f"a criterion compares two sides by one >= or <=; {form}")
+        raise FaultyText("syntax", f"a criterion needs exactly one >= or <=; {form}")
     sign: Sign = ">=" if sides[1] == ">=" else "<="
     value, limit = parse(sides[0].strip()), parse(sides[2].strip())
     if items := value.items + limit.items:
@@ -244,7 +244,7 @@ def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
 
 def _check_keys(raw: Any, keys: frozenset[str], needed: str) -> None:
     if not isinstance(raw, Mapping) or needed not in raw:
-        raise FaultyText("syntax", f"a text, or an object with {needed!r}, is wanted, not {excerpt(raw)}")
+        raise FaultyText("syntax", f"give a text, or an object with {needed!r}, not {excerpt(raw)}")
     for key, value in raw.items():
         if key not in keys:
             raise FaultyText("unknown_name", unknown_name(str(key), sorted(keys), "key").detail)
@@ -254,7 +254,7 @@ def _check_keys(raw: Any, keys: frozenset[str], needed: str) -> None:
 
 def _mapping(raw: Any) -> Mapping[str, Any]:
     if not isinstance(raw, Mapping):
-        raise FaultyText("syntax", f"limits and absent are objects by name, not {excerpt(raw)}")
+        raise FaultyText("syntax", f"limits and absent must be objects keyed by name, not {excerpt(raw)}")
     return raw
 
 

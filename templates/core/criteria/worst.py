@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from templates.core.arrays import Array, Mask
-from templates.core.judging.comparison import NOT_CHECKED, Comparison
-from templates.core.judging.criterion import Criterion
+from templates.core.criteria.comparison import NOT_CHECKED, Comparison
+from templates.core.criteria.criterion import Criterion
 
 
 @dataclass(slots=True)  # frozen, each would cost four times as much
@@ -18,22 +17,13 @@ class Worst:
 
     index: tuple[int, ...]
     code: int
+    is_known: bool  # every error that contributes to the bands
     value: float
     limit: float
     low: float
     high: float
     limit_low: float
     limit_high: float
-
-    @property
-    def is_known(self) -> bool:
-        """Return whether the band of the value is known."""
-        return not (math.isnan(self.low) or math.isnan(self.high))
-
-    @property
-    def is_limit_known(self) -> bool:
-        """Return whether the band of the limit is known."""
-        return not (math.isnan(self.limit_low) or math.isnan(self.limit_high))
 
     @property
     def is_limit_exact(self) -> bool:
@@ -46,7 +36,7 @@ def worst_of(criterion: Criterion, compared: Comparison) -> Worst:
     sides = (compared.value, compared.limit, *compared.value_bounds, *compared.limit_bounds)
     codes = compared.codes
     if isinstance(codes, int):
-        return Worst((), codes, *map(float, sides))
+        return Worst((), codes, bool(np.all(compared.is_known)), *map(float, sides))
     whole = [np.broadcast_to(side, codes.shape) for side in sides]
     clearance = _clearance(criterion, whole)
     if codes.min() != NOT_CHECKED:  # points judged by something else have no numbers to report
@@ -54,7 +44,8 @@ def worst_of(criterion: Criterion, compared: Comparison) -> Worst:
     clearance = np.where(codes == codes.min(), clearance, np.inf)
     index = np.unravel_index(int(np.argmin(clearance)), codes.shape)
     place = tuple(map(int, index))
-    return Worst(place, int(codes[place]), *(float(side[place]) for side in whole))
+    known = bool(np.broadcast_to(compared.is_known, codes.shape)[place])
+    return Worst(place, int(codes[place]), known, *(float(side[place]) for side in whole))
 
 
 def worst_of_rows(criterion: Criterion, compared: Comparison, count: int) -> tuple[Array, list[Array]]:
@@ -68,15 +59,17 @@ def worst_of_rows(criterion: Criterion, compared: Comparison, count: int) -> tup
     Returns
     -------
     tuple
-        Codes (count,), and value, limit, low, high, lowest and highest limit [SI], each (count,).
+        Codes (count,), and value, limit, low, high, lowest and highest limit [SI], each (count,); then where
+        every error behind them is known.
     """
     sides = (compared.value, compared.limit, *compared.value_bounds, *compared.limit_bounds)
     codes = np.asarray(compared.codes)
     shape = codes.shape or (1,)
-    whole = [np.broadcast_to(side, shape).reshape(shape[0], -1) for side in (codes, *sides)]
+    known = compared.is_known
+    whole = [np.broadcast_to(side, shape).reshape(shape[0], -1) for side in (codes, *sides, known)]
     if whole[0].shape[1] > 1:
         worst = whole[0] == whole[0].min(axis=1, keepdims=True)
-        clearance = np.where(worst, _clearance(criterion, whole[1:]), np.inf)
+        clearance = np.where(worst, _clearance(criterion, whole[1:-1]), np.inf)
         place = np.argmin(clearance, axis=1, keepdims=True)
         whole = [np.take_along_axis(side, place, axis=1) for side in whole]
     rows = [np.broadcast_to(side[:, 0], (count,)) for side in whole]
@@ -88,7 +81,7 @@ def _clearance(criterion: Criterion, sides: list[Array]) -> Array:
 
     Relative where the limit is not zero.
 
-    Where the band is open or not known the value itself counts; what does not exist has a finite number too,
+    Where the band is open the value itself counts; what does not exist has a finite number too,
     so that it differs from what is not asked about.
     """
     value, limit, low, high, limit_low, limit_high = sides

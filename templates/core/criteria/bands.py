@@ -1,7 +1,8 @@
 """The band of the true value around a value whose relative error is stated, and around an expression.
 
-A stated error e says |v - t| ≤ e |t|: the truth t lies from v/(1 + e) to v/(1 - e). A bound that is not known
-is NaN, and decides nothing.
+A stated error e says |v - t| ≤ e |t|: the truth t lies from v/(1 + e) to v/(1 - e). Several errors may
+contribute to one band; a contribution that is not known leaves the band as wide as the known ones make it,
+and the band is then not known.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from templates.core.arrays import Mask, Truth
 from templates.core.errors import FaultyText
 from templates.core.units.relation import Relation
 from templates.core.units.units import Value
@@ -34,8 +36,6 @@ class Estimate:
         A number or an array: points first, places along a curve last; NaN where there is none.
     error
         Relative; 0 if exact, NaN where it is not known. Of the shape of the points.
-    is_stated
-        Whether the error of the model was measured at all; if not, `error` is 0 and the band has no width.
     axes
         How many of the last axes of the value are places along a curve.
     scale
@@ -47,7 +47,6 @@ class Estimate:
 
     value: Value
     error: Value = 0.0
-    is_stated: bool = True
     axes: int = 0
     scale: Value | None = None
     reasons: NDArray[np.object_] | None = None
@@ -59,14 +58,27 @@ class Estimate:
             return self.error == 0
         return not self.error.any()
 
+    @property
+    def is_known(self) -> Truth:
+        """Return where the error is known, beside the values."""
+        if isinstance(self.error, float):
+            return not math.isnan(self.error)
+        known: Mask = ~np.isnan(spread(self.error, self.axes))
+        return known
+
     def bounds(self) -> Bounds:
-        """Return the band of the value."""
-        if self.is_exact:
+        """Return the band of the value; the value itself where its error is not known."""
+        if self.is_exact or self.is_known is False:
             return self.value, self.value
         error = spread(self.error, self.axes)
         if self.scale is None and not self.axes:
-            return band(self.value, error)
-        return band_relative_to(self.value, error, self._scale())
+            low, high = band(self.value, error)
+        else:
+            low, high = band_relative_to(self.value, error, self._scale())
+        if isinstance(low, float) and isinstance(high, float):
+            return low, high
+        known = self.is_known
+        return np.where(known, low, self.value), np.where(known, high, self.value)
 
     def _scale(self) -> Value:
         if self.scale is not None:
@@ -139,8 +151,8 @@ def largest_true(size: Value, error: Value) -> Value:
 
 def value_and_bounds(
     side: Relation, estimates: Mapping[str, Estimate], shifts: Sequence[Shift] = ()
-) -> tuple[Value, Bounds]:
-    """Return the value of a side of a comparison, and its band.
+) -> tuple[Value, Bounds, Truth]:
+    """Return the value of a side of a comparison, its band as far as that is known, and where it is.
 
     Each uncertain name is shifted to both ends of its band, the others kept, and the changes are added; so
     are those of `shifts`, by which values from which the names follow were shifted.
@@ -152,14 +164,17 @@ def value_and_bounds(
     """
     name = side.only_name
     if name and not shifts:
-        return estimates[name].value, estimates[name].bounds()
+        return estimates[name].value, estimates[name].bounds(), estimates[name].is_known
     values = {name: estimates[name].value for name in side.names}
     middle = side.value(values)
     low, high = estimates[name].bounds() if name else (middle, middle)
+    known: Truth = True
+    for used in side.names:
+        known = known & estimates[used].is_known
     for shift in (*(() if name else _own_shifts(side, estimates, values)), *shifts):
-        less, more = _changes(side, middle, *shift)
-        low, high = low + less, high + more
-    return middle, (low, high)
+        less, more, reached = _changes(side, middle, *shift)
+        low, high, known = low + less, high + more, known & reached
+    return middle, (low, high), known
 
 
 def _own_shifts(
@@ -172,12 +187,14 @@ def _own_shifts(
             yield {**values, name: low}, {**values, name: high}
 
 
-def _changes(side: Relation, middle: Value, low: Mapping[str, Value], high: Mapping[str, Value]) -> Bounds:
-    """Return how far down and up a side moves between two sets of values; NaN if that is not known."""
+def _changes(
+    side: Relation, middle: Value, low: Mapping[str, Value], high: Mapping[str, Value]
+) -> tuple[Value, Value, Truth]:
+    """Return the change of a side, down and up, and a mask of places with values at both ends."""
     with np.errstate(all="ignore"):
         one, other = (np.asarray(side.value(end)) - middle for end in (low, high))
-        less, more = np.minimum(np.minimum(one, other), 0.0), np.maximum(np.maximum(one, other), 0.0)
-    return less[()], more[()]
+        less, more = np.fmin(np.fmin(one, other), 0.0), np.fmax(np.fmax(one, other), 0.0)
+    return less[()], more[()], ~(np.isnan(one) | np.isnan(other))
 
 
 def relative_width(value: float, low: float, high: float) -> float | None:
@@ -204,6 +221,6 @@ def _aligned(estimate: Estimate, axes: int) -> Estimate:
     if estimate.axes == axes or not np.ndim(estimate.value):
         return estimate
     if estimate.axes:
-        raise FaultyText("shape", "curves and tables of different axes are compared")
+        raise FaultyText("shape", "curves and tables over different axes cannot be compared")
     value, error = spread(estimate.value, axes), spread(estimate.error, axes)
     return replace(estimate, value=value, error=error)

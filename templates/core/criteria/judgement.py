@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from templates.core.judging.comparison import NOT_CHECKED, Codes, Verdict
+from templates.core.criteria.comparison import NOT_CHECKED, Codes, Verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,12 +31,15 @@ class Judgement:
         In `unit`, the margin in `margin_unit`; None where there is none. A positive margin is safe.
     band
         In `unit`; an open end is infinite. None where the error is not known.
+    error_known
+        Whether every error that contributes to the band is known. Without it the verdict is that of the value
+        itself, unless the known part of the band holds the limit.
     needs
-        The relative error below which the verdict would be decided.
+        The relative error below which the verdict would be decided; None above 1.
     give
         The names of what is missing.
     rows
-        The verdict at every point, as places in `WORST_FIRST`.
+        The verdict at every point, as places in `VERDICTS`.
     """
 
     name: str
@@ -48,7 +51,7 @@ class Judgement:
     limit: float | None = None
     band: tuple[float, float] | None = None
     relative_error: float | None = None
-    is_stated: bool = True
+    error_known: bool = True
     utilisation: float | None = None
     margin: float | None = None
     margin_unit: str = ""
@@ -68,8 +71,30 @@ class Judgement:
 
     @property
     def is_certain(self) -> bool:
-        """Return whether nothing about the verdict is unverified, or of an error that nobody stated."""
-        return self.is_stated and self.unverified is None
+        """Return whether nothing about the verdict is unverified, or follows from an unknown error."""
+        return self.error_known and self.unverified is None
+
+    @property
+    def is_open(self) -> bool:
+        """Return whether a finer calculation may tell more: undecided, or compared with an unknown error."""
+        is_compared = self.verdict in ("met", "not_met") and self.margin is not None
+        return self.verdict == "undecided" or (is_compared and not self.error_known)
+
+    @property
+    def sides(self) -> tuple[str, str]:
+        """Return the texts of value and limit."""
+        value, _, limit = self.require.partition(self.sign)
+        return value.strip(), limit.strip()
+
+    @property
+    def sign(self) -> str:
+        """Return the sign between value and limit that is required."""
+        return ">=" if ">=" in self.require else "<="
+
+    @property
+    def has_fixed_limit(self) -> bool:
+        """Return whether the limit is a number that stands in the criterion itself."""
+        return self.sides[1].removeprefix("-")[:1].isdigit()
 
     @property
     def misses(self) -> bool:

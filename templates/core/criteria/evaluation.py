@@ -3,34 +3,33 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
-from templates.core.errors import FaultyText
-from templates.core.judging.bands import Estimate, Shift, relative_width
-from templates.core.judging.comparison import (
+from templates.core.arrays import Truth
+from templates.core.criteria.bands import Estimate, Shift, relative_width
+from templates.core.criteria.comparison import (
     NOT_CHECKED,
     NOT_MET,
-    WORST_FIRST,
+    VERDICTS,
     Codes,
     Comparison,
+    Verdict,
     compare,
     side_of,
 )
-from templates.core.judging.criterion import Criterion
-from templates.core.judging.judgement import Judgement, Place
-from templates.core.judging.worst import Worst, worst_of
+from templates.core.criteria.criterion import Criterion
+from templates.core.criteria.judgement import Judgement, Place
+from templates.core.criteria.worst import Worst, worst_of
+from templates.core.errors import FaultyText, listed
 from templates.core.units.units import Value
 
 Parts = dict[str, Any]
 """Fields of a judgement by name."""
-
-IS_STATED = attrgetter("is_stated")  # of an estimate
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +59,7 @@ class Instead:
             return {}
         within = "" if self.judgement.verdict == "met" else "within the error of the calculation: "
         parts: Parts = {"verdict": self.judgement.verdict, "reason": within + self.reason}
-        return parts | {"is_stated": self.judgement.is_stated, "rows": self.judgement.rows}
+        return parts | {"error_known": self.judgement.error_known, "rows": self.judgement.rows}
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +80,8 @@ def judge(
     shifts: Sequence[Shift] = (),
     noted: Mapping[str, Any] | None = None,
     instead: Instead | None = None,
+    *,
+    is_known: Truth = True,
 ) -> Judgement:
     """Judge a criterion.
 
@@ -102,13 +103,15 @@ def judge(
         Further fields of the judgement, such as `level` and `truth`.
     instead
         What was judged where a side has no value.
+    is_known
+        Where the errors of all that is upstream are known.
     """
     shown = criterion if unit_name is None else replace(criterion, unit=unit_name)
     if not estimates.keys() >= criterion.all_names:
         parts = _missing(shown, estimates, absent or {}) | (instead.parts() if instead else {})
     else:
         try:
-            compared = compare(criterion, estimates, shifts)
+            compared = compare(criterion, estimates, shifts, is_known=is_known)
             compared = compared.filled(instead.rows) if instead else compared
             parts = _compared(shown, compared, estimates, along, bool(shifts))
             if instead and parts["verdict"] != "not_checked" and "value" not in parts:
@@ -130,12 +133,17 @@ def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: Ma
             if (isinstance(si, float) or not np.ndim(si)) and math.isfinite(si):
                 parts[name] = float(criterion.scale.from_si(float(si)))
     why = tuple(absent[name] for name in criterion.names if name in absent and name not in estimates)
-    return {**parts, "is_stated": all(map(IS_STATED, estimates.values())), **_lack(why)}
+    return {**parts, "error_known": not _unknown(criterion, estimates), **_lack(why)}
+
+
+def _unknown(criterion: Criterion, estimates: Mapping[str, Estimate]) -> list[str]:
+    """Return the names whose own error is not known, at some point at least."""
+    return [n for n in criterion.names if n in estimates and not np.all(estimates[n].is_known)]
 
 
 @lru_cache(maxsize=1024)
 def _lack(absent: tuple[Absent, ...]) -> Mapping[str, Any]:
-    """Return what to give and why, of names without a value."""
+    """Return the inputs to give, with reasons, for names without a value."""
     give = dict.fromkeys(name for one in absent for name in one.give)
     reasons = dict.fromkeys(one.reason for one in absent if one.reason)
     return {"give": tuple(give), "reason": "; ".join(reasons) or None}
@@ -153,8 +161,8 @@ def _compared(
     rows = compared.rows()
     used = [estimates[name] for name in criterion.names]
     parts = {
-        "verdict": WORST_FIRST[worst.code],
-        "is_stated": all(map(IS_STATED, used)),
+        "verdict": VERDICTS[worst.code],
+        "error_known": worst.is_known,
         "where": _where(worst.index, compared.axes, along),
         "rows": rows,
         **_counted(rows),
@@ -191,8 +199,11 @@ def _counted(rows: Codes) -> Parts:
     """Return the number of points of each verdict; nothing of a single one."""
     if isinstance(rows, int):
         return {}
-    numbers = np.bincount(rows.ravel(), minlength=len(WORST_FIRST))
-    counts = {verdict: int(n) for verdict, n in zip(WORST_FIRST, numbers, strict=True) if n}
+    numbers = np.bincount(rows.ravel(), minlength=len(VERDICTS))
+    counts: dict[Verdict, int] = {}
+    for verdict, n in zip(VERDICTS, numbers.tolist(), strict=True):
+        if n:
+            counts[verdict] = counts.get(verdict, 0) + n
     return {"points": int(rows.size), "counts": counts}
 
 
@@ -213,7 +224,8 @@ def _numbers(criterion: Criterion, parts: Parts, worst: Worst, estimates: Mappin
     """Return the value, limit, band and what follows from them, in the unit of the criterion."""
     scale, is_temperature = criterion.scale, criterion.is_temperature
     subject = estimates[criterion.subject] if criterion.subject else None
-    needs = _needs(worst, subject) if parts["verdict"] == "undecided" else None
+    is_open = parts["verdict"] == "undecided" and worst.is_known
+    needs = _needs(worst, subject) if is_open else None
     difference = worst.value - worst.limit if criterion.sign == ">=" else worst.limit - worst.value
     return {
         "value": float(scale.from_si(worst.value)),
@@ -221,11 +233,11 @@ def _numbers(criterion: Criterion, parts: Parts, worst: Worst, estimates: Mappin
         "band": (float(scale.from_si(worst.low)), float(scale.from_si(worst.high)))
         if worst.is_known
         else None,
-        "relative_error": _relative_error(subject, worst),
+        "relative_error": _relative_error(subject, worst) if worst.is_known else None,
         "utilisation": None if is_temperature else _utilisation(criterion, worst),
         "margin": difference / (1.0 if is_temperature else scale.factor),
         "margin_unit": "K" if is_temperature else criterion.unit,
-        "needs": needs,
+        "needs": needs if needs is None or needs <= 1 else None,
         "reason": _reason(criterion, parts, worst, estimates, needs),
     }
 
@@ -233,12 +245,12 @@ def _numbers(criterion: Criterion, parts: Parts, worst: Worst, estimates: Mappin
 def _relative_error(subject: Estimate | None, worst: Worst) -> float | None:
     """Return the stated error of a name that is judged alone; of an expression, that of its band."""
     if subject is None:
-        return relative_width(worst.value, worst.low, worst.high) if worst.is_known else None
+        return relative_width(worst.value, worst.low, worst.high)
     at = subject.error
     if isinstance(at, np.ndarray):
         points = worst.index[: len(worst.index) - subject.axes]
         at = at[_own_place(points, at.shape)] if len(points) >= at.ndim else at.max()  # one value at all
-    return None if math.isnan(at) else float(at)
+    return float(at)
 
 
 def _utilisation(criterion: Criterion, worst: Worst) -> float | None:
@@ -266,11 +278,30 @@ def _reason(
     criterion: Criterion, parts: Parts, worst: Worst, estimates: Mapping[str, Estimate], needs: float | None
 ) -> str | None:
     """Return a remark on a verdict beside its numbers."""
+    if not worst.is_known:
+        return unknown_error(map(in_words, _unknown(criterion, estimates)), parts["verdict"])
     if parts["verdict"] != "undecided":
-        return None if parts["is_stated"] else "the error of the model is not stated"
-    unknown = [name for name in criterion.names if np.isnan(estimates[name].error).any()]
-    if unknown and not (worst.is_known and worst.is_limit_known):
-        return f"the error of {', '.join(unknown)} is not known here"
+        return None
     if not needs:
         return "the value equals the limit to within its error"
-    return f"the limit lies within the error of the value; a relative error below {needs:.2g} would decide"
+    within = "the limit lies within the error of the value"
+    return f"{within}; a relative error below {needs:.2g} would decide" if needs <= 1 else within
+
+
+MOST_NAMED = 2  # values whose error is unknown, in one sentence
+
+
+def unknown_error(names: Iterable[str], verdict: Verdict) -> str:
+    """Return a sentence on the values whose errors are unknown, by their words."""
+    of = sorted(dict.fromkeys(names))
+    more = len(of) - MOST_NAMED
+    shown = listed(of) if more <= 0 else f"{', '.join(of[:MOST_NAMED])} and {more} more"
+    unknown = f"error of {shown} unknown" if of else "error unknown"
+    if verdict == "undecided":
+        return f"{unknown}; the limit lies within the known part of the error"
+    return unknown
+
+
+def in_words(name: str) -> str:
+    """Return the name of a value in words, behind that of its step."""
+    return name.replace(".", ": ").replace("_", " ")

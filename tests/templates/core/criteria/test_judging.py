@@ -6,21 +6,22 @@ import numpy as np
 import pytest
 from seeds import seeded
 
-from templates.core.errors import FaultyText
-from templates.core.judging.bands import Estimate
-from templates.core.judging.comparison import (
+from templates.core.criteria.bands import Estimate
+from templates.core.criteria.comparison import (
     MET,
+    MET_ERROR_UNKNOWN,
     NOT_CHECKED,
     NOT_MET,
     UNDECIDED,
-    WORST_FIRST,
+    VERDICTS,
     compare,
 )
-from templates.core.judging.criterion import NameDescription, read_criterion
-from templates.core.judging.judgement import sentence
-from templates.core.judging.judging import Absent, Along, judge
-from templates.core.judging.summary import summarised, worst_first
-from templates.core.judging.worst import worst_of_rows
+from templates.core.criteria.criterion import NameDescription, read_criterion
+from templates.core.criteria.evaluation import Absent, Along, judge
+from templates.core.criteria.judgement import sentence
+from templates.core.criteria.summary import summarised, worst_first
+from templates.core.criteria.worst import worst_of_rows
+from templates.core.errors import FaultyText
 
 NAN = math.nan
 KNOWN = {
@@ -54,17 +55,17 @@ def of_film(value, error=0.0, **more):
         (3.0, 0.1, "undecided", 0.0),
         (0.0, 0.0, "not_met", None),
         (-1.0, 0.5, "not_met", None),
-        (-1.0, NAN, "undecided", 1.0),
-        (3.24, NAN, "undecided", 0.08),
+        (-1.0, NAN, "not_met", None),
+        (3.24, NAN, "met", None),
         (9.0, 2.0, "met", None),  # 3 … infinity
-        (8.9, 2.0, "undecided", 8.9 / 3 - 1),
+        (8.9, 2.0, "undecided", None),  # an error below 197 %: nothing worth saying
     ],
 )
 def test_analytic_verdict_of_a_film(value, error, verdict, needs):
     result = of_film(value, error)
     assert result.verdict == verdict
     assert result.needs == (None if needs is None else pytest.approx(needs))
-    assert WORST_FIRST[compare(FILM, {"film": um([value], np.array([error]))}).rows()[0]] == verdict
+    assert VERDICTS[compare(FILM, {"film": um([value], np.array([error]))}).rows()[0]] == verdict
 
 
 @pytest.mark.parametrize(
@@ -220,12 +221,51 @@ def test_an_expression_states_the_error_of_its_band():
     assert result.relative_error == pytest.approx(0.1)
 
 
-def test_unstated_error_is_said_and_never_green():
-    result = of_film(4.0, is_stated=False)
-    assert (result.verdict, result.is_stated) == ("met", False)
-    assert result.reason == "the error of the model is not stated"
+@pytest.mark.parametrize(("value", "verdict"), [(4.0, "met"), (2.133, "not_met"), (3.0, "met")])
+def test_without_a_known_error_the_value_itself_is_judged_and_nothing_is_green(value, verdict):
+    result = of_film(value, NAN)
+    assert (result.verdict, result.error_known, result.band, result.needs) == (verdict, False, None, None)
+    assert result.reason == "error of film unknown"
+    assert result.is_open
     assert not summarised([result]).green
     assert summarised([of_film(4.0)]).green
+
+
+@pytest.mark.parametrize(
+    ("limit", "verdict"), [("8 um", "met"), ("10 um", "undecided"), ("12 um", "not_met")]
+)
+def test_analytic_the_known_part_of_a_band_may_hold_the_limit(limit, verdict):
+    """The sum of 5 um ± 20 % (4.167 … 6.25 um) and of 5 um of an unknown error: 9.167 … 11.25 um at least."""
+    meanings = {**KNOWN, "other": NameDescription("um", "other")}
+    criterion = read_criterion("both", f"film + other >= {limit}", meanings)
+    result = judge(criterion, {"film": um(5.0, 0.2), "other": um(5.0, NAN)})
+    assert (result.verdict, result.error_known, result.band) == (verdict, False, None)
+    assert result.reason.startswith("error of other unknown")
+    assert ("known part" in result.reason) == (verdict == "undecided")
+
+
+def test_met_with_an_unknown_error_is_counted_apart_and_comes_before_what_is_met():
+    ordered = worst_first([of_film(4.0), of_film(9.0, NAN), of_film(2.0, NAN)])
+    assert [(j.verdict, j.error_known) for j in ordered] == [
+        ("not_met", False),
+        ("met", False),
+        ("met", True),
+    ]
+    summary = summarised(ordered)
+    assert summary.headline == "1 met, 1 met (error unknown), 1 not met"
+    assert (summary.counts["met"], summary.error_unknown) == (2, 1)
+
+
+def test_a_fixed_limit_that_is_met_does_not_govern_while_the_real_one_is_missing():
+    meanings = {**KNOWN, "permissible": NameDescription("um", "permissible film")}
+    exists = read_criterion("exists", "film >= 0.05 um", meanings)
+    real = judge(read_criterion("film", "film >= permissible", meanings), {"film": um(4.0)})
+    assert summarised(worst_first([judge(exists, {"film": um(4.0)}), real])).governing is None
+    assert summarised(worst_first([judge(exists, {"film": um(0.04)}), real])).governing == "exists"
+    given = judge(
+        read_criterion("film", "film >= permissible", meanings), {"film": um(4.0), "permissible": um(3.0)}
+    )
+    assert summarised(worst_first([judge(exists, {"film": um(4.0)}), given])).governing == "film"
 
 
 @pytest.mark.parametrize(
@@ -239,11 +279,10 @@ def test_analytic_verdict_against_an_uncertain_limit(value, low, high, verdict):
     assert compare(criterion, {"film": um(value), "limit": um(low * (1 + error), error)}).rows() == verdict
 
 
-def test_why_a_limit_whose_error_is_not_known_decides_nothing():
+def test_a_limit_whose_error_is_not_known_is_named():
     criterion = read_criterion("film", "film >= limit", KNOWN)
-    assert judge(criterion, {"film": um(4.0), "limit": um(3.0, NAN)}).reason == (
-        "the error of limit is not known here"
-    )
+    of_limit = judge(criterion, {"film": um(4.0), "limit": um(3.0, NAN)})
+    assert (of_limit.verdict, of_limit.reason) == ("met", "error of limit unknown")
     elsewhere = {"film": um([3.1, 9.0], np.array([0.1, NAN])), "limit": um(3.0)}
     assert "a relative error below" in judge(criterion, elsewhere).reason
 
@@ -267,7 +306,7 @@ def test_property_scalars_and_arrays_agree():
         compare(FILM, {"film": um(float(v), float(e))}).rows() for v, e in zip(value, error, strict=True)
     ]
     assert rows.tolist() == single
-    assert set(single) == {MET, NOT_MET, UNDECIDED, NOT_CHECKED}
+    assert set(single) == {MET, MET_ERROR_UNKNOWN, NOT_MET, UNDECIDED, NOT_CHECKED}
 
 
 def test_property_a_verdict_holds_for_every_truth_of_the_stated_error():
@@ -354,7 +393,7 @@ def test_a_limit_may_have_a_default_and_a_value_a_reason_for_its_absence():
     (LIMITED, {"film": {**REASON, "with": "loads"}}, "loads"),
     (LIMITED, {"film": {"with": "load"}}, "reason"),
     (LIMITED, {"film": "it has no end"}, "reason"),
-    (LIMITED, "no end", "objects by name"),
+    (LIMITED, "no end", "objects keyed by name"),
 ])  # fmt: skip
 def test_a_wrong_default_or_reason_is_refused_with_the_class(limit, absent, message):
     with pytest.raises(FaultyText, match=message):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from seeds import seeded
 
-from templates.core.judging.bands import Estimate, band, relative_width, value_and_bounds
+from templates.core.criteria.bands import Estimate, band, relative_width, value_and_bounds
 from templates.core.units.relation import parse
 
 INF, NAN = math.inf, math.nan
@@ -73,18 +73,21 @@ def test_exact_names_leave_an_expression_exact():
     assert value_and_bounds(parse("2 * a + 1"), {"a": Estimate(1.5)})[1] == (4.0, 4.0)
 
 
-def test_unknown_error_leaves_an_expression_without_bounds():
-    estimates = {"a": Estimate(np.array([1.0, 2.0]), np.array([0.0, NAN])), "b": Estimate(1.0, 0.1)}
-    low, _ = value_and_bounds(parse("min(a, b)"), estimates)[1]
-    assert not np.isnan(low[0])
-    assert np.isnan(low[1])
+def test_an_unknown_error_leaves_the_band_that_the_known_ones_make():
+    """w = a + b with b = 1 (e 0.25: 0.8 … 1.333), a of an error that is not known in the second point."""
+    estimates = {"a": Estimate(np.array([1.0, 2.0]), np.array([0.0, NAN])), "b": Estimate(1.0, 0.25)}
+    _, (low, high), known = value_and_bounds(parse("a + b"), estimates)
+    np.testing.assert_allclose([low, high], [[1.8, 2.8], [7 / 3, 10 / 3]])
+    assert np.asarray(known).tolist() == [True, False]
 
 
 def test_an_open_end_stays_open_and_never_narrows():
-    low, high = value_and_bounds(parse("1 / a"), {"a": Estimate(2.0, 1.0)})[1]  # a from 1 to infinity
-    assert (low, high) == (0.0, 1.0)
-    low, high = value_and_bounds(parse("a - a"), {"a": Estimate(2.0, 1.0)})[1]  # infinity less infinity
-    assert np.isnan([low, high]).any()
+    _, (low, high), known = value_and_bounds(
+        parse("1 / a"), {"a": Estimate(2.0, 1.0)}
+    )  # a from 1 to infinity
+    assert (low, high, known) == (0.0, 1.0, True)
+    _, _, known = value_and_bounds(parse("a - a"), {"a": Estimate(2.0, 1.0)})  # infinity less infinity
+    assert not known
 
 
 @pytest.mark.parametrize(("value", "error"), [(3.0, 0.2), (-3.0, 0.2), (5.0, 0.0)])
