@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 import pint
 
-from templates.core.catalogue.finding import Catalogue, find
+from templates.core.catalogue.discovery import Catalogue, find
 from templates.core.errors import Fault, InvalidInputs, unknown_name
 from templates.core.language.answer import Answer
 from templates.core.language.evaluate import criterion_warnings, evaluate, evaluate_at_level

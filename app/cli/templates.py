@@ -20,7 +20,7 @@ from app.cli import start  # noqa: F401  # before all that imports Pint
 from app.catalogue.discovery import find_templates
 from app.cli.arguments import argument
 from app.plain import Raw
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
 from templates.core.language.answer import Answer
 from templates.core.language.evaluate import evaluate as evaluate_template

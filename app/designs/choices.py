@@ -14,7 +14,7 @@ from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document, Version
 from app.plain import Raw
 from app.reference import Reference
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import FaultyText, UnknownTemplate, unknown_name
 from templates.core.language.intake import option_named
 from templates.core.language.spec import Choice

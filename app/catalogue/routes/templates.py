@@ -24,7 +24,7 @@ from app.catalogue.sheets import Key
 from app.http.pages import Cursor, Limit, page_of
 from app.http.strict_requests import StrictRoute
 from app.schemas.problems import refusals
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import UnknownTemplate
 from templates.core.language.levels import accuracy
 from templates.core.language.template import Template

@@ -16,7 +16,7 @@ import numpy as np
 
 from templates.core.errors import FaultyText, excerpt
 from templates.core.units.fits import deviations, zones
-from templates.core.units.units import Unit, Value, require_same_kind, unit
+from templates.core.units.units import Unit, Value, difference_of, require_same_kind, unit
 
 Distribution = Literal["normal", "uniform", "triangular"]
 DISTRIBUTIONS: tuple[Distribution, ...] = get_args(Distribution)
@@ -202,7 +202,7 @@ def _of_text(name: str, declared: str) -> Unit:
         raise FaultyText("missing_unit", f'the tolerance has no unit; add it, as in "5 {declared}"')
     scale = unit(name or "1")
     if scale.absolute and unit(declared).absolute:
-        raise FaultyText("wrong_unit", f"a tolerance is a difference: give it in K or delta_{name}")
+        raise FaultyText("wrong_unit", f"a tolerance is a difference: give it in K or {difference_of(name)}")
     return _difference(name or "1", declared)
 
 

@@ -23,7 +23,7 @@ import flexcache
 import flexparser
 import pint
 
-from templates.core import prepared
+from templates.core import definition_cache
 from templates.core.arrays import Array
 from templates.core.errors import FaultyText
 
@@ -37,7 +37,7 @@ def _registry(parsed: Path | None) -> pint.UnitRegistry[float]:
     return pint.UnitRegistry(cache_folder=parsed)
 
 
-registry: pint.UnitRegistry[float] = prepared.from_folder(_PARSED, _registry)
+registry: pint.UnitRegistry[float] = definition_cache.from_folder(_PARSED, _registry)
 registry.define("@alias revolution = rev")
 
 _NAME = r"(?:[A-Za-zµμ°Ω]+(?:_[A-Za-z]+)*|%)"
