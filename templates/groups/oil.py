@@ -151,7 +151,7 @@ class Oil(Template):
 
     @formula("mm**2/s", "kinematic viscosity", gt=0)
     def nu(self) -> Array:
-        """The dynamic one over the density."""
+        """The dynamic viscosity over the density."""
         return self.eta / self.rho
 
 

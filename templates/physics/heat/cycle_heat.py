@@ -182,7 +182,7 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
             return np.asarray(np.log(oil.sheared(T, film.rate)) - x)
 
     def at_some(x: Array, number: Array) -> Array:
-        """Return the same of the points of these numbers alone."""
+        """Return the same object for the points of these numbers."""
         everywhere = np.full(top.size, np.nan)
         everywhere[number.astype(np.int64)] = x
         return lack(everywhere.reshape(shape)).ravel()[number.astype(np.int64)]
