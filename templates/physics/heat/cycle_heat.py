@@ -306,7 +306,7 @@ def viscosity_at_150(
 
 @units("Pa*s", "Pa*s", "1", None, returns="1", latex=r"\frac{{{0}-{2}\,{1}}}{{(1-{2})\,{1}}}")
 def left_by_HTHS(hths: Array, hot: Array, endless: Array, eta: Array) -> Array:
-    """Of what shear can take at 150 °C, what 1e6 1/s leave; NaN for an oil that does not thin [-].
+    """Share of the shear-dependent viscosity left at 150 °C and 1e6 1/s; NaN without shear thinning [-].
 
     Parameters
     ----------
