@@ -199,7 +199,7 @@ class Calculation:
         return self._answers[name]
 
     def reasons(self, name: str) -> Any:
-        """Return why points of an array have no value, None at each that has one; None if all have one."""
+        """Return the reason for each point without a value, None for the others; None if all have values."""
         return self.answer(name).reasons
 
 

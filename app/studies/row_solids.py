@@ -126,7 +126,7 @@ class RowSolids:
 
     @cached_property
     def models(self) -> list[Block]:
-        """Return the models that are built, in the order in which they follow from each other."""
+        """Return the models to build, each after the models on which it depends."""
         names = {reference.block for reference in self.measures}
         return [node for node in self.engine.graph.order if isinstance(node, Block) and node.name in names]
 

@@ -125,7 +125,7 @@ def _outcome(ready: TaskState, problem: Problem, search: Search, book: _Book) ->
 def _compared(
     problem: Problem, search: Search, book: _Book, seed: int, first: Prediction, notes: tuple[str, ...]
 ) -> tuple[tuple[Prediction, ...], tuple[str, ...]]:
-    """Return the promise of each level, and the notes, with one more if rows are lacking for a level."""
+    """Return the promise of each level, and the notes; a level without enough rows adds a note."""
     others: list[Prediction] = []
     try:
         for level in range(CONFIRM + 1, len(search.levels)):

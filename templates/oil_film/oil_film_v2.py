@@ -291,12 +291,12 @@ class OilFilm(WarmOil, Journal):
 
     @formula("1", "Sommerfeld number", symbol=r"S_{0}", ge=0, source=ISO)
     def S_0(self) -> Array:
-        """Of the clearance of the largest cylinder that fits into the bore."""
+        """Sommerfeld number with the clearance of the largest cylinder that fits into the bore."""
         return self.F * self.psi**2 / (self.D * self.W * self.eta * self.omega_h)
 
     @formula("1", "relative supply pressure", symbol=r"\bar p_{s}")
     def P_s(self) -> Array:
-        """In the units of the film's pressure."""
+        """Supply pressure in the units of the film's pressure."""
         return self.p_s * self.psi**2 / (self.eta * self.omega_h)
 
     @shared
@@ -322,7 +322,7 @@ class OilFilm(WarmOil, Journal):
 
     @shared
     def boundary_of_level(self) -> str:
-        """What the level takes for the pressure at the film's borders."""
+        """Boundary condition of the level for the pressure."""
         return BOUNDARY[self.level]
 
     @formula("deg", "attitude angle", symbol=r"\beta")
@@ -336,7 +336,7 @@ class OilFilm(WarmOil, Journal):
 
     @formula("1", "mesh error", symbol=r"e_{h}", absent=NO_MESH)
     def mesh_error(self) -> Array:
-        """How far the smallest film may be off by the meshes from which it is extrapolated."""
+        """Estimated error of the smallest film due to the meshes from which it is extrapolated."""
         return self.film.mesh_error
 
     @formula("MPa", "maximum pressure", absent="level fit has none; take another level")
@@ -355,7 +355,7 @@ class OilFilm(WarmOil, Journal):
 
     @formula("N*m", "load couple", symbol=r"M_{F}")
     def M_F(self) -> Array:
-        """What pressure adds to the shear's; half of F e sin(beta) in a plain bore."""
+        """Couple of the pressure, in addition to that of shear; half of F e sin(beta) in a plain bore."""
         return self.film.load_couple * self.eta * self.omega_h * self.W * self.D**2 / (2 * self.psi)
 
     @formula("N*m", "friction torque", symbol=r"M_{f}")
@@ -372,12 +372,12 @@ class OilFilm(WarmOil, Journal):
 
     @formula("N*m", "couple along load", symbol=r"M_{x}")
     def M_x(self) -> Array:
-        """What the film exerts against a tilt along the load."""
+        """Couple of the film against a tilt along the load."""
         return self.film.couple_x * self.eta * self.omega_h * self.D * self.W**2 / (2 * self.psi**2)
 
     @formula("N*m", "couple across load", symbol=r"M_{y}")
     def M_y(self) -> Array:
-        """What the film exerts against a tilt across the load."""
+        """Couple of the film against a tilt across the load."""
         return self.film.couple_y * self.eta * self.omega_h * self.D * self.W**2 / (2 * self.psi**2)
 
     @formula("l/min", "side flow", symbol="Q", source=ISO)
