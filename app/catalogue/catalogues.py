@@ -22,7 +22,7 @@ from app.catalogue.team import Snapshot, TeamFile, TeamFiles, joined, merged, wi
 from app.workers.errors import WorkerError
 from cad.catalogue import models as find_models
 from cad.model import CadModel
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import UnknownTemplate, UnreleasedTemplate
 from templates.core.language.template import Template
 

@@ -14,7 +14,7 @@ from seeds import seeded
 from test_catalogue_properties import is_single, starting, typed
 
 import templates
-from templates.core.catalogue.finding import find
+from templates.core.catalogue.discovery import find
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.core.language.spec import Choice, Curve, Given, Profile, Table, Text
