@@ -91,7 +91,7 @@ class ProgressFollower:
         self._shown: dict[str, tuple[int, float, str]] = {}  # by job: attempt, progress, text
 
     def look(self, hints: Iterable[str] | None = None) -> None:
-        """Read the rows of jobs that other servers hint at, or of all that somebody listens to."""
+        """Read the rows of jobs that other servers name, or of all jobs with listeners."""
         if hints is None:
             heard = self._events.heard()
         else:

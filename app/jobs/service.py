@@ -241,7 +241,7 @@ class Jobs:
             return _existing(session, id)
 
     def problem(self, id: str | None) -> Problem | None:
-        """Return why a job failed or was cancelled; None if it was not, or if there is no job at all."""
+        """Return why a job failed or was cancelled; None otherwise, or without a job."""
         return None if id is None else self.get(id).problem
 
     def page(self, limit: int, before: str | None = None) -> list[Job]:

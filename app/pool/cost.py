@@ -161,7 +161,7 @@ def _levels(
 
 
 def _ladder(cls: type[Template], inputs: Mapping[str, Raw], numbers: int) -> tuple[tuple[str, ...], str]:
-    """Return the levels that answer the question these inputs ask, and the one that is taken by itself."""
+    """Return the levels that suit these inputs, and the default one."""
     if cls.ladder is Template.ladder:
         return cls.levels, cls.default_level
     probe = inputs if numbers <= PROBED else {name: _first(cls, name, raw) for name, raw in inputs.items()}

@@ -122,7 +122,7 @@ class Builder:
         self.built.statements.append(parsed(chunk))
 
     def _announce(self, statement: ParsedStatement) -> None:
-        """Let other statements use a name before the formula behind it is read."""
+        """Declare a name, so that other statements can use it before its formula is read."""
         match statement.kind:
             case "given" | "formula":
                 name, unit_text, axis = statement.parts[:3]

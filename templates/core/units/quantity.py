@@ -121,7 +121,7 @@ def _as_difference(match: re.Match[str]) -> str:
 
 
 def read_any(raw: Any) -> TypedQuantity:
-    """Read a quantity of whatever kind its own unit says.
+    """Read a quantity of any kind; its unit decides.
 
     Raises
     ------
