@@ -143,7 +143,7 @@ class Dispatcher:
         self._stopping.set()
 
     def stop(self, patience: float = 10.0) -> None:
-        """Kill what runs, put it back into the queue, and wait for the threads, at most for so long [s].
+        """Kill running jobs, put them back into the queue, and wait for the threads for this time [s].
 
         A thread that calculates by itself cannot be stopped: its job is put back at the next start.
         """

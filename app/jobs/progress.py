@@ -53,7 +53,7 @@ class ProgressKeeper:
             self._thread.join(_PATIENCE)
 
     def keep(self, job: Job, fraction: float, log: list[str]) -> None:
-        """Have the progress of a job stored; see `app.jobs.context.Keep`."""
+        """Store the progress of a job; see `app.jobs.context.Keep`."""
         with self._lock:
             self._latest[job.id] = job, fraction, log
         self._some.set()
