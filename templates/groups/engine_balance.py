@@ -69,6 +69,7 @@ from templates.physics.engine.harmonics import (
 )
 
 WEBS, ORDERS = "webs", "orders"
+NO_ORDER = "give firing_order or firing_angles"
 SIGN = "turn the sign of bank_angles, or say split with pins_of_a_throw"
 
 
@@ -118,10 +119,11 @@ class EngineBalance(EngineCylinders):
         """The firing order has every cylinder once."""
         return is_order(self.order, self.psi_g, self.phi_g)
 
-    @require("pin_angles", "firing_order", "firing_angles", missing=True, remedy="give firing_order too")
+    @require("pin_angles", "firing_order", "firing_angles", missing=True,
+             remedy="give firing_order too, or take gas_cycle none")  # fmt: skip
     def times_are_said(self) -> Truth:
-        """In four strokes pin angles alone do not say in which turn a cylinder fires."""
-        return times_are_said(self.strokes, self.order, self.psi_g, self.phi_g)
+        """In four strokes pin angles alone do not say in which turn a cylinder fires; gas forces need it."""
+        return times_are_said(self.strokes, self.order, self.psi_g, self.phi_g, self.gas_cycle)
 
     @require("bank_angles", "cylinder_offset", "stroke", "crank_radius", "rod_length", "bore", "rod_mass",
              "rod_centre", "rod_inertia", "piston_mass", "crank_unbalance", "pressure_factor", missing=True,
@@ -194,8 +196,9 @@ class EngineBalance(EngineCylinders):
     def layout(self) -> Layout:
         """Pins and firing."""
         return arranged(
-            self.strokes, self.order, self.psi_g, self.phi_g, self.beta, self.throws, self.crank.top
-        )
+            self.strokes, self.order, self.psi_g, self.phi_g, self.beta, self.throws, self.crank.top,
+            self.gas_cycle,
+        )  # fmt: skip
 
     @shared
     def places(self) -> Array:
@@ -268,12 +271,14 @@ class EngineBalance(EngineCylinders):
         """Angle of each cylinder's pin from the reference line."""
         return pin_angles(self.layout)
 
-    @profile("deg", "ignition angles", along=EACH, symbol=r"\varphi", latex=r"\beta-\psi+\alpha_{T}")
+    @profile("deg", "ignition angles", along=EACH, symbol=r"\varphi", latex=r"\beta-\psi+\alpha_{T}",
+             absent=NO_ORDER)  # fmt: skip
     def phi(self) -> Array:
         """Firing angle of each cylinder."""
         return firing_angles(self.layout)
 
-    @profile("deg", "firing intervals", along="firing_intervals", symbol=r"\Delta\varphi")
+    @profile("deg", "firing intervals", along="firing_intervals", symbol=r"\Delta\varphi",
+             absent=NO_ORDER)  # fmt: skip
     def dphi(self) -> Array:
         """Intervals between firings, in the firing order."""
         return firing_intervals(self.layout)
