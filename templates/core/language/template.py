@@ -118,7 +118,7 @@ class Template(Calculation):
 
     @classmethod
     def from_quantities(cls, raw: Mapping[str, Any], pending: Collection[str] = ()) -> Self:
-        """Return a template from what a user typed: read, convert to SI, check.
+        """Return a template from typed inputs: read, convert to SI, check.
 
         Once, before any formula runs.
 
