@@ -109,6 +109,7 @@ class Judgement:
 def sentence(judgement: Judgement) -> str:
     """Return a verdict as a sentence: `film 1.53 µm is below permissible film 2 µm: not met`."""
     verdict = judgement.verdict.replace("_", " ")
+    verdict += f", {judgement.truth}" if is_model(judgement.truth) else ""
     unknown = "" if judgement.error_known or judgement.verdict == "not_checked" else "; error unknown"
     value, limit = judgement.value, judgement.limit
     left, right = map(_in_words, judgement.sides)
@@ -117,6 +118,11 @@ def sentence(judgement: Judgement) -> str:
     opposite = {">=": "<", "<=": ">"}[judgement.sign]
     sign = opposite if judgement.misses else judgement.sign
     return f"{compared(Side(left, value), sign, Side(right, limit), judgement.unit)}: {verdict}{unknown}"
+
+
+def is_model(truth: str | None) -> bool:
+    """Return whether a truth is a model named in words, such as `rigid film`; others are names of levels."""
+    return truth is not None and " " in truth
 
 
 def not_judged(judgement: Judgement) -> str:
