@@ -79,7 +79,8 @@ def _words(template: Calculation, side: Operand) -> str:
         return ""
     if side.attribute is not None:
         return _called(template, side.attribute)
-    return _ATTRIBUTE.sub(lambda name: _called(template, name[1]), ast.unparse(side.node)).replace("*", "·")
+    text = _ATTRIBUTE.sub(lambda name: _called(template, name[1]), ast.unparse(side.node))
+    return f"{text.replace('*', '·')} ="
 
 
 def _called(template: Calculation, attribute: str) -> str:
