@@ -218,7 +218,7 @@ class AssemblyModel(ImportedModel):
                 yield placed
 
     def place(self, component: str) -> Place:
-        """Return where a fixed part stands on its datum."""
+        """Return the position of a fixed part on its datum."""
         from cad.placement import Place
 
         numbers = dict[str, float]()

@@ -65,7 +65,7 @@ class Carriers:
         self._seen: dict[str, list[FaceReadback]] = {}
 
     def places(self, name: str) -> list[Place]:
-        """Return where a dimension stands, once for each pair of levels.
+        """Return the position of a dimension for each pair of levels.
 
         Raises
         ------
@@ -119,7 +119,7 @@ class Carriers:
         return next((each for each in standing if self._sides(each, size)), one)
 
     def spans(self, name: str) -> list[tuple[float, float]]:
-        """Return where a dimension that repeats along an axis begins and ends, each time [mm]."""
+        """Return the start and end of each repetition of a dimension along an axis [mm]."""
         one, size = self._declared[name], self._sizes[name]
         of = [self._declared[other] for other in one.others_named]
         axis = AXES[of[0].where]
@@ -133,7 +133,7 @@ class Carriers:
         ]
 
     def _levels_along(self, one: ToleranceFaces, axis: Vector) -> list[float]:
-        """Return where planes across an axis lie, from low to high."""
+        """Return the positions of planes across an axis, from low to high."""
         planes = (f for f in self._faces(one) if f.kind == "plane" and f.surface.along(axis))
         return sorted({round(f.surface.point.dot(axis), 6) for f in planes})
 

@@ -75,7 +75,7 @@ def check_overlaps(model: CadModel, bodies: Sequence[Body]) -> None:
 
 
 def compared(model: CadModel, bodies: Sequence[Body], report: Report) -> tuple[Clearance, ...]:
-    """Return what lies between the fixed parts of an assembly and all other parts.
+    """Return clearances and overlaps between the fixed parts of an assembly and all other parts.
 
     Where more than `MOST_NAMED` pairs interfere, the rest is not compared: `check_clearances` refuses them.
     """

@@ -199,7 +199,7 @@ def _distances(planes: Any) -> Iterator[float]:
 
 
 def _factor(one: Parameter) -> float:
-    """Return how many times a size on the solid [mm] is greater than the parameter's number."""
+    """Return the ratio of a size on the solid [mm] to the parameter's number."""
     return (2 if one.role == "radius" else 1) * (25.4 if one.unit == "inch" else 1)
 
 
@@ -211,7 +211,7 @@ def shows(one: Parameter, sizes: Sizes) -> bool:
 def role_of(
     old: float, new: float, before: Mapping[str, list[float]], after: Mapping[str, list[float]]
 ) -> Role:
-    """Return how a length shows on a solid, from the sizes before and after a trial that changed it alone.
+    """Return how a length is measured, from the solid's sizes before and after a change of it alone.
 
     It is a size of a kind if that size was there before with the old value, is there after with the new one,
     and was not there before with the new one.

@@ -176,7 +176,7 @@ class CadModel(TolerancedTemplate):
         return False
 
     def throw_sizes(self) -> Crank | None:
-        """Return where pin and fillets of a throw are; None if it is not one throw."""
+        """Return the positions of a throw's pin and fillets; None if the model is not one throw."""
         return None
 
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> Mapping[str, Dimension]:

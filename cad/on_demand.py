@@ -205,7 +205,7 @@ class _DisplayModule(ModuleType):
 
 
 def _imported(place: str, name: str) -> object:
-    """Return what `from place import name` gives: an attribute, else a module."""
+    """Return the object of `from place import name`: an attribute, else a module."""
     module = import_module(place)
     return getattr(module, name) if hasattr(module, name) else import_module(f"{place}.{name}")
 

@@ -154,7 +154,7 @@ class TolerancedTemplate(Template):
 
 
 def carried(cls: type[TolerancedTemplate]) -> dict[str, ToleranceFaces]:
-    """Return what a model declares, by parameter.
+    """Return the declarations of a model, by parameter.
 
     Raises
     ------

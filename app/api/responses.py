@@ -73,7 +73,7 @@ async def finished(jobs: Jobs, job: str | None, prefer: str | None) -> bool:
 
 
 def patience(prefer: str | None, default: float) -> float:
-    """Return how long the client waits for an answer [s]: as it prefers, else the default."""
+    """Return how long the client waits for an answer [s]: its preference, else the default."""
     if prefer and "respond-async" in prefer:
         return 0.0
     asked = re.search(r"\bwait=([0-9]{1,4})\b", prefer or "")

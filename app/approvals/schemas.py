@@ -148,7 +148,7 @@ class ApprovalIn(Bounded):
 
     @model_validator(mode="after")
     def with_its_reason(self) -> Self:
-        """Require a reason of a withdrawal, and of no other step; raises ValueError."""
+        """Require a reason for a withdrawal, and for no other step; raises ValueError."""
         if (self.step == "withdrawn") != (self.reason is not None):
             raise ValueError("a withdrawal needs a `reason`; no other step takes one")
         return self

@@ -28,7 +28,7 @@ class ApprovalService:
         self.database, self.store = database, store
 
     def show(self, id: str, number: int) -> Approvals:
-        """Return the approval of a revision, as whoever asks sees it.
+        """Return the approval of a revision for the acting principal.
 
         Raises
         ------

@@ -66,7 +66,7 @@ class Cache:
                 self._kept[key] = _CacheEntry(value, size)
 
     def limit(self, megabytes: int) -> None:
-        """Begin again, empty, with another limit [MiB]."""
+        """Empty the cache and set another limit [MiB]."""
         with self._lock:
             self._kept = _kept(megabytes)
 

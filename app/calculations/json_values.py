@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from app.plain import JsonObject
 from templates.core.catalogue.digests import digest
-from templates.core.judging.judgement import Judgement, Place
-from templates.core.judging.summary import summarised
+from templates.core.criteria.judgement import Judgement, Place
+from templates.core.criteria.summary import summarised
 from templates.core.language.answer import Answer, UsedInput
 from templates.core.language.evaluate import Evaluation
 from templates.core.language.ledger import Notice
@@ -99,7 +99,7 @@ _identities: dict[type[Template], Identity] = {}
 
 
 def identity(cls: type[Template]) -> Identity:
-    """Return which version calculated: id, version and the digest of its code."""
+    """Return the version that calculated: id, version and the digest of its code."""
     if cls not in _identities:
         identified: Identity = {"id": cls.id, "version": cls.version, "digest": digest(cls)}
         if cls.sheet:

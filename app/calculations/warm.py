@@ -14,7 +14,7 @@ from app.workers.priority import give_way
 
 
 def rehearse(has_come: Callable[[], bool]) -> None:
-    """Let the server go first; called once in every process before its first request."""
+    """Lower this process' priority below the server's; called once before its first request."""
     give_way()
 
 

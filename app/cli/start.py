@@ -17,7 +17,7 @@ from importlib import import_module
 
 
 def import_alone(package: str, without: str) -> None:
-    """Import a package while another module is not to be found; nothing changes if either is imported."""
+    """Import a package while another module is hidden; do nothing if either is already imported."""
     if {package, without}.isdisjoint(sys.modules):
         sys.modules[without] = None  # type: ignore[assignment]  # as Python marks what is not to be imported
         try:

@@ -179,7 +179,7 @@ class Regeneration:
 
 
 def _lane(job: Job) -> Lane:
-    """Return the lane of a job: whoever changes a bearing does not wait for calculations of minutes."""
+    """Return the lane of a job, so that a change of a bearing never waits for long calculations."""
     return "answers" if job.kind == REGENERATE else "jobs"
 
 

@@ -95,7 +95,7 @@ class SaveResult:
     answer: Design | None = None  # as it was written, where no job changes it and no earlier request wrote it
 
     def keep(self, session: Session, once: Once) -> None:
-        """Remember what the request led to, in the unit that writes it."""
+        """Store the result of the request, in the unit that writes it."""
         location = {name: value for name, value in vars(self).items() if name != "answer"}
         once.keep(session, 201 if self.created else 200, location)
 
@@ -148,7 +148,7 @@ class Designs:
         return network(document, self.catalogues)
 
     def explanation(self, id: str, name: str, system: System) -> Explanation:
-        """Return where a parameter of a model, or the verdict of a criterion, comes from.
+        """Return the explanation of a model parameter or of a criterion's verdict.
 
         Raises
         ------

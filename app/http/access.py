@@ -105,7 +105,7 @@ class Access:
         return guest is not None and guest.principal == who
 
     async def _guest(self, door: Door, scope: Scope) -> Guest | None:
-        """Return whoever sends a request; a key that is sent counts alone, even where it is not valid."""
+        """Return the sender of a request; if it carries a key, only the key counts, valid or not."""
         cookies = b""
         for name, value in scope["headers"]:
             if name == b"authorization":
@@ -189,10 +189,10 @@ class Needs:
     is_public: bool = False
 
     async def __call__(self) -> None:
-        """Do nothing as a dependency of a route: the gate has read it."""
+        """Do nothing as a dependency of a route; the gate has read the declaration."""
 
     def check(self) -> None:
-        """Let the acting principal pass.
+        """Check the role of the acting principal.
 
         Raises
         ------
@@ -217,12 +217,12 @@ VIEWER, AUTHOR, SIGNED_IN, PUBLIC = (
 
 
 def needs(*roles: Role) -> params.Depends:
-    """Declare that a route needs one of these roles; none: that whoever sends the request has signed in."""
+    """Declare that a route needs one of these roles; without roles, that it needs a signed-in sender."""
     return params.Depends(Needs(roles))
 
 
 def public() -> params.Depends:
-    """Declare that a route asks nobody for a key."""
+    """Declare that a route needs no key."""
     return params.Depends(PUBLIC)
 
 
@@ -255,7 +255,7 @@ class Guarded:
 
 
 def install(app: FastAPI) -> None:
-    """Guard all routes that an app has by now, and paths that it has not. Routes are shared by all apps."""
+    """Guard all present routes of an app, and unknown paths. All apps share the routes."""
     for route in app.router.routes:
         if not isinstance(route.handle, Guarded):
             route.handle = Guarded(route.handle, needs_of(route))  # type: ignore[method-assign]

@@ -107,7 +107,7 @@ class StrictRequest(Request):
         return self._body
 
     async def discard(self) -> None:
-        """Receive the body and forget it: a client that still sends may not read an answer yet."""
+        """Receive and discard the body, because a client that still sends may not read an answer yet."""
         async for _ in self._received():
             pass
 
@@ -240,7 +240,7 @@ class PlainRoute(StrictRoute):
         return None
 
     async def _values(self, request: StrictRequest) -> dict[str, object]:
-        """Return what the endpoint takes.
+        """Return the arguments of the endpoint.
 
         Raises
         ------
@@ -354,7 +354,7 @@ async def _read(request: StrictRequest) -> object:
 
 
 async def _check_intricacy(request: StrictRequest) -> bool:
-    """Count what makes parsing expensive; of a large body piece by piece, so that others get their turn.
+    """Count what makes parsing expensive; a large body in pieces, so that other requests run.
 
     Returns whether a text may have U+0000.
     """

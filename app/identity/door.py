@@ -39,7 +39,7 @@ class Door:
         self.forget()
 
     def forget(self) -> None:
-        """Verify again whatever comes: something has changed."""
+        """Verify every key and session again, because something has changed."""
         self._by_key: TTLCache[str, Guest] = TTLCache(_MOST, FRESH)
         self._asked_at = -FRESH
 
@@ -135,7 +135,7 @@ class Rate:
         self._counts: Counter[str] = Counter()
 
     def take(self, who: Principal, per_minute: float) -> None:
-        """Let a request through.
+        """Take a request from the bucket.
 
         Raises
         ------

@@ -95,7 +95,7 @@ def admit(session: Session, limits: Limits) -> None:
 
 
 def check(limits: Limits, used: PrincipalUsage, name: str) -> None:
-    """Refuse whoever has used all.
+    """Refuse a principal that has used up a limit.
 
     Raises
     ------

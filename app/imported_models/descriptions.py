@@ -156,7 +156,7 @@ def _trials(
     context: JobContext,
     deadline: Deadline,
 ) -> dict[str, Role]:
-    """Return how lengths show on the solid: each is changed alone, and the sizes are compared."""
+    """Return how each length is measured on the solid: change it alone and compare the sizes."""
     before, roles = context.run(trial_sizes, base, limits=deadline.limits), dict[str, Role]()
     lengths = [one for one in parameters if one.unit == "mm" and one.value > 0][:MOST_TRIALS]
     for number, one in enumerate(lengths):

@@ -46,7 +46,7 @@ class ProgressKeeper:
         self._thread.start()
 
     def stop(self) -> None:
-        """End; what is not stored is not: who goes on with the job begins from zero."""
+        """Stop; progress that is not stored is lost, and a server that resumes the job begins from zero."""
         self._stopping.set()
         self._some.set()
         if self._thread.ident is not None:

@@ -218,15 +218,15 @@ class Jobs:
             return turns.count_queued(session, lane=lane) > 0
 
     def usual_seconds(self, kind: str) -> float:
-        """Return how long the latest jobs of a kind's lane took on average [s]."""
+        """Return the mean duration of the latest jobs in the lane of a kind [s]."""
         return self._dispatcher.durations.mean(self._dispatcher.lane(kind))
 
     def queued(self, session: Session) -> int:
-        """Return how many jobs wait."""
+        """Return the number of waiting jobs."""
         return turns.count_queued(session)
 
     def oldest_queued_age(self, session: Session) -> int:
-        """Return how long the oldest job has waited [s of operation]; 0 if none waits."""
+        """Return the waiting time of the oldest job [s of operation]; 0 if none waits."""
         since = turns.oldest_queued(session)
         return 0 if since is None else operated(session) + self._database.clock.elapsed - since
 
@@ -333,7 +333,7 @@ def _existing(session: Session, id: str) -> Job:
 
 
 def _administers() -> bool:
-    """Return whether an administrator acts, who ends jobs whoever waits for them."""
+    """Return whether an administrator acts, who may end any job."""
     who = acting()
     return who.id not in BUILT_IN and who.may("admin")
 

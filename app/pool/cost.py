@@ -17,8 +17,8 @@ import numpy as np
 from app.plain import Raw
 from templates.core.errors import InvalidInputs
 from templates.core.language.body import Body
-from templates.core.language.climbing import reachable
-from templates.core.language.confirming import POLISHES
+from templates.core.language.confirmation import POLISHES
+from templates.core.language.level_choice import reachable
 from templates.core.language.levels import SINGLE, accuracy
 from templates.core.language.scan import SAMPLES
 from templates.core.language.spec import Curve, Table

@@ -77,7 +77,7 @@ def json_form(asked: type[Q]) -> Form[Q]:
 
 
 def json_answer(model: type[M]) -> Callable[[Pieces], M]:
-    """Return what reads a kept answer that is a model."""
+    """Return the function that reads a stored answer as a model."""
     return lambda kept: model.model_validate_json(kept.joined())
 
 
@@ -118,7 +118,7 @@ class Kind(Generic[Q, A]):
 
     @property
     def all_failures(self) -> tuple[type[Exception], ...]:
-        """Return what a question of this kind brings about."""
+        """Return the exceptions that a question of this kind may raise."""
         return (*FAILURES, *self.failures)
 
     @property

@@ -120,7 +120,7 @@ def _list(values: list[object]) -> str:
 
 
 def _remark(values: object) -> str:
-    """Return how many values a long list has, and where the least and the largest are."""
+    """Return the length of a long list, and its smallest and largest values with their positions."""
     if not isinstance(values, list) or size(values) <= FEW:
         return ""
     ends = extremes(values)

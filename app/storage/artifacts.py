@@ -64,7 +64,7 @@ class Artifacts(Protocol):
         ...
 
     def fetch(self, sha: str) -> Path:
-        """Return where the verified bytes lie; raises ArtifactMissing, ArtifactDamaged."""
+        """Return the path of the verified bytes; raises ArtifactMissing, ArtifactDamaged."""
         ...
 
     def read(self, sha: str) -> bytes:
@@ -278,7 +278,7 @@ class ArtifactStore:
             raise ArtifactMissing(sha) from None
 
     def _clear(self, target: Path) -> None:
-        """Set aside what is not a file and has taken the place of one, such as a folder."""
+        """Set aside an object that is not a file but has the name of one, such as a folder."""
         if target.is_dir() and not target.is_symlink():
             aside = self.folder / QUARANTINE / f"{target.name}.folder-{_moment()}"
             aside.parent.mkdir(exist_ok=True)

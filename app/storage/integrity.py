@@ -86,7 +86,7 @@ def faults(path: Path, most: int = MOST, mode: str = "rw") -> list[str]:
 
 
 def is_damage(error: BaseException) -> bool:
-    """Return whether an error says that the database is not as it was written."""
+    """Return whether an error means that the database is damaged."""
     cause = error.orig if isinstance(error, DBAPIError) else error
     if isinstance(cause, sqlite3.Error):
         code = getattr(cause, "sqlite_errorcode", 0) or 0

@@ -8,7 +8,7 @@ import numpy as np
 
 from app.studies.archive import AnyArray
 from templates.core.arrays import Array, Integers, Mask
-from templates.core.judging.comparison import UNDECIDED, is_met
+from templates.core.criteria.comparison import UNDECIDED, is_met
 
 MOST_CONFIRMED = 64  # rows that are calculated again for one objective
 MOST_FRONT = 200
@@ -46,7 +46,7 @@ def _may_be_met(worst: AnyArray, *, undecided: bool) -> Mask:
 
 
 def _undominated(sorted_rows: Array) -> Mask:
-    """Return which rows are not dominated by an earlier one; they are sorted by their columns.
+    """Return a mask of the rows that no earlier row dominates; rows are sorted by their columns.
 
     Only rows that are kept are compared with, so that the cost is that of rows times front.
     """

@@ -49,7 +49,7 @@ def _uneven(number: int, row: Mapping[str, Raw], first: Mapping[str, Raw]) -> Fa
     return Fault(f"rows.{number}", "uneven", detail)
 
 
-def given_rows(rows: Rows, net: DesignEngine) -> Array:
+def given_rows(rows: Rows, engine: DesignEngine) -> Array:
     """Return the values [SI] of the rows, shape (N, d).
 
     Raises
@@ -57,7 +57,7 @@ def given_rows(rows: Rows, net: DesignEngine) -> Array:
     InvalidInputs
         Naming every cell that is wrong, up to `MOST_FAULTS`: its column, and its row where it has one.
     """
-    units = {name: net.unit(Reference.parse(name)) for name in columns_named(rows)}
+    units = {name: engine.unit(Reference.parse(name)) for name in columns_named(rows)}
     faults: list[Fault] = []
     if isinstance(rows, Mapping):
         columns = [_column(name, rows[name], unit, faults) for name, unit in units.items()]

@@ -19,8 +19,8 @@ from app.studies.row_columns import CONFIRM, ERROR, OUTPUT, PLACE, VERDICT, Part
 from app.studies.row_views import verdict_fields
 from app.studies.schemas import Estimate, RefusedRows, Study, StudyEstimate, StudyResult, StudyRow, StudyRows
 from templates.core.arrays import Array, Integers
+from templates.core.criteria.comparison import MET, MET_ERROR_UNKNOWN, NOT_CHECKED, VERDICTS
 from templates.core.errors import InvalidInputs, unknown_names
-from templates.core.judging.comparison import MET, MET_ERROR_UNKNOWN, NOT_CHECKED, VERDICTS
 from templates.core.units.units import unit
 
 MOST_REASONS = 20
@@ -30,7 +30,7 @@ Where = Literal["met", "not_met", "undecided", "not_checked", "refused"]
 
 
 def study(session: Session, row: Row) -> Study:
-    """Return a study as it stands."""
+    """Return the current state of a study."""
     plan = Plan.of(row.plan)
     progress = repository.done(session, row.id, plan.chunks)
     frequent = sorted(progress.refused.items(), key=lambda pair: (-pair[1], pair[0]))[:MOST_REASONS]

@@ -7,7 +7,7 @@ from functools import cached_property
 
 from app.designs.network import Graph, Subject, subjects
 from app.reference import Reference
-from templates.core.judging.criterion import Criterion
+from templates.core.criteria.criterion import Criterion
 
 
 @dataclass(frozen=True)

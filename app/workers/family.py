@@ -27,7 +27,7 @@ class Use:
 
 
 def use(pid: int | None = None) -> Use:
-    """Return what the living descendants of a process, by default this one, use."""
+    """Return the resource use of the living descendants of a process, by default this one."""
     rows = _descendants(_table(), pid or os.getpid())
     ticks = sum(sum(map(int, row[13:17])) for row in rows.values())
     pages = sum(int(row[23]) for row in rows.values())

@@ -117,7 +117,7 @@ def _look(half: Any, flip: int) -> tuple[Array, Array, Array]:
 
 
 def _name(face: Any, place: BorePlace) -> str:
-    """Return what a face is, by the points of its edges."""
+    """Return the name of a face (mirror, bore, held or free), by the points of its edges."""
     x, y, z = np.array([point for edge in face.edges for point in _points(edge)]).T
     if np.all(np.abs(z) < _NEAR):
         return MIRROR

@@ -69,7 +69,7 @@ class System:
         self.inverse = self._inverse_of_form(few_forces)
 
     def _inverse_of_form(self, few_forces: bool) -> Any:
-        """Return what solves the assembled form for a force, on its unknowns outside elements."""
+        """Return the solver of the assembled form for a force, on its unknowns outside elements."""
         if few_forces and self.order > 2:
             by_order = _by_order(self.form, self.space)
             return CGSolver(self.form.mat, by_order, tol=_RESIDUAL, maxiter=_MOST_STEPS)

@@ -87,7 +87,7 @@ def section_loads(system: System, name: str) -> list[Any]:
 
 
 def relative_motion(pitch: float, throw: float, middle: float = 0.0) -> Array:
-    """Return what freedoms displace relative to the first end as a rigid body, (8, 14)."""
+    """Return displacements per degree of freedom, relative to the first end as a rigid body, (8, 14)."""
     lever = pitch / 2 + middle
     relative = np.zeros((END + PIN, FREEDOMS))
     relative[:, END:] = np.eye(END + PIN)

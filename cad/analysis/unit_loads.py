@@ -65,7 +65,7 @@ class LoadedThrow:
         self.system = System(grid, order, shaft.material, "torsion")
 
     def _lever(self) -> float:
-        """Return what of a force at mid-pin the support of the loaded end bears."""
+        """Return the share of a force at mid-pin that the support of the loaded end bears."""
         return -self.shaft.held / (self.shaft.loaded - self.shaft.held)
 
     def _on_pin(self) -> ng.CF:

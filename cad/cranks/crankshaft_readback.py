@@ -233,7 +233,7 @@ class ShaftReadback:
         )
 
     def pin_angles(self, near: Sequence[float]) -> list[float]:
-        """Return where the pins stand [deg], in that turn which is nearest to the angles wanted [deg]."""
+        """Return the pin angles [deg], in the turn that is nearest to the requested angles [deg]."""
         seen = [degrees(throw.angles[0]) for throw in self.throws]
         if len(seen) != len(near):
             raise LookupError(f"there must be {len(near)} throws; there are {len(seen)}")

@@ -84,9 +84,9 @@ class WholeShaft:
         return t.pin_length + 2 * t.web_thickness + t.journal_length
 
     def halves(self, number: int) -> tuple[Half, Half]:
-        """Return where the front and the rear half of a throw stand, counted from 0.
+        """Return angle and position of a throw's front and rear half; throws count from 0.
 
-        Alike with an undivided pin.
+        Both halves are equal with an undivided pin.
         """
         angle, middle = self.throws[number].angle, self.pitch * (number + 0.5)
         if self.split is None:

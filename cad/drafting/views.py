@@ -204,7 +204,7 @@ def _sides(shape: Shape, normal: Vector) -> tuple[float, float]:
 
 
 def _section(placed: Sequence[_PlacedPart], frame: Frame) -> View:
-    """Return what lies behind the plane, with what is not cut, and the faces that the plane cuts."""
+    """Return the view of a section: cut faces, shapes behind the plane, and uncut parts."""
     sections = [(one, face) for one in placed for face in faces_across(one.shape, frame.towards)]
     faces = [face for _, face in sections]
     behind = [shape for one in placed for shape in _seen(one, frame.towards)]
@@ -220,7 +220,7 @@ def _section(placed: Sequence[_PlacedPart], frame: Frame) -> View:
 
 
 def _seen(one: _PlacedPart, normal: Vector) -> list[Shape]:
-    """Return what a section leaves of a part: its half behind the plane, or all of it if it is not cut."""
+    """Return the remainder of a cut part: its half behind the plane, or all of an uncut part."""
     if not one.is_whole:
         return half_behind(one.shape, normal)
     return [one.shape] if _sides(one.shape, normal)[0] < -CLEAR else []

@@ -289,7 +289,7 @@ def is_drawn(thing: Any) -> bool:
 
 
 def finished(document: Any) -> list[Any]:
-    """Return the objects that nothing else is made of; hidden ones only if all are."""
+    """Return the objects that no other object uses; hidden ones only if all are hidden."""
     drawn = [thing for thing in document.Objects if is_drawn(thing)]
     names = {thing.Name for thing in drawn}
     ends = [t for t in drawn if not any(user.Name in names and user is not t for user in t.InListRecursive)]

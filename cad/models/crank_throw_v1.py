@@ -124,7 +124,7 @@ class CrankThrow(CrankRules):
         return Box((-max(web.half_width, web.counterweight), -wide, -end), (web.tip, wide, end))
 
     def shaft(self) -> Shaft:
-        """Return where it is held and loaded: by its end faces at -z and at +z."""
+        """Return the planes at which it is held and loaded: its end faces at -z and +z."""
         end = self.drawn().journal_end
         return Shaft(-end, end)
 

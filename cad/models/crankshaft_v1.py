@@ -217,7 +217,7 @@ class Crankshaft(SplitParameters, EndParameters):
         return self.drawn().box()
 
     def shaft(self) -> Shaft:
-        """Return where it is held and loaded: by the end of its nose and by its flange."""
+        """Return the planes at which it is held and loaded: the end of its nose and its flange."""
         shaft = self.drawn()
         return Shaft(shaft.low, shaft.high)
 

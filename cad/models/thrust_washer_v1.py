@@ -74,7 +74,7 @@ class Washer:
     lug_height: float
 
     def groove_angles(self) -> list[float]:
-        """Return where grooves run; none runs to the crown of a full ring."""
+        """Return the angles of the grooves; a full ring has none at its crown."""
         if self.is_half:
             return [180 * (n + 0.5) / self.grooves for n in range(self.grooves)]
         return [90 + 360 * (n + 0.5) / self.grooves for n in range(self.grooves)]

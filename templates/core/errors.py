@@ -126,6 +126,9 @@ class FaultyText(TemplateError):
 def unknown_name(name: str, candidates: Iterable[str], kind: str) -> Fault:
     """Return a fault for a name that nobody declared, with the nearest that somebody did."""
     near = nearest(name, candidates := list(candidates))
+    if (whole := name.replace("radial_clearance", "diametral_clearance")) != name and whole in candidates:
+        remedy = f"give {whole}, which is twice the radial clearance"
+        return Fault(plain(name), "unknown_name", f"{kind} {plain(name)!r} is unknown; {remedy}")
     remedy = f"did you mean {', '.join(near)}?" if near else f"known are {listed(candidates)}"
     return Fault(plain(name), "unknown_name", f"{kind} {plain(name)!r} is unknown; {remedy}")
 

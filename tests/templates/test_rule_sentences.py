@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from templates.core.judging.sentences import told_apart
+from templates.core.criteria.sentences import told_apart
 from templates.core.language.evaluate import evaluate
 from templates.door import built_in
 

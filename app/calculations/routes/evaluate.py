@@ -66,7 +66,7 @@ class LargeRoute(PlainRoute):
 
 
 async def _admit(request: Request) -> None:
-    """Ask, before a large body comes, whether there is room for its calculation.
+    """Check, before a large body arrives, whether the queue has room for its calculation.
 
     Raises
     ------

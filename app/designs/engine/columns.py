@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.arrays import Array, Mask
+from templates.core.criteria.bands import Estimate
 from templates.core.errors import FaultyText
-from templates.core.judging.bands import Estimate
 from templates.core.units.units import Value
 
 Indices = NDArray[np.intp]

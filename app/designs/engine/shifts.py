@@ -24,7 +24,7 @@ from app.plain import Raw
 from app.pool.cost import EXPENSIVE, estimated_seconds
 from app.reference import Reference
 from templates.core.arrays import Mask
-from templates.core.judging.judging import Absent
+from templates.core.criteria.evaluation import Absent
 from templates.core.units.quantity import TypedQuantity
 
 MOST_SHIFTED = 12

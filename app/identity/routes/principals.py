@@ -90,5 +90,5 @@ def add_key(id: Id, body: KeyIn, identity: TheIdentity) -> NewKey:
 
 @router.delete("/principals/{id}/keys/{prefix}", responses=refusals(403, 404))
 def revoke_key(id: Id, prefix: Id, identity: TheIdentity) -> Key:
-    """End the life of a key and of those made by it, but for the one that this request carries."""
+    """Revoke a key and the keys that it made, except the key of this request."""
     return views.key(identity.revoke(prefix, id)[0])

@@ -53,7 +53,7 @@ class SearchView:
 
     @property
     def complete(self) -> Mask:
-        """Return which rows have all results, shape (N,)."""
+        """Return a mask of the rows with all results, shape (N,)."""
         return np.asarray(np.isfinite(np.hstack([self.objectives, self.margins])).all(axis=1))
 
 

@@ -106,7 +106,7 @@ def pareto_front(
 
 
 def dominations(objectives: Array) -> Integers:
-    """Return how many rows dominate each row, shape (N,); objectives to minimise, shape (N, k)."""
+    """Return the number of rows that dominate each row, (N,), for objectives to minimise, (N, k)."""
     columns = [np.ascontiguousarray(column) for column in objectives.T]
     counts = np.zeros(len(objectives), dtype=np.int64)
     for row, values in enumerate(objectives):

@@ -38,7 +38,7 @@ class Journal(Protocol):
     """A store of stages."""
 
     def stored(self, name: str) -> Stage | None:
-        """Return the stage of a name, as it was kept last."""
+        """Return the latest stored stage of a name."""
         ...
 
     def keep(self, name: str, stage: Stage) -> None:

@@ -36,7 +36,7 @@ def keep_session(request: Request, response: Response) -> None:
 
 
 def who_signed_in(request: Request) -> str:
-    """Return the name of whoever has signed in or sent a key; empty if nobody has."""
+    """Return the name of the principal that signed in or sent a key; empty without one."""
     who = request.scope.get(PRINCIPAL, ANONYMOUS)
     return "" if who is ANONYMOUS else str(who.name)
 

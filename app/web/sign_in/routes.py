@@ -84,7 +84,7 @@ async def add_key(request: Request, services: ThePageServices) -> Response:
 
 @forms.post("/account/keys/{prefix}/revoke", dependencies=[needs()])
 async def revoke_key(prefix: Prefix, services: ThePageServices) -> Response:
-    """End the life of a key."""
+    """Revoke a key."""
     me = await services.run(routes.show_me, services.identity)
     await services.run(routes.revoke_key, me.id, prefix, services.identity)
     return go("/account")

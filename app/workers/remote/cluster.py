@@ -66,7 +66,7 @@ class Cluster:
         return sum(there.size for there in self._places.get(lane, {}).values())
 
     def free(self, lane: Lane) -> int:
-        """Return how many more functions they would begin now."""
+        """Return how many more functions they could start now."""
         with self._changed:
             return sum(max(0, count) for count in self._free(lane).values())
 

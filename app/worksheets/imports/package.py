@@ -98,7 +98,7 @@ class Package:
 
 
 def unpacked(content: bytes, budget: Budget) -> bytes:
-    """Return what a file compressed by gzip holds.
+    """Return the content of a file compressed by gzip.
 
     Raises
     ------

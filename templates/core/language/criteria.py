@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from templates.core.judging.bands import Estimate, largest_true
-from templates.core.judging.criterion import Criterion, Limit, MissingValue, is_angle
-from templates.core.judging.judgement import Judgement, not_judged, sentence
-from templates.core.judging.judging import Absent, Along, Instead, judge
-from templates.core.judging.limits import GivenLimit
-from templates.core.judging.summary import worst_first
+from templates.core.criteria.bands import Estimate, largest_true
+from templates.core.criteria.criterion import Criterion, Limit, MissingValue, is_angle
+from templates.core.criteria.evaluation import Absent, Along, Instead, judge
+from templates.core.criteria.judgement import Judgement, not_judged, sentence
+from templates.core.criteria.limits import GivenLimit
+from templates.core.criteria.summary import worst_first
 from templates.core.language.admission import absence
 from templates.core.language.answer import Answer
 from templates.core.language.ledger import Notice
@@ -255,7 +255,7 @@ def _where_it_has_a_scale(error: Any, scale: Value) -> tuple[Any, Value | None]:
 
 
 def _scale(evaluated: EvaluatedValues, name: str) -> Value | None:
-    """Return what an output's error is relative to [SI], as its table says; None if to the output itself.
+    """Return the reference value of an output's relative error [SI]; None if it is the output itself.
 
     The largest of several outputs, such as the four stiffnesses, counts, as large as the truth may be by
     their own errors; NaN stands for a size that is no output. The error of an angle is relative to 90°.

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from templates.core.criteria.criterion import Criterion, NameDescription, read_criterion
 from templates.core.errors import FaultyText
-from templates.core.judging.criterion import Criterion, NameDescription, read_criterion
 from templates.core.language.spec import Choice, Curve, Formula, Input, Table, Text
 
 
@@ -46,7 +46,7 @@ def _check_defaults(criterion: Criterion, inputs: Mapping[str, Input]) -> None:
 def meanings_of(
     inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]
 ) -> dict[str, NameDescription]:
-    """Return what the names that a criterion may use measure: neither words nor tables.
+    """Return the units of the names that a criterion may use; words and tables are left out.
 
     Who writes a template knows that a speed is in rad/s: of its criteria no two readings are reported.
     """

@@ -107,7 +107,9 @@ class Accuracy:
         """
         errors = self.expected(template, template.level, outputs)
         for name in self.own(template.level).keys() & errors.keys():
-            errors[name] = template.own_error(name)
+            own = template.own_error(name)
+            if own is not None:
+                errors[name] = own + self._added(template, name)
         return errors
 
     def expected(self, template: Template, level: str, outputs: Iterable[str]) -> dict[str, Any]:
@@ -129,10 +131,11 @@ class Accuracy:
             estimates |= {name: none + own[name] for name in names if name in own and name not in exact}
             unknown = none + np.nan
             errors = {n: estimates[n] if n in estimates else none if n in exact else unknown for n in names}
-        for condition in self._conditions:
-            if condition.holds(there):
-                errors = {name: error + condition.added(there, name) for name, error in errors.items()}
-        return errors
+        return {name: error + self._added(there, name) for name, error in errors.items()}
+
+    def _added(self, template: Template, output: str) -> float:
+        """Return what the conditions that hold add to the error of an output."""
+        return sum(one.added(template, output) for one in self._conditions if one.holds(template))
 
     def truth(self, level: str, output: str) -> str | None:
         """Return the name of the solution against which an output was measured; None if none is stated."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import filterfalse
 from typing import Any
 
+from templates.core.criteria.limits import GivenLimit, read_limits
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name, unknown_names
-from templates.core.judging.limits import GivenLimit, read_limits
 from templates.core.language.levels import at_level
 from templates.core.language.template import Template
 from templates.core.units.quantity import Unit, beside, require_same_kind

@@ -64,7 +64,7 @@ __all__ = [
 
 
 def _remark_of(declared: Declaration) -> str:
-    """Return how a formula of a worksheet may be read otherwise than it is; empty if it can not."""
+    """Return how a worksheet formula may be misread; empty if it is unambiguous."""
     return str(getattr(getattr(declared, "function", None), "remark", ""))
 
 
@@ -173,8 +173,11 @@ class Template(Calculation):
         """Return the measured case of such inputs, where errors were measured apart for several."""
         return ""
 
-    def own_error(self, output: str) -> Array:
-        """Return the relative error of an output that the level itself states; NaN without one [-]."""
+    def own_error(self, output: str) -> Array | None:
+        """Return the relative error of an output that the level itself states; NaN without one [-].
+
+        None where the measured error holds instead.
+        """
         return np.full(self.shape_of_points(), np.nan)[()]
 
     def starting_level(self) -> str:

@@ -12,7 +12,7 @@ import re
 
 import numpy as np
 
-from templates.core.judging.sentences import DIGITS, Side, compared
+from templates.core.criteria.sentences import DIGITS, Side, compared
 from templates.core.language.calculation import Calculation
 from templates.core.language.comparisons import Comparison, Operand, outcome
 from templates.core.language.spec import Declaration, Requirement, Shared

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from templates.core.catalogue.digests import digest
-from templates.core.judging.criterion import Limit
+from templates.core.criteria.criterion import Limit
 from templates.core.language.intake import is_single
 from templates.core.language.meaning import Bounds
 from templates.core.language.spec import (

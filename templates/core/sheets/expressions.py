@@ -14,8 +14,9 @@ from templates.core.sheets.names import Names, sort_of
 from templates.core.sheets.remedies import declared_in, names_in_units, remedy_at
 from templates.core.units.conformity import misfit
 from templates.core.units.expressions import FaultyPlace, checked
+from templates.core.units.expressions import constant as checked_constant
 from templates.core.units.operations import Constant
-from templates.core.units.rules import is_number
+from templates.core.units.rules import as_difference, is_number
 from templates.core.units.sorts import Part, Sort
 from templates.core.units.units import unit
 
@@ -95,8 +96,12 @@ class Reader:
             message = f"{name} is declared over {axis}, but this is {what}"
             raise statement.refuse("axis_mismatch", message, at, _along_of(got.axis))
 
-    def limit(self, statement: ParsedStatement, tree: lark.Tree[Any], unit_text: str) -> float:
+    def limit(
+        self, statement: ParsedStatement, tree: lark.Tree[Any], unit_text: str, accepted: str | None = None
+    ) -> float:
         """Return a limit in the declared unit: typed in it without a unit, or in any other with one.
+
+        It takes the kind of what it limits, which `accepted` says where the declared unit does not.
 
         Raises
         ------
@@ -109,7 +114,11 @@ class Reader:
             raise statement.refuse("limit", "a limit is one number", tree, "write it like <= 2 m")
         if next(tree.find_data("quantity"), None) is None and is_number(sort.kind):
             return float(constant.value)
-        value = self.fitting(statement, part, unit_text, "a limit", tree).value
+        accepted = accepted or unit_text
+        if sort.kind.literal and unit(accepted).difference:
+            constant = checked_constant(as_difference(constant.text))
+            part = constant, Sort(constant.kind)
+        value = self.fitting(statement, part, accepted, "a limit", tree).value
         return float(unit(unit_text).from_si(value))
 
     def typed(self, statement: ParsedStatement, tree: lark.Tree[Any], unit_text: str, name: str) -> Any:

@@ -62,7 +62,7 @@ def applied(operation: Operation, parts: Sequence[Part]) -> Part:
 
 
 def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> Sort:
-    """Return the sort of an operation's result, whatever its lists run over.
+    """Return the sort of an operation's result, regardless of its list axes.
 
     Raises
     ------

@@ -59,7 +59,7 @@ def rigid_balance(So: float, ratio: float, eps: float, around: int, across: int)
 
 
 def soft_balance(So: float, softness: Softness, rigid: Balanced) -> Balanced:
-    """Return the film of a bearing that gives way, from the rigid one of the same load.
+    """Return the film of an elastic bearing, from the rigid film under the same load.
 
     Raises
     ------

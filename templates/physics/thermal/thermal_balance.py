@@ -62,7 +62,7 @@ class Bearing:
         return Placing(self.arc(y, mesh), strip_edges(mesh[2]), self.So, (self.pressure, self.groove[2]), y)
 
     def start(self) -> Array:
-        """Return where a film of the supply's viscosity, fed along its widest gap, would have the journal."""
+        """Return the journal's position in a film of the supply's viscosity, fed along its widest gap."""
         eps = mapped_eccentricity(np.asarray(self.So), np.asarray(self.ratio))
         eps = np.clip(np.where(np.isnan(eps), _HEAVIEST, eps), _LIGHTEST, _HEAVIEST)
         attitude = mapped_film(eps, np.asarray(self.ratio))["attitude"]

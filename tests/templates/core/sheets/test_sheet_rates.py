@@ -241,6 +241,32 @@ class TestHertz:
             assert remedy in fault.remedy
             sheet(formula("1", f"if N {sign} {remedy} then 1 else 2"))
 
+    @pytest.mark.parametrize(
+        ("unit", "text", "remedy", "value"),
+        [
+            ("rpm", "60*v/(pi*r)", "(v/(pi*r)) * 1 turn", 600 / (2 * math.pi)),
+            ("rpm", "v/(pi*r) * 60", "(v/(pi*r)) * 1 turn", 600 / (2 * math.pi)),
+            ("rpm", "60*f", "2*pi*f", 3000),
+            ("Hz", "N/60", "N/(2*pi)", 83.33333),
+        ],
+    )
+    def test_a_factor_of_minutes_is_left_out(self, unit, text, remedy, value):
+        """Textbooks write n = 60 v/(π D) for numbers; units hold the minute already."""
+        fault = refused(formula(unit, text))
+        assert "leave out 60" in fault.remedy
+        assert remedy in fault.remedy
+        assert result(formula(unit, remedy)) == (pytest.approx(value, rel=1e-5), [])
+
+    @pytest.mark.parametrize(
+        ("unit", "text", "remedy", "value"),
+        [("m/s", "pi*D*N/60", "D*N/2", 12.56637), ("W", "2*pi*T*N/60", "T*N", 1000)],
+    )
+    def test_a_report_leaves_out_minutes_too(self, unit, text, remedy, value):
+        _, (report,) = result(formula(unit, text))
+        assert "leave out 60" in report
+        assert f"which is {remedy}" in report
+        assert result(formula(unit, remedy))[0] == pytest.approx(value, rel=1e-6)
+
     def test_a_sum_of_turns_and_of_1_per_s_is_refused(self):
         assert "1 turn" in refused(formula("rpm", "N + 1/t")).remedy
         assert result(formula("rpm", "N + 1 turn / t"))[0] == pytest.approx(5600)

@@ -190,7 +190,7 @@ def _own_shifts(
 def _changes(
     side: Relation, middle: Value, low: Mapping[str, Value], high: Mapping[str, Value]
 ) -> tuple[Value, Value, Truth]:
-    """Return how far down and up a side moves between two sets of values; and where both ends have one."""
+    """Return the change of a side, down and up, and a mask of places with values at both ends."""
     with np.errstate(all="ignore"):
         one, other = (np.asarray(side.value(end)) - middle for end in (low, high))
         less, more = np.fmin(np.fmin(one, other), 0.0), np.fmax(np.fmax(one, other), 0.0)

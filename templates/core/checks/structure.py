@@ -9,7 +9,7 @@ from graphlib import CycleError, TopologicalSorter
 from types import FunctionType
 from typing import Any
 
-from templates.core.checking.faults import FileFault
+from templates.core.checks.faults import FileFault
 from templates.core.errors import FaultyText
 from templates.core.language.body import Body
 from templates.core.language.parsing import lines_of, parse

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from templates.core.judging.comparison import NOT_CHECKED, Codes, Verdict
-from templates.core.judging.sentences import Side, compared
+from templates.core.criteria.comparison import NOT_CHECKED, Codes, Verdict
+from templates.core.criteria.sentences import Side, compared
 
 _NAME = re.compile(r"(?:[A-Za-z]\w*\.)*([A-Za-z]\w*)")
 

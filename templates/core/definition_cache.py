@@ -28,7 +28,7 @@ _UNREADABLE = (
 
 
 def place(name: str) -> Path:
-    """Return where something of this name is kept."""
+    """Return the path under which an object of this name is stored."""
     return Path(cache_from_source(__file__)).parent / name
 
 
