@@ -87,10 +87,10 @@ CASES = [
     # rho U c_r/eta, with the density at 40 °C
     (WARM, "laminar", FAST, {}, "not_met", 862.75 * 20000 * pi / 30 * 0.05 * 0.145e-3 / 1e-3,
      41.3 / 0.0029**0.5),
-    (MIXED, "full_film", {"speed": "600 rpm"}, {}, "met", 2.0534132e-4, 1),
-    (MIXED, "full_film", {}, {}, "not_met", 1.9875704, 1),
+    (MIXED, "full_film", {"speed": "600 rpm"}, {}, "met", 4.9008874, 3),
+    (MIXED, "full_film", {"speed": "150 rpm"}, {}, "not_met", 1.7484898, 3),
     (MIXED, "above_transition", {"speed": "600 rpm"}, {}, "met", 600, 304.596723),
-    (MIXED, "above_transition", {}, {}, "not_met", 300, 304.596723),
+    (MIXED, "above_transition", {"speed": "100 rpm"}, {}, "not_met", 100, 304.596723),
     (MIXED, "specific_load", {}, {"bearing_material": "tin_bronze"}, "met", 8, 30),
     (MIXED, "specific_load", {}, BABBITT, "not_met", 8, 5.5),
     (MIXED, "wear", {}, {"permissible_wear_intensity": "1 MPa*m/s"}, "met", 0.014497377, 1),

@@ -30,7 +30,7 @@ class Reader:
     sort_of = staticmethod(sort_of)
 
     def part(self, statement: ParsedStatement, tree: lark.Tree[Any]) -> Part:
-        """Return an expression and what it gives.
+        """Return an expression and its sort.
 
         Raises
         ------
