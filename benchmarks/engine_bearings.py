@@ -2,13 +2,13 @@
 
     nice python -m benchmarks.engine_bearings [engines] [seed]
 
-Each engine is drawn by chance within what engines of cars, trucks and ships have: bore, stroke, rod, masses,
-speed, gas cycle, sizes of its bearings, clearance, oil and supply. Its loads are those of template `engine`.
-Of each engine one main and one big end are calculated as designs are: at the level at which `oil_film_cycle`
-starts, and then by `decide`. The criteria are the smallest film and the largest pressure, with limits that
-lie anywhere about usual values. A bearing counts if both are decided, or if an error is stated where a limit
-lies within it.
-Results are in benchmarks/results/engine_bearings.json, written after every bearing; a run goes on from there.
+Each engine is drawn by chance within what engines of cars and trucks have: bore, stroke, rod, masses, speed,
+gas cycle, sizes of its bearings, clearance, oil and supply; a hole is where the load seldom points. The loads
+are those of template `engine`. Of each engine one main and one big end are calculated as designs are: at the
+level at which `oil_film_cycle` starts, and then by `decide`. The criteria are the smallest film and the
+largest pressure, with limits that lie anywhere about usual values. A bearing counts if both are decided, or
+if an error is stated where a limit lies within it. Results are in benchmarks/results/engine_bearings.json,
+written after every engine; a run goes on from there.
 """
 
 import json
@@ -34,6 +34,7 @@ BUDGET = 60.0
 OWN = ("film", "pressure")
 CATALOGUES = Catalogues(built_in(), models())
 ENGINE = CATALOGUES.templates.get("engine", 1)
+FILM = CATALOGUES.templates.get("oil_film_cycle", 1)
 Row = dict[str, Any]
 
 
@@ -101,16 +102,23 @@ def film_inputs(rng: np.random.Generator, loads: Row, engine: Row, *, big_end: b
     }
     if big_end:
         inputs["sleeve_speed"] = row(loads["rod_angular_velocity"], 0)
-    hole = {"length": f"{diameter * 0.1} mm", "angle": f"{rng.uniform(-180, 180)} deg"}
     supply = int(rng.integers(3))
     if big_end and supply < 2:
-        return inputs | {"pin_hole_length": hole["length"], "pin_hole_angle": hole["angle"]}
+        return placed(inputs | {"pin_hole_length": f"{diameter * 0.1} mm"}, "pin_hole_angle")
     if not big_end and supply == 0:
-        return inputs | {"sleeve_hole_length": hole["length"], "sleeve_hole_angle": hole["angle"]}
+        return placed(inputs | {"sleeve_hole_length": f"{diameter * 0.1} mm"}, "sleeve_hole_angle")
     groove = {"groove_width": f"{width * rng.uniform(0.1, 0.25)} mm"}
     if supply == 1:
         groove |= {"groove_start": "-90 deg", "groove_extent": "180 deg"}
     return inputs | groove
+
+
+def placed(inputs: Row, angle: str) -> Row:
+    """Return the inputs with the hole where, of twelve angles, the load seldom points."""
+    angles = np.arange(-180.0, 180.0, 30.0)
+    tried = inputs | {angle: {"value": angles.tolist(), "unit": "deg"}}
+    under = evaluate(FILM, tried, level="mobility", outputs=["feed_under_load"]).outputs["feed_under_load"]
+    return inputs | {angle: f"{angles[int(np.argmin(under.value))]} deg"}
 
 
 def row(curve: Row, number: int) -> Row:

@@ -99,5 +99,5 @@ def deflection_of(kind: str, bodies: Sequence[Body]) -> float | None:
 
 
 def _size(bodies: Sequence[Body]) -> float:
-    """The largest diagonal of a body's box [mm]: a body stands at many places without getting finer."""
+    """The largest diagonal of a body's box [mm]: the number of its positions does not matter."""
     return max(float(body.shape.BoundingBox().DiagonalLength) for body in bodies)

@@ -43,7 +43,7 @@ from cad.step_text import KERNEL
 from cad.tolerances import REPEATED, Limits, carried, in_unit, limits, limits_of
 from cad.tolerances import written as with_limits
 from templates.core.catalogue.digests import digest
-from templates.core.catalogue.loading import is_outside
+from templates.core.catalogue.modules import is_outside
 from templates.core.errors import InvalidInputs
 
 __all__ = [
@@ -85,7 +85,7 @@ class Build:
 
 
 def ignore(done: float, what: str) -> None:
-    """Report progress to nobody."""
+    """Ignore reports of progress."""
 
 
 def as_text(model: CadModel) -> dict[str, str]:

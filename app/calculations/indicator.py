@@ -1,4 +1,4 @@
-"""Indicator diagrams as measured: several cycles become their mean, times and TDC pulses crank angles.
+"""Indicator diagrams as measured: average several cycles, and turn times with TDC pulses into crank angles.
 
 A table is an indicator diagram if it has a pressure, or the volts of its sensor, over a crank angle, or over
 the time with a column of the pulses at top dead centre (TDC). Every other table is left as it is. Everything
@@ -38,7 +38,7 @@ LONGEST_NAME = 80
 
 
 def as_cycle(table: Table) -> Table:
-    """Return an indicator diagram of one cycle, with what was assumed; any other table as it is.
+    """Return an indicator diagram of one cycle, with the assumptions made; any other table as it is.
 
     Raises
     ------

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from app.plain import JsonObject
 from templates.core.catalogue.digests import digest
-from templates.core.judging.judgement import Judgement, Place
-from templates.core.judging.summary import summarised
+from templates.core.criteria.judgement import Judgement, Place
+from templates.core.criteria.summary import summarised
 from templates.core.language.answer import Answer, UsedInput
 from templates.core.language.evaluate import Evaluation
 from templates.core.language.ledger import Notice

@@ -22,7 +22,7 @@ from app.catalogue.team import Snapshot, TeamFile, TeamFiles, joined, merged, wi
 from app.workers.errors import WorkerError
 from cad.catalogue import models as find_models
 from cad.model import CadModel
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import UnknownTemplate, UnreleasedTemplate
 from templates.core.language.template import Template
 
@@ -180,7 +180,7 @@ def _no_drafts(id: str, version: int) -> type[Template]:
 
 
 async def _ended(future: Future[None], seconds: float) -> None:
-    """Wait for a future of a thread, at most so long [s], without any hold on it."""
+    """Wait for a future of a thread, for at most this time [s], without any hold on it."""
     loop, ended = asyncio.get_running_loop(), asyncio.Event()
 
     def wake(_: Future[None]) -> None:

@@ -93,9 +93,9 @@ class AnalysisOptions(TypedDict, total=False):
     outputs: list[str]
 
 
-def templates() -> Exchange[list[TemplateSummary]]:
-    """Return every version of every template."""
-    return listed(TemplateList, "/templates")
+def templates(search: str = "") -> Exchange[list[TemplateSummary]]:
+    """Return every version of every template, or those that a search finds."""
+    return listed(TemplateList, "/templates", [("search", search)] if search else [])
 
 
 def faults() -> Exchange[list[FaultyFile]]:

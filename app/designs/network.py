@@ -21,8 +21,7 @@ from app.plain import Raw
 from app.reference import Reference
 from app.solids.questions import Question
 from cad.model import CadModel
-from templates.core.errors import Fault, FaultyText, unknown_name, unknown_names
-from templates.core.judging.criterion import (
+from templates.core.criteria.criterion import (
     Criterion,
     Limit,
     MissingValue,
@@ -30,7 +29,8 @@ from templates.core.judging.criterion import (
     read_comparison,
     read_criterion,
 )
-from templates.core.judging.limits import GivenLimit
+from templates.core.criteria.limits import GivenLimit
+from templates.core.errors import Fault, FaultyText, unknown_name, unknown_names
 from templates.core.language.spec import Choice, Declaration, Formula, Input, Table, Text
 from templates.core.language.template import Template
 from templates.core.units.nodes import Kind, kind_of

@@ -11,6 +11,7 @@ from app.designs.variants.table import Overrides, applied, is_place, places
 from app.plain import Raw
 from app.reference import Reference
 from templates.core.errors import Fault, FaultyText, unknown_name, unknown_names
+from templates.core.language.intake import option_named
 from templates.core.language.spec import Choice, Table
 from templates.core.units.quantity import read, read_any
 from templates.core.units.relation import is_relation
@@ -52,7 +53,7 @@ def _misfit(graph: Graph, name: str, raw: Raw) -> Iterator[Fault]:
     block = graph.blocks.get(reference.block)
     declared = block.cls.inputs[reference.member] if block else None
     if isinstance(declared, Choice):
-        if raw not in declared.options:
+        if not isinstance(raw, str) or option_named(declared.options, raw) is None:
             yield unknown_name(str(raw), declared.options, "option").within(name)
         return
     if isinstance(declared, Table):

@@ -18,7 +18,7 @@ from app.presentation.units import System
 from app.schemas.answers import Answer
 from app.storage.database import Database
 from templates.core.catalogue.digests import digest
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import UnknownTemplate
 from templates.core.language.template import Template
 

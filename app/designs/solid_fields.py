@@ -29,7 +29,7 @@ from cad.field_mesh import Field, Glb
 from cad.fillets import Crank
 from cad.model import CadModel
 from templates.core.arrays import Array
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 
 USE, MODES = "load_use", 3  # the output of a life that is painted; how many modes
 RIGID = 1e-6  # of the highest frequency: a mode below turns as a whole

@@ -13,7 +13,7 @@ from app.plain import JsonObject
 from app.pool.sources import Source, loaded, source_of
 from app.storage.tables import canonical_json
 from cad.model import CadModel
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.language.template import Template
 
 T = TypeVar("T", bound=Template)

@@ -25,8 +25,8 @@ from app.designs.network import Block, Graph, Subject
 from app.impact.outcome import JudgedCriterion, Outcome
 from app.reference import Reference
 from templates.core.arrays import Array
+from templates.core.criteria.comparison import VERDICTS
 from templates.core.errors import Fault, TemplateError
-from templates.core.judging.comparison import VERDICTS
 from templates.core.language.spec import Choice, Curve, Given, Table, Text
 from templates.core.language.template import Template
 
@@ -55,17 +55,17 @@ class Together:
         if document.iterations:
             return None
         try:
-            net = DesignEngine.of(document, catalogues, varied)
+            engine = DesignEngine.of(document, catalogues, varied)
         except TemplateError:
             return None
-        graph = net.graph
+        graph = engine.graph
         blocks = graph.blocks.values()
         if any(_chooses_by_tolerance(one) or _is_incomplete(one) for one in blocks) or _is_measured(graph):
             return None
         outputs, parameters = tuple(_outputs(graph)), tuple(_parameters(graph))
         units = {str(reference): graph.unit_of(reference) for reference in (*outputs, *parameters)}
-        subjects = net.subjects(net.criteria())
-        return cls(net.design, outputs, parameters, subjects, units)
+        subjects = engine.subjects(engine.criteria())
+        return cls(engine.design, outputs, parameters, subjects, units)
 
     def outcomes(self, rows: Rows, count: int) -> list[Outcome] | None:
         """Return the outcome of each row; None if they are calculated alone."""
@@ -164,7 +164,7 @@ def _parameters(graph: Graph) -> Iterator[Reference]:
 
 
 def _is_incomplete(block: Block) -> bool:
-    """Return whether a model lacks parameters, or nobody asks for any output of a step.
+    """Return whether a model lacks parameters, or no output of a step is requested.
 
     It is checked alone.
     """

@@ -26,7 +26,7 @@ from cad.errors import GeometryError, UnreadableModel
 from cad.imported_models import Description, ProgramResult
 from cad.model import CadModel
 from cad.model_classes import description_of
-from templates.core.catalogue.loading import is_outside
+from templates.core.catalogue.modules import is_outside
 from templates.core.errors import UnknownTemplate
 
 LARGEST = 128 * 2**20

@@ -13,7 +13,7 @@ from typing import Protocol
 
 from app.presentation import numbers
 from app.reference import Reference
-from templates.core.judging.judgement import is_model
+from templates.core.criteria.judgement import is_model
 
 WORDS = {"met": "met", "not_met": "not met", "undecided": "undecided", "not_checked": "not checked"}
 _SIGN = re.compile(r"^(.*?)\s*(>=|<=)\s*(.*)$", re.DOTALL)

@@ -7,7 +7,7 @@ from app.presentation.criteria import Line, headline_of, line, tone
 from app.reports.cells import clean
 from app.reports.content import Criterion, ReportVerdict
 from app.schemas import criteria as schemas
-from templates.core.judging.judgement import is_model
+from templates.core.criteria.judgement import is_model
 
 
 def judged(revision: RevisionWorksheet) -> ReportVerdict:

@@ -37,7 +37,7 @@ from cad.regenerate import (
     regenerate_shape,
 )
 from cad.stamp import takes_stamp
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.progress import report
 
 logger = logging.getLogger(__name__)

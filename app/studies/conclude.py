@@ -16,7 +16,7 @@ from app.studies.sensitivities import Shares, sensitivities
 from app.studies.task import read_body
 from app.studies.variant_design import DesignFactory
 from templates.core.arrays import Integers
-from templates.core.judging.comparison import is_met
+from templates.core.criteria.comparison import is_met
 
 
 class StudyConclusion:

@@ -15,8 +15,8 @@ from app.presentation.units import System, shown_unit, shown_value
 from app.studies.archive import AnyArray, write_each
 from app.studies.schemas import StudyRow
 from app.studies.views import RowList
+from templates.core.criteria.comparison import MET_ERROR_UNKNOWN, VERDICTS
 from templates.core.errors import Fault, InvalidInputs
-from templates.core.judging.comparison import MET_ERROR_UNKNOWN, VERDICTS
 
 MOST_XLSX = 20_000  # rows of a sheet: a spreadsheet program takes a million, but not gladly
 SOME, SOME_SORTED = 2000, 20_000  # rows that are read and written at once; sorted ones lie in all chunks

@@ -8,7 +8,7 @@ import numpy as np
 
 from app.studies.archive import AnyArray
 from templates.core.arrays import Array, Integers, Mask
-from templates.core.judging.comparison import UNDECIDED, is_met
+from templates.core.criteria.comparison import UNDECIDED, is_met
 
 MOST_CONFIRMED = 64  # rows that are calculated again for one objective
 MOST_FRONT = 200

@@ -39,7 +39,7 @@ class StudyQuestion:
         return directions(self.body)[0]
 
 
-def asked_of(body: StudyIn, varied: Sequence[str], net: DesignEngine) -> StudyQuestion:
+def asked_of(body: StudyIn, varied: Sequence[str], engine: DesignEngine) -> StudyQuestion:
     """Return a body read against the network of its design.
 
     Raises
@@ -48,11 +48,11 @@ def asked_of(body: StudyIn, varied: Sequence[str], net: DesignEngine) -> StudyQu
         With everything that is wrong.
     """
     _refuse(list(_contradictions(body, varied)))
-    space = Space(tuple(_variables(body, varied, net)))
+    space = Space(tuple(_variables(body, varied, engine)))
     names = dict.fromkeys([*body.minimise, *body.maximise, *body.outputs])
     wanted = tuple(map(Reference.parse, names))
     _refuse(_too_many(body, space))
-    points = points_of(body, space, net)
+    points = points_of(body, space, engine)
     return StudyQuestion(body, space, tuple(map(Reference.parse, varied)), wanted, points)
 
 
@@ -92,13 +92,13 @@ _WITHOUT_POINTS = {
 }
 
 
-def _variables(body: StudyIn, varied: Sequence[str], net: DesignEngine) -> Iterator[Variable]:
+def _variables(body: StudyIn, varied: Sequence[str], engine: DesignEngine) -> Iterator[Variable]:
     """Yield the variables in the order of the columns; the keys of a stored body have another."""
     faults: list[Fault] = []
     for name in varied if body.vary else ():
         vary = body.vary[name]
         try:
-            yield _variable(name, vary, net.unit(Reference.parse(name)))
+            yield _variable(name, vary, engine.unit(Reference.parse(name)))
         except InvalidInputs as error:
             faults += [fault.within("vary") for fault in error.faults]
     _refuse(faults)
@@ -124,7 +124,7 @@ def single(raw: Raw, unit: str, name: str) -> float:
     return value
 
 
-def points_of(body: StudyIn, space: Space, net: DesignEngine) -> Points | None:
+def points_of(body: StudyIn, space: Space, engine: DesignEngine) -> Points | None:
     """Return the rows of a method by number; None if the method finds them by itself."""
     match body.method:
         case "grid":
@@ -138,7 +138,7 @@ def points_of(body: StudyIn, space: Space, net: DesignEngine) -> Points | None:
         case "sensitivity" if body.kind == "sobol":
             return SobolPoints(space, body.points or 1024, body.seed)
         case "sensitivity":
-            return _around(space, net)
+            return _around(space, engine)
     return None
 
 
@@ -156,7 +156,7 @@ def _steps(body: StudyIn, space: Space) -> dict[str, int]:
     return {name: int(given[name] or 0) for name in intervals}
 
 
-def _around(space: Space, net: DesignEngine) -> Local:
+def _around(space: Space, engine: DesignEngine) -> Local:
     """Return the design's own values, or the middle of an interval that leaves them out."""
     at, steps, faults = [], [], []
     for variable in space.variables:
@@ -164,7 +164,7 @@ def _around(space: Space, net: DesignEngine) -> Local:
             detail = "a slope needs `between`, two bounds"
             faults.append(Fault(f"vary.{variable.name}", "no_interval", detail))
             continue
-        nominal = float(np.asarray(net.nominal(Reference.parse(variable.name))))
+        nominal = float(np.asarray(engine.nominal(Reference.parse(variable.name))))
         inside = variable.low <= nominal <= variable.high
         at.append(nominal if inside else (variable.low + variable.high) / 2)
         steps.append(_STEP * (variable.high - variable.low))

@@ -12,7 +12,7 @@ from app.storage.artifacts import Artifacts
 from app.storage.tables import StudyChunkRow
 from app.studies.archive import AnyArray, Archive
 from templates.core.arrays import Array, Integers, Mask
-from templates.core.judging.comparison import MET, NOT_CHECKED
+from templates.core.criteria.comparison import MET, NOT_CHECKED
 
 PLACE, OUTPUT, ERROR, VERDICT = "place/", "output/", "error/", "verdict/"
 """Prefixes of the names of the arrays of a chunk."""

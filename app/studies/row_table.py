@@ -49,7 +49,7 @@ def _uneven(number: int, row: Mapping[str, Raw], first: Mapping[str, Raw]) -> Fa
     return Fault(f"rows.{number}", "uneven", detail)
 
 
-def given_rows(rows: Rows, net: DesignEngine) -> Array:
+def given_rows(rows: Rows, engine: DesignEngine) -> Array:
     """Return the values [SI] of the rows, shape (N, d).
 
     Raises
@@ -57,7 +57,7 @@ def given_rows(rows: Rows, net: DesignEngine) -> Array:
     InvalidInputs
         Naming every cell that is wrong, up to `MOST_FAULTS`: its column, and its row where it has one.
     """
-    units = {name: net.unit(Reference.parse(name)) for name in columns_named(rows)}
+    units = {name: engine.unit(Reference.parse(name)) for name in columns_named(rows)}
     faults: list[Fault] = []
     if isinstance(rows, Mapping):
         columns = [_column(name, rows[name], unit, faults) for name, unit in units.items()]
@@ -73,7 +73,7 @@ def given_rows(rows: Rows, net: DesignEngine) -> Array:
 
 
 def _column(name: str, raw: Raw, unit: str, faults: list[Fault]) -> Array:
-    """Return a column [SI]; what is wrong with it is added to the faults, and the column is empty then."""
+    """Return a column [SI]; add its faults to the list, and return an empty column then."""
     try:
         value = read(raw, unit).si
     except FaultyText as error:
@@ -87,7 +87,7 @@ def _column(name: str, raw: Raw, unit: str, faults: list[Fault]) -> Array:
 
 
 def _cells(name: str, rows: Sequence[Mapping[str, Raw]], unit: str, faults: list[Fault]) -> Array:
-    """Return the cells of a column [SI]; what is wrong with them is added to the faults."""
+    """Return the cells of a column [SI]; add their faults to the list."""
     column = np.full(len(rows), np.nan)
     for number, row in enumerate(rows):
         try:

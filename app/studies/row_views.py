@@ -11,7 +11,7 @@ from app.studies.row_columns import OUTPUT, PLACE, StoredRows
 from app.studies.run import Run
 from app.studies.schemas import Best
 from templates.core.arrays import Integers
-from templates.core.judging.comparison import MET_ERROR_UNKNOWN, NOT_CHECKED, VERDICTS
+from templates.core.criteria.comparison import MET_ERROR_UNKNOWN, NOT_CHECKED, VERDICTS
 from templates.core.units.units import unit
 
 

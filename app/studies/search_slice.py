@@ -105,7 +105,7 @@ def _problem(ready: TaskState, search: Search) -> Problem:
     body = ready.asked.body
     objectives = [Objective(name) for name in body.minimise]
     objectives += [Objective(name, "maximise") for name in body.maximise]
-    held = tuple(Held(name, criterion_of(ready.net, name).sign) for name in search.required)
+    held = tuple(Held(name, criterion_of(ready.engine, name).sign) for name in search.required)
     return Problem(ready.asked.space, tuple(objectives), held)
 
 
@@ -125,7 +125,7 @@ def _outcome(ready: TaskState, problem: Problem, search: Search, book: _Book) ->
 def _compared(
     problem: Problem, search: Search, book: _Book, seed: int, first: Prediction, notes: tuple[str, ...]
 ) -> tuple[tuple[Prediction, ...], tuple[str, ...]]:
-    """Return the promise of each level, and the notes, with one more if rows are lacking for a level."""
+    """Return the promise of each level, and the notes; a level without enough rows adds a note."""
     others: list[Prediction] = []
     try:
         for level in range(CONFIRM + 1, len(search.levels)):
@@ -137,7 +137,7 @@ def _compared(
 
 
 def _alone(problem: Problem, book: _Book, level: int, seed: int) -> list[Prediction]:
-    """Return the result of one level by itself, confirmed once; nothing of a level that lacks a result."""
+    """Return the result of one level alone, confirmed once; an empty list without a result."""
     answer, confirm = book.answer(level), book.answer(CONFIRM)
     try:
         if len(problem.objectives) > 1:
@@ -178,7 +178,7 @@ class _Journal:
         return self.stages.get(f"{self.level}: {name}")
 
     def keep(self, name: str, stage: Stage) -> None:
-        """Keep a stage as far as it has come; the next chunk has it."""
+        """Store the present state of a stage for the next chunk."""
         self.stages[f"{self.level}: {name}"] = stage
         self.changed.add(f"{self.level}: {name}")
 
@@ -255,15 +255,15 @@ class _Book:
                 f"the search needs more than {self._search.most} rows; narrow the bounds, or raise `points`"
             )
             raise TooManyRows([Fault("points", "too_many_rows", detail)])
-        net, asked = self._ready.net, self._ready.asked
+        engine, asked = self._ready.engine, self._ready.asked
         levels = self._levels[level]
         criteria = self._search.criteria  # by tables: what was measured would differ from run to run
-        seconds = net.seconds(len(rows), asked.wanted, levels, criteria=criteria, by_tables=True)
+        seconds = engine.seconds(len(rows), asked.wanted, levels, criteria=criteria, by_tables=True)
         self._spent += seconds + CALL_SECONDS
         table = called(self._ready, rows, levels, criteria, judge=True)
         arrays = {**columns_of(self._task.varied, rows), **results_of(table, asked.wanted)}
         for name in self._search.required:
-            arrays |= judged_of(net, name, table)
+            arrays |= judged_of(engine, name, table)
         reasons, arrays["reason"] = reasons_of(table)
         arrays["level"] = np.full(len(rows), level, dtype=np.int16)
         call = _Call(level, arrays, reasons, seconds)

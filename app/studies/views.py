@@ -19,8 +19,8 @@ from app.studies.row_columns import CONFIRM, ERROR, OUTPUT, PLACE, VERDICT, Part
 from app.studies.row_views import verdict_fields
 from app.studies.schemas import Estimate, RefusedRows, Study, StudyEstimate, StudyResult, StudyRow, StudyRows
 from templates.core.arrays import Array, Integers
+from templates.core.criteria.comparison import MET, MET_ERROR_UNKNOWN, NOT_CHECKED, VERDICTS
 from templates.core.errors import InvalidInputs, unknown_names
-from templates.core.judging.comparison import MET, MET_ERROR_UNKNOWN, NOT_CHECKED, VERDICTS
 from templates.core.units.units import unit
 
 MOST_REASONS = 20

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from app.tolerances.factors import Factor, scattered, sobol
 from templates.core.arrays import Array
-from templates.core.judging.comparison import UNDECIDED, is_met
+from templates.core.criteria.comparison import UNDECIDED, is_met
 
 Codes = NDArray[np.int8]
 

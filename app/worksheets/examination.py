@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from app.pool.sources import SheetSource, class_of
 from templates.core.catalogue.digests import digest as digest_of
 from templates.core.catalogue.golden import record
-from templates.core.checking.golden import differences
+from templates.core.checks.golden import differences
 from templates.core.errors import InvalidInputs, TemplateError
 from templates.core.language.template import Template
 from templates.core.sheets import SheetFault, SheetRefused, TestResult, read, run_tests

@@ -212,12 +212,12 @@ class MixedFriction(Oil):
 
     @shared
     def film(self) -> MixedFilm:
-        """What bears the load at the speed, NaN where nothing does."""
+        """Balance of film and contact at the speed, NaN without one."""
         return self.balance.admitted(self.eps)
 
     @shared
     def films(self) -> MixedFilm:
-        """What bears the load at the speeds of the curve."""
+        """Balances of film and contact at the speeds of the curve."""
         return mixed_films(self.journal, spread(self.omega, MULTIPLES))
 
     @shared

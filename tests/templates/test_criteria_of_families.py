@@ -12,7 +12,7 @@ from criteria_of_engines import CASES as OF_ENGINES
 from criteria_of_pads import CASES as OF_PADS
 from criteria_of_shafts import CASES as OF_SHAFTS
 
-from templates.core.judging.judging import judge
+from templates.core.criteria.evaluation import judge
 from templates.core.language.criteria import EvaluatedValues, estimates_of
 from templates.core.language.evaluate import evaluate
 from templates.door import built_in

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.arrays import Array, Mask
+from templates.core.criteria.bands import Estimate
 from templates.core.errors import FaultyText
-from templates.core.judging.bands import Estimate
 from templates.core.units.units import Value
 
 Indices = NDArray[np.intp]
@@ -110,7 +110,7 @@ UNEQUAL = (
 
 
 def scattered(count: int, parts: Iterable[tuple[Indices | slice, Column]]) -> Column:
-    """Return one column of so many rows from columns of parts of the rows; NaN in the others.
+    """Return one column of this number of rows from columns of parts of the rows; NaN in the others.
 
     Raises
     ------

@@ -22,8 +22,8 @@ from app.designs.network import Block
 from app.pool.cost import estimated_seconds
 from app.pool.steps import announce
 from app.reference import Reference
-from templates.core.judging.judgement import Judgement
-from templates.core.judging.summary import worst_first
+from templates.core.criteria.judgement import Judgement
+from templates.core.criteria.summary import worst_first
 from templates.core.language.levels import accuracy, next_levels
 
 Stop = Literal["decided", "no_finer_level", "budget", "pending"]

@@ -17,7 +17,7 @@ from app.designs.engine.steps import Part, StepRows
 from app.designs.network import Block
 from app.reference import Reference
 from templates.core.arrays import Array, Mask
-from templates.core.language.climbing import best_first
+from templates.core.language.level_choice import best_first
 from templates.core.language.levels import Accuracy, accuracy
 
 S = TypeVar("S", bound=np.generic)
@@ -96,7 +96,7 @@ class LevelSearch:
     share: float
 
     def level(self) -> str:
-        """Return the cheapest level that serves, else the finest within the budget (`climbing`)."""
+        """Return the cheapest level that serves, else the finest within the budget (`level_choice`)."""
         measured = accuracy(self.block.cls)
         for level in self.ladder:
             if measured is None:

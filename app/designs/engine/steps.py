@@ -25,9 +25,9 @@ from app.plain import Raw
 from app.pool.cost import shape
 from app.pool.steps import evaluated_step, fingerprint
 from templates.core.arrays import Mask
+from templates.core.criteria.bands import Estimate
+from templates.core.criteria.evaluation import Absent
 from templates.core.errors import FaultyText, InvalidInputs
-from templates.core.judging.bands import Estimate
-from templates.core.judging.judging import Absent
 from templates.core.language.answer import Answer
 from templates.core.language.criteria import EvaluatedValues, estimate_of
 from templates.core.language.evaluate import Evaluation, answers_at_level

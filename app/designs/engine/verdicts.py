@@ -19,15 +19,15 @@ from app.designs.network import LIMITS, Block, Demand, Subject, subjects
 from app.pool.cost import spanned
 from app.reference import Reference
 from templates.core.arrays import Array, Truth
+from templates.core.criteria.bands import Estimate, Shift
+from templates.core.criteria.comparison import NOT_CHECKED, NOT_MET, compare, side_of
+from templates.core.criteria.criterion import Criterion, Limit
+from templates.core.criteria.evaluation import Absent, Along, Instead, in_words, judge, unknown_error
+from templates.core.criteria.judgement import Judgement
+from templates.core.criteria.limits import GivenLimit
+from templates.core.criteria.summary import worst_first
+from templates.core.criteria.worst import worst_of_rows
 from templates.core.errors import FaultyText
-from templates.core.judging.bands import Estimate, Shift
-from templates.core.judging.comparison import NOT_CHECKED, NOT_MET, compare, side_of
-from templates.core.judging.criterion import Criterion, Limit
-from templates.core.judging.judgement import Judgement
-from templates.core.judging.judging import Absent, Along, Instead, in_words, judge, unknown_error
-from templates.core.judging.limits import GivenLimit
-from templates.core.judging.summary import worst_first
-from templates.core.judging.worst import worst_of_rows
 from templates.core.language.criteria import (
     EvaluatedValues,
     along_of,
@@ -41,7 +41,7 @@ from templates.core.language.levels import accuracy
 from templates.core.units.relation import Relation
 
 RowCodes = NDArray[np.int8]
-"""The verdict of each row as a place in `templates.core.judging.comparison.VERDICTS`."""
+"""The verdict of each row as a place in `templates.core.criteria.comparison.VERDICTS`."""
 
 COLUMNS = ("value", "limit", "low", "high", "utilisation", "margin")
 
@@ -76,7 +76,7 @@ class JudgedColumn:
     is_known: bool
 
     def within(self, whole: JudgedColumn | None, chunk: slice, count: int) -> JudgedColumn:
-        """Return a column of so many rows, of which these are a chunk; the rest is that of `whole`."""
+        """Return a column of this number of rows, of which these are a chunk; the rest is that of `whole`."""
         columns = _columns(whole, count)
         for name in COLUMNS:
             columns[name][chunk] = getattr(self, name)

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from app.designs.variants.names import BASE
-from templates.core.judging.comparison import Verdict
-from templates.core.judging.judgement import Judgement, Place
-from templates.core.judging.summary import SHOWN, worst_first
+from templates.core.criteria.comparison import Verdict
+from templates.core.criteria.judgement import Judgement, Place
+from templates.core.criteria.summary import SHOWN, worst_first
 
 VARIANT = "variant"
 """In `where` of a criterion: the name of the worst variant; `base` is the design itself."""

@@ -11,9 +11,9 @@ import numpy as np
 
 from app.studies.methods.space import Space
 from templates.core.arrays import Array, Mask
+from templates.core.criteria.comparison import verdicts
+from templates.core.criteria.criterion import Sign
 from templates.core.errors import Fault, InvalidInputs
-from templates.core.judging.comparison import verdicts
-from templates.core.judging.criterion import Sign
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from app.studies.methods.answers import Answer, Columns, CountingAnswer, Problem
 from app.studies.methods.correction import CorrectedAnswer, SearchView, stacked
 from app.studies.methods.search import Scan, scales, scan
 from templates.core.arrays import Array
-from templates.core.judging.comparison import MET_ERROR_UNKNOWN, NOT_MET, VERDICTS, Verdict
+from templates.core.criteria.comparison import MET_ERROR_UNKNOWN, NOT_MET, VERDICTS, Verdict
 
 WITHIN = 1e-3
 """Relative difference between promise and truth that counts as agreement."""

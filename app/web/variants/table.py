@@ -16,8 +16,8 @@ from app.presentation.criteria import Line, line
 from app.presentation.input_text import text_of
 from app.reference import Reference
 from app.web.variants.cells import CONTROL, FIRST_VARIANT
+from templates.core.criteria.comparison import WORST_FIRST
 from templates.core.errors import FaultyText
-from templates.core.judging.comparison import WORST_FIRST
 from templates.core.units.quantity import read_any
 from templates.core.units.relation import is_relation
 
@@ -26,7 +26,7 @@ EMPTY = Grid((("variant",), ("unit",)))
 
 @dataclass(frozen=True)
 class RefusedTable:
-    """A table that was not saved: its cells as typed, and what is wrong with them by address."""
+    """A table that was not saved: its cells as typed, and their faults by address."""
 
     grid: Grid
     faults: Mapping[str, str]

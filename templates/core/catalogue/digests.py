@@ -20,7 +20,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from templates.core.catalogue.loading import text_of
+from templates.core.catalogue.modules import text_of
 from templates.core.language.origin import file_of
 from templates.core.language.parsing import parse
 from templates.core.language.spec import Declaration, Requirement, Shared

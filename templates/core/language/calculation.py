@@ -7,7 +7,7 @@ from typing import Any, ClassVar, NoReturn, Protocol
 
 import numpy as np
 
-from templates.core.judging.criterion import Criterion
+from templates.core.criteria.criterion import Criterion
 from templates.core.language.ledger import Ledger
 from templates.core.language.spec import (
     Declaration,

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from templates.core.judging.bands import Estimate, largest_true
-from templates.core.judging.criterion import Criterion, Limit, MissingValue, is_angle
-from templates.core.judging.judgement import Judgement, not_judged, sentence
-from templates.core.judging.judging import Absent, Along, Instead, judge
-from templates.core.judging.limits import GivenLimit
-from templates.core.judging.summary import worst_first
+from templates.core.criteria.bands import Estimate, largest_true
+from templates.core.criteria.criterion import Criterion, Limit, MissingValue, is_angle
+from templates.core.criteria.evaluation import Absent, Along, Instead, judge
+from templates.core.criteria.judgement import Judgement, not_judged, sentence
+from templates.core.criteria.limits import GivenLimit
+from templates.core.criteria.summary import worst_first
 from templates.core.language.admission import absence
 from templates.core.language.answer import Answer
 from templates.core.language.ledger import Notice
@@ -202,7 +202,7 @@ def _limit(evaluated: EvaluatedValues, limit: Limit, others: Mapping[str, Estima
 
 
 def _default(evaluated: EvaluatedValues, limit: Limit) -> Estimate | Absent:
-    """Return a limit that nobody gave.
+    """Return a missing limit.
 
     An end of an input that is a list, where that is declared and given.
     """

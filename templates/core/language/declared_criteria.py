@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from templates.core.criteria.criterion import Criterion, NameDescription, read_criterion
 from templates.core.errors import FaultyText
-from templates.core.judging.criterion import Criterion, NameDescription, read_criterion
 from templates.core.language.spec import Choice, Curve, Formula, Input, Table, Text
 
 

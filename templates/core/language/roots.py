@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from templates.core.arrays import Array
 from templates.core.errors import Unreachable
-from templates.core.language.confirming import POLISHES, Root, confirmed
+from templates.core.language.confirmation import POLISHES, Root, confirmed
 from templates.core.language.crossings import Crossings, Leap, meetings
 from templates.core.language.ledger import Notice
 from templates.core.language.scan import SampledCurve, Samples

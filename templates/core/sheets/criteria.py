@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from templates.core.criteria.criterion import read_criterion
 from templates.core.errors import FaultyText
-from templates.core.judging.criterion import read_criterion
 from templates.core.language.declared_criteria import meanings_of
 from templates.core.language.meaning import api_name
 from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given

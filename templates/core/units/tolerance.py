@@ -1,7 +1,6 @@
 """Tolerances of quantities: `55 ± 5 um`, `55 +10/-5 um`, `48 mm H7`, or `plus` and `minus` of an object.
 
-A tolerance says between which limits a value lies and how it is distributed there. Nothing that calculates
-with the value alone reads it.
+A tolerance gives the limits of a value and its distribution between them. Ordinary calculations ignore it.
 """
 
 from __future__ import annotations

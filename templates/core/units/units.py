@@ -23,7 +23,7 @@ import flexcache
 import flexparser
 import pint
 
-from templates.core import prepared
+from templates.core import definition_cache
 from templates.core.arrays import Array
 from templates.core.errors import FaultyText
 
@@ -37,7 +37,7 @@ def _registry(parsed: Path | None) -> pint.UnitRegistry[float]:
     return pint.UnitRegistry(cache_folder=parsed)
 
 
-registry: pint.UnitRegistry[float] = prepared.from_folder(_PARSED, _registry)
+registry: pint.UnitRegistry[float] = definition_cache.from_folder(_PARSED, _registry)
 registry.define("@alias revolution = rev")
 
 _NAME = r"(?:[A-Za-zµμ°Ω]+(?:_[A-Za-z]+)*|%)"
@@ -46,6 +46,9 @@ _FACTOR = rf"{_NAME}{_POWER}"
 _PRODUCT = rf"{_FACTOR}(?:[*·]{_FACTOR})*"
 _UNIT = rf"(?:1|{_PRODUCT})(?:[*·/](?:{_FACTOR}|\({_PRODUCT}\)))*"
 _PATTERN = re.compile(_UNIT)
+_REVOLUTION = re.compile(r"(?<![A-Za-z_])r(?=/(?:min|s|h)(?![A-Za-z]))")
+"""The revolution as ISO 80000-3 writes it: r/min."""
+_MIL = re.compile(r"(?<![A-Za-z_])mils?(?![A-Za-z_])")
 LONGEST_UNIT = 60
 
 
@@ -103,9 +106,12 @@ def unit(text: str) -> Unit:
     """
     if len(text) > LONGEST_UNIT or not _PATTERN.fullmatch(text):
         raise FaultyText("unknown_unit", f"{text[:60]!a} is not a unit; write it like kN, mm**2/s, W/(m*K)")
+    if _MIL.search(text):
+        message = f"{text} is ambiguous: write thou for 0.001 inch, mrad for an angle"
+        raise FaultyText("ambiguous_unit", message)
     forget_units()
     try:
-        named = registry.Unit("" if text == "1" else text)
+        named = registry.Unit("" if text == "1" else _REVOLUTION.sub("rev", text))
         size, base = registry.get_base_units(named)
         factor = float(size)  # type: ignore[arg-type]
         zero, two = (float(registry.Quantity(x, named).to_base_units().magnitude) for x in (0.0, 2.0))

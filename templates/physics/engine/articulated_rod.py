@@ -236,7 +236,7 @@ def link_force(at_crank: Array, omega: Array, motion: RodMotion, axial: Array, w
 
 
 def off_the_circle(at_crank: Array, omega: Array, motion: RodMotion, bank: Array) -> Vectors:
-    """What the masses at articulated pins put on the frame [N] beyond those on the crankpin's circle."""
+    """Force of the masses at articulated pins on the frame [N] beyond that of the crankpin's circle."""
     if not isinstance(motion, ArticulatedMotion):
         return np.zeros(1, dtype=complex)
     circle = motion.crank.r[..., None] * (motion.cos + 1j * motion.sin)

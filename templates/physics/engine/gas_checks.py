@@ -68,7 +68,7 @@ def angles_rise(name: str, angle: Array, p: Array) -> Truth:
 def full_cycle(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
     """Return whether a table of rising angles covers the cycle.
 
-    From its end to its begin is at most a step.
+    The gap from its end to its beginning is at most one step.
     """
     if name != "table" or np.ndim(p) == 0 or not angles_rise(name, angle, p):
         return True  # another rule reports it

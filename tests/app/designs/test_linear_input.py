@@ -24,7 +24,7 @@ from app.reports.routes import REPORTS, _wanted
 from app.solids.routes.models import BuildIn
 from app.web.shared.forms import kept, patch_of
 from cad.lists import listed
-from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.discovery import Catalogue
 from templates.core.errors import MOST_SUGGESTED, Fault, InvalidInputs, excerpt, unknown_name, unknown_names
 from templates.core.language.meaning import api_name
 from templates.core.nearest import nearest

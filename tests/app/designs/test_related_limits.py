@@ -14,8 +14,8 @@ from app.designs.engine.design_engine import DesignEngine
 from app.designs.engine.shifts import Upstream
 from app.designs.engine.verdicts import _operations
 from app.reference import Reference
-from templates.core.judging.bands import Estimate
-from templates.core.judging.comparison import VERDICTS
+from templates.core.criteria.bands import Estimate
+from templates.core.criteria.comparison import VERDICTS
 
 RELATED = {"permissible_film": "= share * least"}
 PARAMETERS = {"least": "4 um", "share": "0.5"}

@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
+from templates.core.criteria import limits as limits_of
+from templates.core.criteria.limits import Library, RowValue
 from templates.core.errors import InvalidInputs
-from templates.core.judging import limits as limits_of
-from templates.core.judging.limits import Library, RowValue
 from templates.core.language import levels
 from templates.core.language.evaluate import evaluate
 from templates.core.language.template import Template, choice, curve, formula, given, profile, text

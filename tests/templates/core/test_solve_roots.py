@@ -5,7 +5,7 @@ import pytest
 
 from templates.core.errors import InvalidInputs, Unreachable
 from templates.core.language import levels, scan
-from templates.core.language.confirming import CONFIRMED
+from templates.core.language.confirmation import CONFIRMED
 from templates.core.language.crossings import MOST_ROOTS
 from templates.core.language.evaluate import evaluate
 from templates.core.language.levels import Accuracy

@@ -11,7 +11,7 @@ import pytest
 from seeds import seeded
 
 from templates import get
-from templates.core.judging.judging import Absent
+from templates.core.criteria.evaluation import Absent
 from templates.core.language.criteria import EvaluatedValues, estimate_of
 from templates.core.language.evaluate import evaluate
 from templates.core.language.levels import accuracy, truth_of

@@ -9,7 +9,7 @@ from graphlib import CycleError, TopologicalSorter
 from types import FunctionType
 from typing import Any
 
-from templates.core.checking.faults import FileFault
+from templates.core.checks.faults import FileFault
 from templates.core.errors import FaultyText
 from templates.core.language.body import Body
 from templates.core.language.parsing import lines_of, parse
@@ -71,7 +71,7 @@ def _docstring(cls: type[Template]) -> Iterator[FileFault]:
 
 
 def _units(cls: type[Template]) -> Iterator[FileFault]:
-    """Yield declared units that nobody knows."""
+    """Yield declared units that are unknown."""
     for declared in cls.declarations.values():
         try:
             _ = declared.meaning.scale

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from templates.core.arrays import Array, Mask
-from templates.core.judging.comparison import NOT_CHECKED, Comparison
-from templates.core.judging.criterion import Criterion
+from templates.core.criteria.comparison import NOT_CHECKED, Comparison
+from templates.core.criteria.criterion import Criterion
 
 
 @dataclass(slots=True)  # frozen, each would cost four times as much

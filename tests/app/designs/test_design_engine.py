@@ -13,7 +13,7 @@ from row_designs import (
     assert_equal_to_designs,
     calculated,
     codes,
-    net_of,
+    engine_of,
     ref,
     spread,
 )
@@ -36,11 +36,11 @@ def changed(raw, **steps):
 
 
 def test_rows_of_a_bearing_equal_designs():
-    net = net_of(BEARING, "diameter", "width", "clearance")
-    rows = spread(net, 30)
+    engine = engine_of(BEARING, "diameter", "width", "clearance")
+    rows = spread(engine, 30)
     wanted = [FILM, LOSS, ref("idle.power_loss"), ref("film.bearing_width"), ref("clearance"), ref("load")]
-    table = net(rows, wanted)
-    assert assert_equal_to_designs(BEARING, net, rows, wanted, table) == 0
+    table = engine(rows, wanted)
+    assert assert_equal_to_designs(BEARING, engine, rows, wanted, table) == 0
     assert np.isnan(table.errors[ref("idle.power_loss")]).all()
     assert (table.errors[FILM] > 0).all()
 
@@ -62,10 +62,10 @@ def test_rows_of_curves_equal_designs(count):
             "factor",
         )
     ]
-    net = net_of(CURVES, "speed", "factor", "clearance")
-    rows = spread(net, count)
-    table = net(rows, wanted)
-    assert assert_equal_to_designs(CURVES, net, rows, wanted, table) == 0
+    engine = engine_of(CURVES, "speed", "factor", "clearance")
+    rows = spread(engine, count)
+    table = engine(rows, wanted)
+    assert assert_equal_to_designs(CURVES, engine, rows, wanted, table) == 0
     assert table.columns[ref("film.film_thickness")].shape == (count, 24)
     assert table.columns[ref("loads.crank_angle")].shape == (count, 24)
 
@@ -73,12 +73,12 @@ def test_rows_of_curves_equal_designs(count):
 def test_varied_curve_and_varied_constant_curve():
     """Speed is a curve that may be one value; here it is an input of the step, not of the design."""
     raw = changed(CURVES, film={"load_x": "= loads.main_load_x", "speed": "3000 rpm"})
-    net = net_of(raw, "film.speed", "bore")
-    rows = spread(net, 24)
+    engine = engine_of(raw, "film.speed", "bore")
+    rows = spread(engine, 24)
     wanted = [ref("film.film_thickness"), ref("film.speed")]
-    assert assert_equal_to_designs(raw, net, rows, wanted, net(rows, wanted)) == 0
+    assert assert_equal_to_designs(raw, engine, rows, wanted, engine(rows, wanted)) == 0
     speeds = rows[ref("film.speed")][:, None] * np.linspace(0.99, 1.01, 24)
-    table = net({**rows, ref("film.speed"): speeds}, wanted)
+    table = engine({**rows, ref("film.speed"): speeds}, wanted)
     np.testing.assert_array_equal(table.columns[ref("film.speed")], speeds)
 
 
@@ -100,20 +100,20 @@ def test_lists_of_relations_equal_designs():
             }
         },
     }
-    net = net_of(raw, "k", "j")
+    engine = engine_of(raw, "k", "j")
     wanted = [ref("shaft.natural_frequencies"), ref("shaft.mode_shapes"), ref("shaft.inertias")]
     for count in (3, 4):  # the numbers of frequencies and of inertias
-        rows = spread(net, count)
-        assert assert_equal_to_designs(raw, net, rows, wanted, net(rows, wanted)) == 0
+        rows = spread(engine, count)
+        assert assert_equal_to_designs(raw, engine, rows, wanted, engine(rows, wanted)) == 0
 
 
 def test_masked_rows_are_refused_with_place_and_code():
     """Width below zero is out of range; no film bears 1e8 N."""
-    net = net_of(BEARING, "width", "load")
+    engine = engine_of(BEARING, "width", "load")
     width, load = np.array([18, -1, 18, 18]) / 1e3, np.array([25e3, 25e3, 1e9, 20e3])
     rows, wanted = {ref("width"): width, ref("load"): load}, [FILM, ref("idle.power_loss")]
-    table = net(rows, wanted)
-    assert assert_equal_to_designs(BEARING, net, rows, wanted, table) == 2
+    table = engine(rows, wanted)
+    assert assert_equal_to_designs(BEARING, engine, rows, wanted, table) == 2
     assert "bearing_width must be > 0" in table.refusals[1].detail
     assert np.isnan(table.columns[FILM]).tolist() == [False, True, True, False]
     assert np.isnan(table.errors[FILM]).tolist() == [False, True, True, False]
@@ -124,14 +124,14 @@ def test_refusing_call_is_halved_and_rows_keep_the_text():
     """A load that is too large for the arithmetic refuses a curve as a whole."""
     raw = changed(CURVES, film={"crank_angle": "= angle * 1 deg", "load_x": "= loads.main_load_x"})
     raw["parameters"]["angle"] = {"value": (np.arange(24) * 30.0).tolist(), "unit": "1"}
-    net = net_of(raw, "angle")
-    angle = np.tile(net.nominal(ref("angle")), (9, 1))
+    engine = engine_of(raw, "angle")
+    angle = np.tile(engine.nominal(ref("angle")), (9, 1))
     angle[4] *= 10
     wanted = [ref("film.minimum_film_thickness")]
     rows = {ref("angle"): angle}
-    table = net(rows, wanted)
+    table = engine(rows, wanted)
     assert table.refusals.keys() == {4}
-    assert assert_equal_to_designs(raw, net, rows, wanted, table) == 1
+    assert assert_equal_to_designs(raw, engine, rows, wanted, table) == 1
     one = calculated({**raw, "parameters": {**raw["parameters"], "angle": angle[4].tolist()}})
     assert table.refusals[4].detail == one.faults[0].detail
     assert np.isfinite(np.delete(table.columns[wanted[0]], 4)).all()
@@ -139,9 +139,9 @@ def test_refusing_call_is_halved_and_rows_keep_the_text():
 
 def test_relation_without_a_value_refuses_its_row():
     raw = changed(BEARING, film={"radial_load": "= 25 kN * sqrt(1 - (clearance / 60 um)**2)"})
-    net = net_of(raw, "clearance")
+    engine = engine_of(raw, "clearance")
     rows = {ref("clearance"): np.array([50e-6, 70e-6, np.nan])}
-    table = net(rows, [FILM])
+    table = engine(rows, [FILM])
     assert table.refusals[1].place == "film.radial_load"
     assert table.refusals[1].code == table.refusals[2].code == "not_finite"
     assert table.refusals[2].place == "clearance"
@@ -150,7 +150,7 @@ def test_relation_without_a_value_refuses_its_row():
 
 def test_what_is_wrong_with_the_design_is_said_of_every_row_once():
     raw = changed(BEARING, film={"speed": "0 rpm"})
-    table = net_of(raw, "clearance")({ref("clearance"): np.linspace(40e-6, 60e-6, 5000)}, [FILM])
+    table = engine_of(raw, "clearance")({ref("clearance"): np.linspace(40e-6, 60e-6, 5000)}, [FILM])
     assert len(table.refusals) == 5000
     assert {refusal.place for refusal in table.refusals.values()} == {"film.hydrodynamic_speed"}
     assert np.isnan(table.columns[FILM]).all()
@@ -158,15 +158,15 @@ def test_what_is_wrong_with_the_design_is_said_of_every_row_once():
 
 def test_only_what_is_wanted_is_calculated():
     raw = changed(BEARING, idle={"speed": "= 5000 rpm * sqrt(0 - clearance / 1 m)"})
-    net, rows = net_of(raw, "clearance"), {ref("clearance"): np.array([50e-6, 60e-6])}
-    table = net(rows, [FILM])
+    engine, rows = engine_of(raw, "clearance"), {ref("clearance"): np.array([50e-6, 60e-6])}
+    table = engine(rows, [FILM])
     assert not table.refusals
     assert table.levels == {"film": "map"}
-    assert net(rows, [ref("idle.power_loss")]).refusals.keys() == {0, 1}
+    assert engine(rows, [ref("idle.power_loss")]).refusals.keys() == {0, 1}
 
 
 def test_values_that_do_not_follow_from_rows_are_one_view():
-    table = net_of(BEARING, "clearance")({ref("clearance"): np.array([50e-6, 60e-6])}, [ref("load")])
+    table = engine_of(BEARING, "clearance")({ref("clearance"): np.array([50e-6, 60e-6])}, [ref("load")])
     assert table.columns[ref("load")].tolist() == [25e3, 25e3]
     assert table.columns[ref("load")].strides == (0,)
 
@@ -174,7 +174,7 @@ def test_values_that_do_not_follow_from_rows_are_one_view():
 def test_absent_output_is_no_refusal():
     raw = changed(BEARING, film={"supply_temperature": None, "dynamic_viscosity": "10 mPa*s"})
     wanted = [FILM, ref("film.film_temperature")]
-    table = net_of(raw, "clearance")({ref("clearance"): np.array([50e-6, 60e-6])}, wanted)
+    table = engine_of(raw, "clearance")({ref("clearance"): np.array([50e-6, 60e-6])}, wanted)
     assert not table.refusals
     assert np.isnan(table.columns[wanted[1]]).all()
     assert table.absent == {wanted[1]: "no temperature is given; the dynamic viscosity is"}
@@ -187,41 +187,41 @@ def test_single_input_varies_by_groups():
     given |= {"firing_order": [1], "cylinder_positions": "0 m"}
     raw = {"name": "engine", "steps": {"engine": {"template": "flywheel", "version": 1, "inputs": given}}}
     raw["steps"]["engine"]["outputs"] = ["mean_torque"]
-    net = net_of(raw, "engine.cylinders", "engine.bore")
+    engine = engine_of(raw, "engine.cylinders", "engine.bore")
     rows = {
         ref("engine.cylinders"): np.array([1.0, 2.0, 1.0]),
         ref("engine.bore"): np.array([0.1, 0.1, 0.11]),
     }
     wanted = [ref("engine.mean_torque")]
-    table = net(rows, wanted)
-    assert assert_equal_to_designs(raw, net, rows, wanted, table) == 1
+    table = engine(rows, wanted)
+    assert assert_equal_to_designs(raw, engine, rows, wanted, table) == 1
     assert np.isfinite(table.columns[wanted[0]]).tolist() == [True, False, True]
 
 
 def test_defaults_may_vary():
-    net = net_of(BEARING, "film.sleeve_speed", "film.dynamic_viscosity")
-    assert net.unit(ref("film.sleeve_speed")) == "rpm"
-    assert net.nominal(ref("film.sleeve_speed")) == 0
+    engine = engine_of(BEARING, "film.sleeve_speed", "film.dynamic_viscosity")
+    assert engine.unit(ref("film.sleeve_speed")) == "rpm"
+    assert engine.nominal(ref("film.sleeve_speed")) == 0
     one = calculated(BEARING)
     viscosity = ref("film.dynamic_viscosity")
-    assert net.nominal(viscosity) == one.value(viscosity)
+    assert engine.nominal(viscosity) == one.value(viscosity)
     rows = {
         ref("film.sleeve_speed"): np.array([0.0, 10.0]),
         ref("film.dynamic_viscosity"): np.array([0.01, 0.02]),
     }
-    table = net(rows, [FILM])
-    assert assert_equal_to_designs(BEARING, net, rows, [FILM], table) == 0
+    table = engine(rows, [FILM])
+    assert assert_equal_to_designs(BEARING, engine, rows, [FILM], table) == 0
 
 
 def test_units_and_nominal_values():
-    net = net_of(CURVES, "speed")
-    assert net.unit(ref("speed")) == "rpm"
-    assert net.unit(ref("film.minimum_film_thickness")) == "um"
-    assert net.nominal(ref("speed")) == pytest.approx(3000 * np.pi / 30, rel=1e-15)
-    assert np.shape(net.nominal(ref("factor"))) == (24,)
+    engine = engine_of(CURVES, "speed")
+    assert engine.unit(ref("speed")) == "rpm"
+    assert engine.unit(ref("film.minimum_film_thickness")) == "um"
+    assert engine.nominal(ref("speed")) == pytest.approx(3000 * np.pi / 30, rel=1e-15)
+    assert np.shape(engine.nominal(ref("factor"))) == (24,)
     one = calculated(CURVES)
-    np.testing.assert_array_equal(net.nominal(ref("film.load_y")), one.value(ref("film.load_y")))
-    assert net.nominal(ref("film.minimum_film_thickness")) == one.value(ref("film.minimum_film_thickness"))
+    np.testing.assert_array_equal(engine.nominal(ref("film.load_y")), one.value(ref("film.load_y")))
+    assert engine.nominal(ref("film.minimum_film_thickness")) == one.value(ref("film.minimum_film_thickness"))
 
 
 @pytest.mark.parametrize("place", ["nothing", "film.nothing", "film.power_loss", "film.mass"])
@@ -244,7 +244,7 @@ def test_lists_of_points_are_refused_beside_rows():
     assert codes(raw, "clearance")[0] == {"film.speed": "shape"}
     raw = {**BEARING, "parameters": {**BEARING["parameters"], "load": ["25 kN", "20 kN"]}}
     assert codes(raw, "clearance")[0] == {"film.radial_load": "shape"}
-    assert net_of(raw, "clearance", wanted=[ref("load")])
+    assert engine_of(raw, "clearance", wanted=[ref("load")])
 
 
 @pytest.mark.parametrize(
@@ -258,18 +258,18 @@ def test_lists_of_points_are_refused_beside_rows():
 )
 def test_wrong_columns_are_refused(rows):
     with pytest.raises(InvalidInputs) as refused:
-        net_of(BEARING, "clearance")(rows, [FILM])
+        engine_of(BEARING, "clearance")(rows, [FILM])
     assert {fault.code for fault in refused.value.faults} <= {"missing", "shape", "unknown_name"}
 
 
 def test_wrong_names_of_outputs_are_refused():
-    net = net_of(BEARING, "clearance")
+    engine = engine_of(BEARING, "clearance")
     with pytest.raises(InvalidInputs, match=r"film\.minimum_film_thickness"):
-        net({ref("clearance"): np.ones(2)}, [ref("film.minimum_film_thicknes")])
+        engine({ref("clearance"): np.ones(2)}, [ref("film.minimum_film_thicknes")])
     with pytest.raises(InvalidInputs, match="reynolds"):
-        net({ref("clearance"): np.ones(2)}, [FILM], levels={"film": "reynold"})
+        engine({ref("clearance"): np.ones(2)}, [FILM], levels={"film": "reynold"})
     with pytest.raises(InvalidInputs, match="not a quantity"):
-        net({ref("clearance"): np.ones(2)}, [ref("film.lubrication_regime")])
+        engine({ref("clearance"): np.ones(2)}, [ref("film.lubrication_regime")])
 
 
 def test_columns_align_rows_first():
@@ -298,7 +298,7 @@ def test_faulty_documents_are_refused():
 
 
 def test_no_rows_give_empty_columns():
-    table = net_of(BEARING, "clearance")({ref("clearance"): np.empty(0)}, [FILM], judge=True)
+    table = engine_of(BEARING, "clearance")({ref("clearance"): np.empty(0)}, [FILM], judge=True)
     assert table.count == 0
     assert table.columns[FILM].shape == (0,)
 
@@ -323,7 +323,7 @@ def test_curves_of_different_lengths_are_refused_in_words():
 
 
 def test_rows_that_all_lack_an_input_are_refused_and_not_grouped():
-    net = net_of(torsion(highest_order="= sqrt(p)"), "p")
+    engine = engine_of(torsion(highest_order="= sqrt(p)"), "p")
     wanted = [ref(f"s.{name}") for name in TORSION.formulas if not isinstance(TORSION.formulas[name], Text)]
-    table = net({ref("p"): np.array([-1.0, -4.0])}, wanted[:1])
+    table = engine({ref("p"): np.array([-1.0, -4.0])}, wanted[:1])
     assert sorted(table.refusals) == [0, 1]

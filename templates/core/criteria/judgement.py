@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from templates.core.judging.comparison import NOT_CHECKED, Codes, Verdict
+from templates.core.criteria.comparison import NOT_CHECKED, Codes, Verdict
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Generic, TypeVar
 
-from templates.core.catalogue.loading import failing_line, load
+from templates.core.catalogue.modules import failing_line, load
 from templates.core.errors import (
     QuarantinedTemplate,
     UnknownTemplate,

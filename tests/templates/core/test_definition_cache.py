@@ -8,14 +8,14 @@ import sys
 import pint
 import pytest
 
-from templates.core import prepared
+from templates.core import definition_cache
 from templates.core.units import units
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """A folder of its own for what is kept."""
-    monkeypatch.setattr(prepared, "place", lambda name: tmp_path / name)
+    monkeypatch.setattr(definition_cache, "place", lambda name: tmp_path / name)
     return tmp_path
 
 
@@ -26,7 +26,7 @@ def known(registry, names):
 
 
 def test_property_units_that_are_kept_are_those_of_the_definitions(folder):
-    first, second = (prepared.from_folder("units", units._registry) for _ in range(2))
+    first, second = (definition_cache.from_folder("units", units._registry) for _ in range(2))
     assert [place.name for place in folder.iterdir()] == ["units"]
     assert second.cache_folder == folder / "units"
     read = pint.UnitRegistry()
@@ -46,21 +46,21 @@ def test_a_damaged_file_is_read_from_its_definition_and_made_again(folder, conte
             kept.write_bytes(pickle.dumps("made"))
         return "made"
 
-    assert prepared.from_folder("it", make) == "made"
+    assert definition_cache.from_folder("it", make) == "made"
     (folder / "it" / "kept.pickle").write_bytes(content)
-    assert prepared.from_folder("it", make) == "made"
+    assert definition_cache.from_folder("it", make) == "made"
     assert not (folder / "it").exists()
-    assert [prepared.from_folder("it", make) for _ in range(2)] == ["made", "made"]
+    assert [definition_cache.from_folder("it", make) for _ in range(2)] == ["made", "made"]
     assert (folder / "it" / "kept.pickle").exists()
 
 
 def test_where_python_keeps_no_bytecode_nothing_is_written(folder, monkeypatch):
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
-    assert prepared.from_folder("units", lambda given: given) is None
-    assert prepared.file("grammar") is False
+    assert definition_cache.from_folder("units", lambda given: given) is None
+    assert definition_cache.file("grammar") is False
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     monkeypatch.setattr(os, "access", lambda *_: False)
-    assert prepared.from_folder("units", lambda given: given) is None
+    assert definition_cache.from_folder("units", lambda given: given) is None
     assert list(folder.iterdir()) == []
 
 
@@ -70,7 +70,7 @@ def test_what_cannot_be_written_is_made_all_the_same(folder):
             raise PermissionError
         return "made"
 
-    assert prepared.from_folder("units", make) == "made"
+    assert definition_cache.from_folder("units", make) == "made"
     assert list(folder.iterdir()) == []
 
 
@@ -78,5 +78,5 @@ def test_what_cannot_be_written_is_made_all_the_same(folder):
 def test_a_grammar_is_kept_where_python_keeps_bytecode(module):
     importlib.import_module(module)
     name = {"relation": "relation.grammar", "grammar": "statement.grammar"}[module.rpartition(".")[2]]
-    assert prepared.file(name) == str(prepared.place(name))
-    assert prepared.place(name).stat().st_size > 1000
+    assert definition_cache.file(name) == str(definition_cache.place(name))
+    assert definition_cache.place(name).stat().st_size > 1000

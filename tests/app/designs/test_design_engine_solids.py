@@ -1,7 +1,7 @@
 """Rows of a design with solids: which rows need them, and what is used where a measure is known."""
 
 import numpy as np
-from row_designs import FILM, calculated, codes, net_of, ref
+from row_designs import FILM, calculated, codes, engine_of, ref
 
 from templates.door import built_in
 
@@ -37,29 +37,29 @@ def test_measures_that_follow_from_varied_names_need_solids():
     assert "bore → shell.inner_diameter → shell → shell.mass → film.radial_load" in message
     assert codes(SHELL, "shell.wall")[0] == {"shell.wall": "needs_solids"}
     assert codes(SHELL, "bore", measured={ref("shell.mass"): 0.1})[0] == {"bore": "needs_solids"}
-    assert net_of(SHELL, "bore", wanted=[ref("other.power_loss")])
+    assert engine_of(SHELL, "bore", wanted=[ref("other.power_loss")])
 
 
 def test_measures_that_are_known_are_used():
-    net = net_of(SHELL, "film.speed", measured={ref("shell.mass"): 0.1})
+    engine = engine_of(SHELL, "film.speed", measured={ref("shell.mass"): 0.1})
     rows = {ref("film.speed"): np.array([400.0, 500.0])}
-    table = net(rows, [FILM, ref("shell.mass"), ref("film.radial_load")])
+    table = engine(rows, [FILM, ref("shell.mass"), ref("film.radial_load")])
     assert table.columns[ref("film.radial_load")].tolist() == [20001.0, 20001.0]
     assert np.isfinite(table.columns[FILM]).all()
 
 
 def test_measures_may_come_with_the_rows():
-    net = net_of(SHELL, "bore", "shell.mass")
+    engine = engine_of(SHELL, "bore", "shell.mass")
     rows = {ref("bore"): np.array([0.048, 0.05]), ref("shell.mass"): np.array([0.1, 0.2])}
-    table = net(rows, [FILM, ref("film.radial_load")])
+    table = engine(rows, [FILM, ref("film.radial_load")])
     assert table.columns[ref("film.radial_load")].tolist() == [20001.0, 20002.0]
     assert np.isfinite(table.columns[FILM]).all()
 
 
 def test_what_waits_for_a_solid_is_no_refusal():
-    net = net_of(SHELL, "bore", pending=True)
+    engine = engine_of(SHELL, "bore", pending=True)
     wanted = [FILM, ref("other.power_loss"), ref("shell.width"), ref("shell.mass")]
-    table = net({ref("bore"): np.array([0.048, 0.05])}, wanted)
+    table = engine({ref("bore"): np.array([0.048, 0.05])}, wanted)
     assert not table.refusals
     assert [bool(np.isnan(table.columns[name]).all()) for name in wanted] == [True, False, False, True]
     widths = [calculated({**SHELL, "parameters": {"bore": b}}).value(wanted[2]) for b in ("48 mm", "50 mm")]

@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from templates.core.criteria.criterion import Criterion, Limit
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_name, unknown_names
-from templates.core.judging.criterion import Criterion, Limit
 from templates.core.units.quantity import read_beside
 from templates.core.units.units import Value
 

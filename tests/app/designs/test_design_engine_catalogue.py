@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from row_designs import CATALOGUES, assert_equal_to_designs, net_of, ref
+from row_designs import CATALOGUES, assert_equal_to_designs, engine_of, ref
 
 from templates.core.language.intake import is_single
 from templates.core.language.spec import Choice, Table, Text
@@ -30,11 +30,11 @@ def quantities(cls):
     ]
 
 
-def varied(net, count):
+def varied(engine, count):
     """Rows of nominal values that differ by up to one per cent."""
     random, rows = np.random.default_rng(5), {}
-    for place in sorted(net.varied, key=str):
-        nominal = np.asarray(net.nominal(place))
+    for place in sorted(engine.varied, key=str):
+        nominal = np.asarray(engine.nominal(place))
         share = random.uniform(0.999, 1.001, (count,) + (1,) * nominal.ndim)
         rows[place] = nominal * share
     return rows
@@ -49,11 +49,11 @@ def test_property_rows_of_a_template_equal_designs(template, count):
     level = {"level": cls.default_level} if cls.levels else {}
     step = {"template": template[0], "version": template[1], **level, "inputs": dict(cls.example)}
     raw = {"name": cls.id, "steps": {"step": step}}
-    net = net_of(raw, *(f"step.{name}" for name in quantities(cls)))
-    rows = varied(net, count)
+    engine = engine_of(raw, *(f"step.{name}" for name in quantities(cls)))
+    rows = varied(engine, count)
     wanted = [ref(f"step.{name}") for name, one in cls.formulas.items() if not isinstance(one, Text)]
-    table = net(rows, wanted, levels={"step": cls.default_level or None})
-    assert assert_equal_to_designs(raw, net, rows, wanted, table, within=cls.precision) == 0
+    table = engine(rows, wanted, levels={"step": cls.default_level or None})
+    assert assert_equal_to_designs(raw, engine, rows, wanted, table, within=cls.precision) == 0
 
 
 @pytest.mark.parametrize("model", MODELS, ids=lambda key: f"{key[0]} {key[1]}")
@@ -61,9 +61,9 @@ def test_property_rows_of_a_model_equal_designs(model):
     cls = CATALOGUES.models.get(*model)
     raw = {"name": cls.id, "models": {"part": {"id": model[0], "version": model[1]}}}
     raw["models"]["part"]["parameters"] = dict(cls.example)
-    net = net_of(raw, *(f"part.{name}" for name in quantities(cls)))
-    rows = varied(net, 4)
+    engine = engine_of(raw, *(f"part.{name}" for name in quantities(cls)))
+    rows = varied(engine, 4)
     names = [n for n, one in cls.inputs.items() if not isinstance(one, (Choice, Table))]
     wanted = [ref(f"part.{name}") for name in names]
-    table = net(rows, wanted)
-    assert assert_equal_to_designs(raw, net, rows, wanted, table) == 0
+    table = engine(rows, wanted)
+    assert assert_equal_to_designs(raw, engine, rows, wanted, table) == 0

@@ -6,8 +6,8 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-from templates.core.judging.comparison import WORST_FIRST, Verdict
-from templates.core.judging.judgement import Judgement
+from templates.core.criteria.comparison import WORST_FIRST, Verdict
+from templates.core.criteria.judgement import Judgement
 
 SHOWN: tuple[Verdict, ...] = ("met", "not_met", "undecided", "not_checked")
 

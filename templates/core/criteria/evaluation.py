@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 
 from templates.core.arrays import Truth
-from templates.core.errors import FaultyText, listed
-from templates.core.judging.bands import Estimate, Shift, relative_width
-from templates.core.judging.comparison import (
+from templates.core.criteria.bands import Estimate, Shift, relative_width
+from templates.core.criteria.comparison import (
     NOT_CHECKED,
     NOT_MET,
     VERDICTS,
@@ -23,9 +22,10 @@ from templates.core.judging.comparison import (
     compare,
     side_of,
 )
-from templates.core.judging.criterion import Criterion
-from templates.core.judging.judgement import Judgement, Place
-from templates.core.judging.worst import Worst, worst_of
+from templates.core.criteria.criterion import Criterion
+from templates.core.criteria.judgement import Judgement, Place
+from templates.core.criteria.worst import Worst, worst_of
+from templates.core.errors import FaultyText, listed
 from templates.core.units.units import Value
 
 Parts = dict[str, Any]

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.arrays import Mask, Truth
+from templates.core.criteria.bands import Bounds, Estimate, Shift, aligned, spread, value_and_bounds
+from templates.core.criteria.criterion import Criterion, Sign
 from templates.core.errors import FaultyText
-from templates.core.judging.bands import Bounds, Estimate, Shift, aligned, spread, value_and_bounds
-from templates.core.judging.criterion import Criterion, Sign
 from templates.core.units.relation import Relation
 from templates.core.units.units import Value
 

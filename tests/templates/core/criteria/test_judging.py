@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from seeds import seeded
 
-from templates.core.errors import FaultyText
-from templates.core.judging.bands import Estimate
-from templates.core.judging.comparison import (
+from templates.core.criteria.bands import Estimate
+from templates.core.criteria.comparison import (
     MET,
     MET_ERROR_UNKNOWN,
     NOT_CHECKED,
@@ -17,11 +16,12 @@ from templates.core.judging.comparison import (
     VERDICTS,
     compare,
 )
-from templates.core.judging.criterion import NameDescription, read_criterion
-from templates.core.judging.judgement import sentence
-from templates.core.judging.judging import Absent, Along, judge
-from templates.core.judging.summary import summarised, worst_first
-from templates.core.judging.worst import worst_of_rows
+from templates.core.criteria.criterion import NameDescription, read_criterion
+from templates.core.criteria.evaluation import Absent, Along, judge
+from templates.core.criteria.judgement import sentence
+from templates.core.criteria.summary import summarised, worst_first
+from templates.core.criteria.worst import worst_of_rows
+from templates.core.errors import FaultyText
 
 NAN = math.nan
 KNOWN = {

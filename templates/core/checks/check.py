@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from templates.core.checking.behaviour import faults_of_behaviour, faults_of_example
-from templates.core.checking.faults import FileFault
-from templates.core.checking.golden import faults_of_release
-from templates.core.checking.structure import faults_of_structure
+from templates.core.checks.behaviour import faults_of_behaviour, faults_of_example
+from templates.core.checks.faults import FileFault
+from templates.core.checks.golden import faults_of_release
+from templates.core.checks.structure import faults_of_structure
 from templates.core.language.template import Template
 
 

@@ -5,11 +5,10 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from row_designs import BEARING, CURVES, FILM, alone, calculated, net_of, ref, spread
+from row_designs import BEARING, CURVES, FILM, alone, calculated, engine_of, ref, spread
 
 from app.designs.engine.verdicts import judged
-from templates.core.errors import InvalidInputs
-from templates.core.judging.comparison import (
+from templates.core.criteria.comparison import (
     MET,
     MET_ERROR_UNKNOWN,
     NOT_CHECKED,
@@ -17,6 +16,7 @@ from templates.core.judging.comparison import (
     VERDICTS,
     WORST_FIRST,
 )
+from templates.core.errors import InvalidInputs
 from templates.core.language.criteria import EvaluatedValues, estimate_of
 from templates.core.language.evaluate import evaluate
 from templates.core.language.levels import accuracy
@@ -107,12 +107,12 @@ def assert_equal_numbers(judgement, column, row):
 
 def assert_judged_as_designs(raw, varied, count):
     """The verdicts and numbers of each row are those of a design of its own; how often each verdict is."""
-    net = net_of(raw, *varied)
-    rows = spread(net, count, 0.8, 1.2)
-    table = net(rows, [], judge=True)
+    engine = engine_of(raw, *varied)
+    rows = spread(engine, count, 0.8, 1.2)
+    table = engine(rows, [], judge=True)
     verdicts = Counter()
     for row in range(count):
-        judgements = judged(calculated(alone(raw, rows, row, net)))
+        judgements = judged(calculated(alone(raw, rows, row, engine)))
         assert {judgement.name for judgement in judgements} == table.verdicts.keys()
         for judgement in judgements:
             code = table.verdicts[judgement.name][row]
@@ -137,10 +137,10 @@ def test_property_verdicts_of_rows_equal_those_of_designs(name):
 
 def test_rows_that_are_refused_are_not_checked():
     raw = chained()
-    net = net_of(raw, "width", "load")
+    engine = engine_of(raw, "width", "load")
     width, load = np.array([18, -1, 18, 18]) / 1e3, np.array([25e3, 25e3, 1e9, 28e3])
     rows = {ref("width"): width, ref("load"): load}
-    table = net(rows, [FILM], judge=True)
+    table = engine(rows, [FILM], judge=True)
     assert table.refusals.keys() == {1, 2}
     assert table.verdicts["given"].tolist() == [MET, MET, NOT_MET, NOT_MET]
     for name in ("film", "film.film_exists", "film.specific_load", "second_film", "both", "load"):
@@ -149,30 +149,30 @@ def test_rows_that_are_refused_are_not_checked():
 
 
 def test_only_named_criteria_are_calculated_and_judged():
-    net = net_of(chained(), "clearance")
-    rows = spread(net, 5)
-    table = net(rows, [ref("clearance")], criteria=["film"])
+    engine = engine_of(chained(), "clearance")
+    rows = spread(engine, 5)
+    table = engine(rows, [ref("clearance")], criteria=["film"])
     assert table.verdicts.keys() == {"film"}
     assert not table.judged
     assert table.levels == {"film": "fit"}
-    table = net(rows, [], criteria=["film", "given"], judge=True)
+    table = engine(rows, [], criteria=["film", "given"], judge=True)
     assert table.judged.keys() == {"film", "given"}
     with pytest.raises(InvalidInputs, match="second_film"):
-        net(rows, [], criteria=["second_films"])
+        engine(rows, [], criteria=["second_films"])
 
 
 def test_criteria_of_outputs_that_are_left_out_can_be_named():
-    net = net_of(chained(), "clearance")
-    assert "film.pressure" not in net.criteria()
-    table = net(spread(net, 3), [], criteria=["film.rigid"], levels={"film": "map"}, judge=True)
+    engine = engine_of(chained(), "clearance")
+    assert "film.pressure" not in engine.criteria()
+    table = engine(spread(engine, 3), [], criteria=["film.rigid"], levels={"film": "map"}, judge=True)
     assert (table.verdicts["film.rigid"] == MET).all()
     assert (table.judged["film.rigid"].utilisation < 1).all()
 
 
 def test_chunks_make_no_difference_to_verdicts():
-    net = net_of(chained(), "clearance", "load")
-    rows = spread(net, 11)
-    whole, parts = net(rows, [], judge=True), net(rows, [], judge=True, chunk=4)
+    engine = engine_of(chained(), "clearance", "load")
+    rows = spread(engine, 11)
+    whole, parts = engine(rows, [], judge=True), engine(rows, [], judge=True, chunk=4)
     for name, codes in whole.verdicts.items():
         np.testing.assert_array_equal(parts.verdicts[name], codes)
         np.testing.assert_allclose(parts.judged[name].low, whole.judged[name].low, rtol=1e-12)
@@ -180,10 +180,10 @@ def test_chunks_make_no_difference_to_verdicts():
 
 
 def test_errors_that_are_not_stated_are_said():
-    table = net_of(chained(), "clearance")({ref("clearance"): np.array([5e-5, 6e-5])}, [], judge=True)
+    table = engine_of(chained(), "clearance")({ref("clearance"): np.array([5e-5, 6e-5])}, [], judge=True)
     assert table.judged["film"].is_known
     assert table.judged["given"].is_known
-    loads = net_of(curves(), "speed")({ref("speed"): np.array([300.0])}, [], criteria=["load"], judge=True)
+    loads = engine_of(curves(), "speed")({ref("speed"): np.array([300.0])}, [], criteria=["load"], judge=True)
     assert not loads.judged["load"].is_known
 
 
@@ -195,17 +195,17 @@ def test_error_upstream_that_is_not_known_in_some_rows_is_said_of_these():
     raw["steps"]["second"] = copy.deepcopy(raw["steps"]["film"])
     raw["steps"]["second"]["inputs"]["speed"] = "= 5000 rpm + film.whirl_threshold_speed / 1000"
     raw["criteria"] = {"film": {"require": "second.minimum_film_thickness >= 1 um"}}
-    net = net_of(raw, "width", "load")
+    engine = engine_of(raw, "width", "load")
     width = np.geomspace(0.05, 0.5, 12)
     rows, whirl = {ref("width"): width, ref("load"): 1e5 * width}, ref("film.whirl_threshold_speed")
-    table = net(rows, [whirl], judge=True)
+    table = engine(rows, [whirl], judge=True)
     assert np.isfinite(table.columns[whirl]).all()
     unknown = np.isnan(table.errors[whirl])
     assert unknown.any()
     assert not unknown.all()
     assert table.verdicts["film"].tolist() == np.where(unknown, MET_ERROR_UNKNOWN, MET).tolist()
     for row in range(table.count):
-        for one in judged(calculated(alone(raw, rows, row, net))):
+        for one in judged(calculated(alone(raw, rows, row, engine))):
             assert (one.name, VERDICTS[table.verdicts[one.name][row]]) == (one.name, one.verdict)
 
 
@@ -219,11 +219,11 @@ def test_criteria_on_measures_wait_for_them():
         },
     }
     bore = {ref("shell.inner_diameter"): np.array([0.048, 0.05])}
-    table = net_of(raw, "shell.inner_diameter")(bore, [], judge=True)
+    table = engine_of(raw, "shell.inner_diameter")(bore, [], judge=True)
     assert table.verdicts["light"].tolist() == [NOT_CHECKED, NOT_CHECKED]
     assert table.verdicts["wide"].tolist() == [MET, MET]
-    net = net_of(raw, "shell.inner_diameter", "shell.mass")
-    table = net({**bore, ref("shell.mass"): np.array([0.1, 0.2])}, [], judge=True)
+    engine = engine_of(raw, "shell.inner_diameter", "shell.mass")
+    table = engine({**bore, ref("shell.mass"): np.array([0.1, 0.2])}, [], judge=True)
     assert table.verdicts["light"].tolist() == [MET, NOT_MET]
     np.testing.assert_allclose(table.judged["light"].margin, [0.05, -0.05], rtol=1e-12)
 

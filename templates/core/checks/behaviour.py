@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 
-from templates.core.catalogue.loading import failing_line
-from templates.core.checking.faults import FileFault
-from templates.core.checking.structure import line_of
+from templates.core.catalogue.modules import failing_line
+from templates.core.checks.faults import FileFault
+from templates.core.checks.structure import line_of
 from templates.core.errors import Fault, InvalidInputs, TemplateError
 from templates.core.language.dimensions import faults_by_part
 from templates.core.language.evaluate import evaluate

@@ -11,7 +11,7 @@ import numpy as np
 
 from templates.core.catalogue.digests import digest, release_file
 from templates.core.catalogue.golden import results
-from templates.core.checking.faults import FileFault
+from templates.core.checks.faults import FileFault
 from templates.core.errors import InvalidInputs
 from templates.core.language.template import Template
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from seeds import seeded
 
-from templates.core.judging.bands import Estimate, band, relative_width, value_and_bounds
+from templates.core.criteria.bands import Estimate, band, relative_width, value_and_bounds
 from templates.core.units.relation import parse
 
 INF, NAN = math.inf, math.nan
