@@ -35,7 +35,7 @@ FOLDERS = "CRANKWRIGHT_TEMPLATE_FOLDERS"
 
 
 class CatalogueCommand(click.Command):
-    """A command that says what is wrong with the catalogue, not where the program noticed."""
+    """A command that reports the faults of the catalogue without a traceback."""
 
     def invoke(self, ctx: click.Context) -> object:
         """Run the command."""

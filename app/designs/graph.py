@@ -131,7 +131,7 @@ def _cell(
 
 
 def _blocks(choices: Choices) -> Iterator[tuple[Block | None, list[Fault]]]:
-    """Yield every step and every model, None where its template is unknown, with what is wrong with it."""
+    """Yield every step and every model, None where its template is unknown, with its faults."""
     for name, step in choices.document.steps.items():
         yield _step(choices, name, step)
     for name, model in choices.document.models.items():

@@ -103,7 +103,7 @@ def restore(settings: Settings, url: str, archive: Path, say: Say) -> RestoreRes
 
 
 def _read(store: Artifacts, row: NamedFile) -> tuple[bytes | None, str]:
-    """Return the bytes of a file, or None and what is wrong with it."""
+    """Return the bytes of a file, or None and its faults."""
     try:
         data = store.read(row.sha)
     except ArtifactMissing:

@@ -174,7 +174,7 @@ def _compared(
 
 
 def _alone(problem: Problem, book: _Book, level: int, seed: int) -> list[Prediction]:
-    """Return the result of one level by itself, confirmed once; nothing of a level that lacks a result."""
+    """Return the result of one level alone, confirmed once; an empty list without a result."""
     answer, confirm = book.answer(level), book.answer(CONFIRM)
     try:
         if len(problem.objectives) > 1:
@@ -215,7 +215,7 @@ class _Journal:
         return self.stages.get(f"{self.level}: {name}")
 
     def keep(self, name: str, stage: Stage) -> None:
-        """Keep a stage as far as it has come; the next chunk has it."""
+        """Store the present state of a stage for the next chunk."""
         self.stages[f"{self.level}: {name}"] = stage
         self.changed.add(f"{self.level}: {name}")
 

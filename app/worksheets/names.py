@@ -41,7 +41,7 @@ def signed(typed: str | None) -> tuple[str | None, str | None]:
 
 
 def is_same_person(one: str, other: str) -> bool:
-    """Return whether two typed names are the same but for letter case, blanks and signs that nobody sees."""
+    """Return whether two names are equal except for case, blanks and invisible characters."""
     return _folded(one) == _folded(other)
 
 

@@ -89,7 +89,7 @@ class CrankThrow(CrankRules):
         return self.L_j / 2
 
     def drawn(self) -> Throw:
-        """Return the parameters as radii, lengths and angles of what is drawn."""
+        """Return the parameters as radii, lengths and angles of the drawn shape."""
         return Throw(
             outline=Outline(
                 throw=mm(self.R),

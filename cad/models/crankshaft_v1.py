@@ -171,7 +171,7 @@ class Crankshaft(SplitParameters, EndParameters):
         return there_is_none(self.R_w) | clear_of_corners(self.web_shape, self.phi_w)
 
     def drawn(self) -> WholeShaft:
-        """Return the parameters as radii, lengths and angles of what is drawn."""
+        """Return the parameters as radii, lengths and angles of the drawn shape."""
         angles = np.atleast_1d(self.psi).tolist()
         radii = [mm(radius) for radius in np.broadcast_to(self.R_w, 2 * len(angles))]
         throws = (

@@ -231,7 +231,7 @@ def _cell(result: Calculation, cell: Cell) -> None:
 
 
 def _waits(result: Calculation, cell: Cell, sources: Collection[Node]) -> bool:
-    """Return whether a cell uses what is pending; for rows, a measure that nobody knows."""
+    """Return whether a cell uses a pending value; for rows, an unknown measure."""
     if not result.pending.isdisjoint(sources):
         return True
     return result.needs is not None and not result.needs.waiting.isdisjoint(cell.uses.values())
@@ -441,9 +441,9 @@ def _evaluation(
 
 
 def _prepared(result: Calculation, block: Block) -> Evaluation | None:
-    """Return the evaluation of a step that somebody else has made for this calculation.
+    """Return the evaluation of a step that was prepared for this calculation.
 
-    None if nobody has.
+    None if there is none.
     """
     prepared = result.prepared.pop(block.name, None)
     if prepared == DEFERRED:

@@ -56,7 +56,7 @@ class ImportRecord(SheetRecord):
 
 
 def record_of(row: Row) -> ImportRecord | None:
-    """Return the record of a version; None if somebody typed it. Nothing but an import writes records."""
+    """Return the import record of a version; None for a typed worksheet."""
     return cast("ImportRecord | None", row.imported)
 
 

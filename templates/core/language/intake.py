@@ -29,7 +29,7 @@ from templates.core.units.units import Value, unit
 def read_inputs(
     cls: type[Calculation], raw: Mapping[str, Any]
 ) -> tuple[dict[str, TypedQuantity | str], list[Fault]]:
-    """Return every input that was given, read in its unit, and what is wrong with the others."""
+    """Return every input that was given, read in its unit, and the faults of the others."""
     typed: dict[str, TypedQuantity | str] = {}
     raw, faults = _in_declared_sizes(cls, raw)
     faults += unknown_names(filterfalse(cls.inputs.__contains__, raw), cls.inputs, "input")
@@ -248,7 +248,7 @@ def _note_missing(declared: Input, intake: Intake) -> None:
 
 
 def _bounded(declared: Input, typed: TypedQuantity) -> tuple[Any, Fault | Mask | None]:
-    """Return the value and what is wrong with it.
+    """Return the value and its faults.
 
     A faulty point of an array is masked, and is not a fault.
     """

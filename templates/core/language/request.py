@@ -52,7 +52,7 @@ def read_request(
 
 
 def _limits(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, GivenLimit], list[Fault]]:
-    """Return the limits that are given for the template's criteria, and what is wrong with them."""
+    """Return the limits that are given for the template's criteria, and their faults."""
     try:
         return read_limits(cls.declared_criteria, raw), []
     except InvalidInputs as error:
