@@ -185,7 +185,7 @@ class CadModel(TolerancedTemplate):
 
     @classmethod
     def from_quantities(cls, raw: Mapping[str, Any], pending: Collection[str] = ()) -> Self:
-        """Return a model from what a user typed; of a list also its text, `[0, 180] deg`.
+        """Return a model from typed inputs; of a list also its text, `[0, 180] deg`.
 
         Raises
         ------

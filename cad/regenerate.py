@@ -85,7 +85,7 @@ class Build:
 
 
 def ignore(done: float, what: str) -> None:
-    """Report progress to nobody."""
+    """Ignore reports of progress."""
 
 
 def as_text(model: CadModel) -> dict[str, str]:

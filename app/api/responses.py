@@ -144,7 +144,7 @@ class Threads:
     async def run_within(
         self, seconds: float, request: Request, function: Callable[P, T], *args: P.args, **options: P.kwargs
     ) -> T:
-        """Run a function as `run_for`, and defer the steps that take longer than so long [s].
+        """Run a function as `run_for`, and defer the steps that take longer than this time [s].
 
         The deadline of the calculation limits that time.
         """

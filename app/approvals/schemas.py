@@ -26,7 +26,7 @@ WRITTEN = rf"^[^{_CONTROL}]*[^{_CONTROL}{BLANK}][^{_CONTROL}]*$"
 
 
 def _written(text: object) -> object:
-    """Return whatever it is, unless it is a text without a letter or with control characters.
+    """Return the value; refuse a text without a letter or with control characters.
 
     Raises ValueError.
     """

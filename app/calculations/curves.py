@@ -31,7 +31,7 @@ _ROW = re.compile(r"row (?P<number>[0-9]+)(?:, column (?P<column>.*))?", re.DOTA
 
 @dataclass(frozen=True)
 class ReadCurves:
-    """The columns of a table as quantities by name, and what was assumed to read it."""
+    """The columns of a table as quantities by name, and the assumptions made to read it."""
 
     curves: dict[str, JsonObject]
     assumed: list[str]
@@ -49,7 +49,7 @@ def read_curves(body: bytes) -> dict[str, JsonObject]:
 
 
 def curves_of(body: bytes) -> ReadCurves:
-    """Return the columns of a file as quantities, and what was assumed.
+    """Return the columns of a file as quantities, and the assumptions made.
 
     Raises
     ------

@@ -38,7 +38,7 @@ LONGEST_NAME = 80
 
 
 def as_cycle(table: Table) -> Table:
-    """Return an indicator diagram of one cycle, with what was assumed; any other table as it is.
+    """Return an indicator diagram of one cycle, with the assumptions made; any other table as it is.
 
     Raises
     ------

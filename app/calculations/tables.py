@@ -44,7 +44,7 @@ class TableColumn:
 
 @dataclass(frozen=True)
 class Table:
-    """The columns of a table, and what was assumed to read it: the decimal mark, what a unit means."""
+    """The columns of a table, and the assumptions made to read it: the decimal mark, what a unit means."""
 
     columns: list[TableColumn]
     assumed: list[str]
@@ -217,7 +217,7 @@ def _column(name: str, scale: HeadingUnit, values: tuple[float, ...]) -> TableCo
 
 
 def _lines(text: str, most_rows: int, most_characters: int) -> tuple[list[_Line], bool, list[str]]:
-    """Return the lines of the table, whether a comma separates columns, and what was assumed."""
+    """Return the lines of the table, whether a comma separates columns, and the assumptions made."""
     if len(text) > most_characters:
         message = f"a table has at most {most_characters} characters, this one {len(text)}; take fewer rows"
         raise _wrong("table", "too_long", message)

@@ -180,7 +180,7 @@ def _no_drafts(id: str, version: int) -> type[Template]:
 
 
 async def _ended(future: Future[None], seconds: float) -> None:
-    """Wait for a future of a thread, at most so long [s], without any hold on it."""
+    """Wait for a future of a thread, for at most this time [s], without any hold on it."""
     loop, ended = asyncio.get_running_loop(), asyncio.Event()
 
     def wake(_: Future[None]) -> None:

@@ -86,7 +86,7 @@ class TeamFiles:
 
     @classmethod
     def of_file(cls, path: Path, check: Check) -> TeamFile:
-        """Return one file, examined by itself."""
+        """Return one file, examined separately."""
         return cls((), check)._current(path.parent, _signature(path), path)
 
     @property

@@ -25,7 +25,7 @@ from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
 from templates.core.language.answer import Answer
 from templates.core.language.evaluate import evaluate as evaluate_template
 from templates.core.language.template import Template
-from templates.core.paper.mathml import unit_symbol
+from templates.core.units.units import unit_symbol
 
 if TYPE_CHECKING:
     from app.catalogue.team import Snapshot
@@ -35,7 +35,7 @@ FOLDERS = "CRANKWRIGHT_TEMPLATE_FOLDERS"
 
 
 class CatalogueCommand(click.Command):
-    """A command that says what is wrong with the catalogue, not where the program noticed."""
+    """A command that reports the faults of the catalogue without a traceback."""
 
     def invoke(self, ctx: click.Context) -> object:
         """Run the command."""

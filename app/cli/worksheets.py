@@ -219,7 +219,7 @@ def _say(sheet: Sheet) -> None:
 
 
 def _doubt(sheet: Sheet | SheetSummary, sign: str) -> str:
-    """Return a remark that nobody proved the name of the reviewer, where that is so."""
+    """Return a remark if the name of the reviewer is not verified."""
     return "" if sheet.review_verified else f"{sign}review not verified"
 
 

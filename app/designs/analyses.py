@@ -60,7 +60,7 @@ def _further(cls: type[Template]) -> Mapping[str, str]:
 
 
 def questions(name: str, model: Model, cls: type[CadModel]) -> tuple[dict[str, Question], list[Fault]]:
-    """Return the analyses that a model declares, as far as they can be made, and what is wrong with them."""
+    """Return the analyses that a model declares, as far as they can be made, and their faults."""
     if not model.analyses:
         return {}, []
     declared = {kind: options for kind, options in model.analyses.items() if kind in KINDS}

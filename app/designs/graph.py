@@ -131,7 +131,7 @@ def _cell(
 
 
 def _blocks(choices: Choices) -> Iterator[tuple[Block | None, list[Fault]]]:
-    """Yield every step and every model, None where its template is unknown, with what is wrong with it."""
+    """Yield every step and every model, None where its template is unknown, with its faults."""
     for name, step in choices.document.steps.items():
         yield _step(choices, name, step)
     for name, model in choices.document.models.items():
@@ -323,7 +323,7 @@ def ordered(
 
 
 def _named(network: Network, cycle: Sequence[Node]) -> Iterator[str]:
-    """Return a cycle of nodes (its last is its first) in the names that its relations use."""
+    """Yield the nodes of a cycle (the last is the first) by the names that its relations use."""
     for node, following in pairwise(cycle):
         if isinstance(node, Cell):
             yield node.name

@@ -147,7 +147,7 @@ class Regeneration:
         return self._settled(prepared, context)[0]
 
     def _built(self, calculation: Calculation, context: JobContext) -> Calculation:
-        """Return the calculation once every model in it is built, and analysed as far as somebody uses it.
+        """Return the calculation once all its models are built and all used analyses are done.
 
         Models may wait for each other's measures, so each round makes what can be made.
         """

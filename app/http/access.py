@@ -63,7 +63,7 @@ class Access:
         self.app, self.refuse = app, refuse
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Refuse a key in the address, or pass on as somebody."""
+        """Refuse a key in the address, or identify the sender and pass on."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
@@ -99,7 +99,7 @@ class Access:
     async def _is_still(self, door: Door, scope: Scope, who: Principal) -> bool:
         """Return whether a request would be let in as the same principal now.
 
-        A stream lasts longer than a key.
+        A stream may outlive its key.
         """
         guest = await self._guest(door, scope)
         return guest is not None and guest.principal == who

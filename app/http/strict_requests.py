@@ -200,7 +200,7 @@ class _Parameter:
         self._is_required = field.field_info.is_required()
 
     def value(self, received: Mapping[str, str], faults: list[object]) -> object:
-        """Return the value that was received, or its default; add what is wrong with it to the faults."""
+        """Return the value that was received, or its default; add its faults to the list."""
         if (text := received.get(self.alias)) is None:
             faults += [_missing(*self._place)] if self._is_required else ()
             return self._default

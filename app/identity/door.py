@@ -44,7 +44,7 @@ class Door:
         self._asked_at = -FRESH
 
     async def is_open(self) -> bool:
-        """Return whether the service asks nobody for a key; nobody passes before that is read.
+        """Return whether the service needs no keys; no request passes before this is known.
 
         Raises
         ------

@@ -261,7 +261,7 @@ class Identity:
         self._write(lambda session: rows.end_session(session, digest(token)))
 
     def _write(self, unit: Callable[[Session], T]) -> T:
-        """Run a unit of work; whatever this server has verified before counts no longer."""
+        """Run a unit of work, then verify every key and session of this server again."""
         try:
             return self._database.write(unit)
         finally:

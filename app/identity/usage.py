@@ -112,7 +112,7 @@ def check(limits: Limits, used: PrincipalUsage, name: str) -> None:
 
 @contextmanager
 def working_for(database: Database, principal: str | None) -> Iterator[None]:
-    """Act for a principal by its id, and note how long that takes; LOCAL where nobody is named."""
+    """Act for a principal by its id, LOCAL without one, and record the time that this takes."""
     if principal is None or principal in BUILT_IN:
         with acting_as(LOCAL):
             yield

@@ -164,7 +164,7 @@ def _parameters(graph: Graph) -> Iterator[Reference]:
 
 
 def _is_incomplete(block: Block) -> bool:
-    """Return whether a model lacks parameters, or nobody asks for any output of a step.
+    """Return whether a model lacks parameters, or no output of a step is requested.
 
     It is checked alone.
     """

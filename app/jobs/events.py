@@ -171,7 +171,7 @@ class Events:
                 subscriber.send(event)
 
     def look(self, topics: Iterable[str] | None = None) -> None:
-        """Send what other servers have written of topics that somebody listens to, or of all of them.
+        """Send events that other servers wrote for topics with listeners, or for all topics.
 
         The newest page of rows is enough: subscribers read by themselves what they lack before it.
         """
@@ -188,7 +188,7 @@ class Events:
                     self.publish(*events_above(session, topic, start))
 
     def heard(self, topics: Iterable[str] | None = None) -> set[str]:
-        """Return those of these topics, or of all, to which somebody listens here."""
+        """Return those of these topics, or of all, that have listeners on this server."""
         with self._lock:
             return set(self._topics) if topics is None else self._topics.keys() & set(topics)
 

@@ -53,7 +53,7 @@ class ProgressKeeper:
             self._thread.join(_PATIENCE)
 
     def keep(self, job: Job, fraction: float, log: list[str]) -> None:
-        """Have the progress of a job stored; see `app.jobs.context.Keep`."""
+        """Store the progress of a job; see `app.jobs.context.Keep`."""
         with self._lock:
             self._latest[job.id] = job, fraction, log
         self._some.set()
@@ -91,7 +91,7 @@ class ProgressFollower:
         self._shown: dict[str, tuple[int, float, str]] = {}  # by job: attempt, progress, text
 
     def look(self, hints: Iterable[str] | None = None) -> None:
-        """Read the rows of jobs that other servers hint at, or of all that somebody listens to."""
+        """Read the rows of jobs that other servers name, or of all jobs with listeners."""
         if hints is None:
             heard = self._events.heard()
         else:

@@ -91,7 +91,7 @@ class Jobs:
         self._dispatcher.kinds[kind] = Kind(handler, on_failure, lane or (SLOW if is_slow else FAST))
 
     def run_within(self, around: Callable[[Job], AbstractContextManager[object]]) -> None:
-        """Have each job run within a context of its own."""
+        """Run each job within a context of its own."""
         self._dispatcher.around = around
 
     def start(self, lanes: Mapping[str, int] | None = None) -> None:
@@ -231,7 +231,7 @@ class Jobs:
         return 0 if since is None else operated(session) + self._database.clock.elapsed - since
 
     def wake(self, kind: str | None = None) -> None:
-        """Have the queue looked at, by all threads or by those of a kind's lane."""
+        """Wake all threads of the queue, or those of a kind's lane."""
         self._dispatcher.wake(kind)
         self.events.tell([f"queue:{kind or ''}"])
 
@@ -241,7 +241,7 @@ class Jobs:
             return _existing(session, id)
 
     def problem(self, id: str | None) -> Problem | None:
-        """Return why a job failed or was cancelled; None if it was not, or if there is no job at all."""
+        """Return why a job failed or was cancelled; None otherwise, or without a job."""
         return None if id is None else self.get(id).problem
 
     def page(self, limit: int, before: str | None = None) -> list[Job]:

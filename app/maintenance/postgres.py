@@ -50,7 +50,7 @@ def snapshot(url: str) -> Iterator[Snapshot]:
 
 
 def schema_of(url: str) -> str:
-    """Return the schema of a database; empty if it holds no tables at all.
+    """Return the schema of a database; empty if it has no tables.
 
     Raises
     ------

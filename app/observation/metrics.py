@@ -56,7 +56,7 @@ class RequestFigures(Collector):
         registry.register(self)
 
     def add(self, route: str, method: str, status: int, seconds: float) -> None:
-        """Count an answer that took so long [s]."""
+        """Count an answer that took this time [s]."""
         row = self._rows.get((route, method, status))
         if row is None:
             row = self._rows[route, method, status] = _Row()

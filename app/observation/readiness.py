@@ -92,7 +92,7 @@ class Files:
 
 
 def _look_at(writing: asyncio.Future[None]) -> None:
-    """Take the error of a write that ends after its test, which nobody else does."""
+    """Retrieve the error of a write that ends after its test, since no other caller does."""
     if not writing.cancelled():
         writing.exception()
 

@@ -102,7 +102,7 @@ class CalculationPool:
     def submit(
         self, client: str, function: Callable[[*Ts], object], *args: *Ts, lane: Lane = "answers"
     ) -> Calculation:
-        """Have a function calculated when it is the client's turn.
+        """Calculate a function when it is the client's turn.
 
         Raises
         ------

@@ -33,7 +33,7 @@ def capital(words: str) -> str:
 
 
 def isolated(text: object) -> Markup:
-    """Return a text of a user, escaped, in an element of its own that turns nothing beside it."""
+    """Return a user's text, escaped, in an element that isolates its writing direction."""
     return Markup("<bdi>{}</bdi>").format(balanced(str(text)))
 
 

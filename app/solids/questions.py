@@ -89,7 +89,7 @@ class Question:
         return hashlib.sha256(json.dumps(identity, sort_keys=True).encode()).hexdigest()
 
     def whatever_level(self) -> Question:
-        """Return the same of stress, whose mesh is refined until it settles; under 1 N·m."""
+        """Return the question without level, under 1 N·m: a stress refines its own mesh."""
         return replace(self, level=None, tolerance=None, load=1.0)
 
     def kept(self) -> dict[str, object]:

@@ -83,7 +83,7 @@ def _chosen(session: Session, mark: _Mark | None, number: int) -> bool:
 
 
 def _mark(store: Artifacts) -> _Mark | None:
-    """Return the mark in the store, if it has one; what nobody can read counts as a copy's."""
+    """Return the mark in the store, if it has one; an unreadable mark counts as that of a copy."""
     text = store.read_note(NOTE)
     if text is None:
         return None

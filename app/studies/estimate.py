@@ -32,7 +32,7 @@ class Pace:
     row: float
 
     def seconds(self, rows: int, calls: int = 0) -> float:
-        """Return the time of so many rows in so many calls, by default in as few as possible [s]."""
+        """Return the time of this number of rows in a number of calls, by default as few as possible [s]."""
         return self.row * rows + self.call * (calls or -(-rows // IN_CALL))
 
 
@@ -44,7 +44,7 @@ def estimated(
     levels: Levels,
     confirm: Levels | None,
 ) -> float:
-    """Return the processor time of a study of so many rows [s]."""
+    """Return the processor time of a study of this number of rows [s]."""
     body, names = ready.asked.body, tuple(criteria)
     pace = paced(ready, probe, names, levels)
     again = paced(ready, probe, names, confirm) if confirm is not None else pace

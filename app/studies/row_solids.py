@@ -188,7 +188,7 @@ class RowSolids:
                     result.columns[Reference.parse(f"{model.name}.{name}")][numbers] = value
 
     def _solid(self, model: Block, values: Mapping[str, float | list[float]]) -> Texts | Refusal:
-        """Return the parameters of a solid as text, or what is wrong with them."""
+        """Return the parameters of a solid as text, or their faults."""
         words = {n: _word(cell.raw) for n, cell in model.cells.items() if n not in values}
         try:
             shape = model.cls.from_si({**words, **values})

@@ -73,7 +73,7 @@ def given_rows(rows: Rows, engine: DesignEngine) -> Array:
 
 
 def _column(name: str, raw: Raw, unit: str, faults: list[Fault]) -> Array:
-    """Return a column [SI]; what is wrong with it is added to the faults, and the column is empty then."""
+    """Return a column [SI]; add its faults to the list, and return an empty column then."""
     try:
         value = read(raw, unit).si
     except FaultyText as error:
@@ -87,7 +87,7 @@ def _column(name: str, raw: Raw, unit: str, faults: list[Fault]) -> Array:
 
 
 def _cells(name: str, rows: Sequence[Mapping[str, Raw]], unit: str, faults: list[Fault]) -> Array:
-    """Return the cells of a column [SI]; what is wrong with them is added to the faults."""
+    """Return the cells of a column [SI]; add their faults to the list."""
     column = np.full(len(rows), np.nan)
     for number, row in enumerate(rows):
         try:

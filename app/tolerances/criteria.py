@@ -45,7 +45,7 @@ class CriterionVariable:
 
     @property
     def missing(self) -> list[str]:
-        """Return limits that nobody has given."""
+        """Return the missing limits."""
         block = self.subject.block
         if block is None:
             return []

@@ -35,7 +35,7 @@ def use(pid: int | None = None) -> Use:
 
 
 def kill(seconds: float = 1.0) -> None:
-    """Kill every descendant of this process, and wait until none lives, at most for so long [s].
+    """Kill every descendant of this process, and wait until none lives, for at most this time [s].
 
     What loses its parent meanwhile becomes a child of this process, so that it is seen in the next round.
     """

@@ -61,7 +61,7 @@ def fork_server(preload: Sequence[str], environment: Mapping[str, str]) -> ForkS
 
 
 def close() -> None:
-    """End those that nobody has taken."""
+    """End the unused fork servers."""
     while _started:
         _started.popitem()[1].close()
 

@@ -84,7 +84,7 @@ def _radii(faces: Integers, vertices: Integers, ends: Array) -> Array:
 
 
 def _neighbours(corners: Integers) -> tuple[Integers, Integers]:
-    """For each side that two triangles share: the one, and the other, each with the place of its side."""
+    """Return, for each side that two triangles share, both triangles with the index of their side."""
     sides = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1), axis=-1).reshape(-1, 2)
     order = np.lexsort(sides.T)
     twice = np.flatnonzero((sides[order[1:]] == sides[order[:-1]]).all(axis=1))

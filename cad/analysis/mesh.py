@@ -181,7 +181,7 @@ def bound_sizes(solid: Solid, fineness: Fineness) -> None:
 
 
 def _limits(edge: Any, most: float) -> tuple[float, float]:
-    """By what angle [rad] an edge turns, and how long [mm] a segment is that turns by the most allowed."""
+    """Return the angle [rad] by which an edge turns, and the longest segment [mm] that may span it."""
     length = edge.mass
     turn = _turning(edge) if length > 0 else 0.0
     return turn, length / ceil(turn / most - 1e-6) if turn > most else length

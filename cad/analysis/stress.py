@@ -174,7 +174,7 @@ def searched(solid: Solid) -> tuple[float, float]:
 
 
 def _extent(face: Any) -> tuple[float, float]:
-    """From which to which z [mm] the edges of a face reach; the kernel's boxes of curved faces are larger."""
+    """Return the range of z [mm] of a face's edges; the kernel's boxes of curved faces are larger."""
     levels = []
     for edge in face.edges:
         if edge.mass > 0:

@@ -125,7 +125,7 @@ def _pieces(lattice: Integers) -> Integers:
 
 
 def _shared(corners: Integers, lattice: Integers) -> tuple[Integers, Integers]:
-    """Of every point of every element: its number among those that differ; and where each number is first."""
+    """Return the number of each element's points among the distinct ones, and each number's first index."""
     numbers: dict[tuple[tuple[int, int], ...], int] = {}
     number: list[int] = []
     first: list[int] = []

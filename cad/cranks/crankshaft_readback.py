@@ -153,7 +153,7 @@ class ShaftReadback:
         return alike(map(read, self.throws), what)
 
     def _pin_bore(self, throw: ThrowReadback) -> float:
-        """Return the diameter of the cylinder that goes on from each pin through its web or webs."""
+        """Return the diameter of the cylinder that continues from each pin through its webs."""
         if self.split:
             inner = throw.faces[1], throw.faces[-2]
             crossing = (
@@ -165,7 +165,7 @@ class ShaftReadback:
         return max((c.diameter for c in through), default=0.0)
 
     def _journal_bore(self, throw: ThrowReadback) -> float:
-        """Diameter of the cylinder about the shaft that goes on through both of the outer faces."""
+        """Return the diameter of the cylinder about the shaft that passes through both outer faces."""
         sizes = []
         for face in (throw.faces[0], throw.faces[-1]):
             through = (
@@ -207,7 +207,7 @@ class ShaftReadback:
         }
 
     def pin_split(self, near: float) -> float:
-        """From each front pin to its rear one [deg], in that turn which is nearest to that wanted [deg]."""
+        """Return the angle from front to rear pins [deg], in the turn nearest to the requested angle."""
         turns = [degrees(rear - front) for front, rear in (throw.angles for throw in self.throws)]
         return near + alike((remainder(turn - near, 360) for turn in turns), "split pins")
 

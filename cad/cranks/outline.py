@@ -85,7 +85,7 @@ class Outline:
         return first, [side, arc], last
 
     def _square(self) -> tuple[Run, list[Run], Run]:
-        """Return a rectangular web, likewise."""
+        """Return a rectangular web in the same way."""
         h, a = self.half_width, self.half_angle
         first, last = ((self.tip, -h), (self.tip, h)), ((-h, h), (-h, -h))
         if self.counterweight > 0 and a > pi / 4:

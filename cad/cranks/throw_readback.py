@@ -59,7 +59,7 @@ def stubs(seen: PartSurfaces, webs: Webs) -> tuple[list[Surface], list[Surface]]
 
 
 def journal_bore(seen: PartSurfaces, webs: Webs) -> float:
-    """Return the diameter of the cylinder about the shaft that goes on through the web.
+    """Return the diameter of the cylinder about the shaft that continues through the web.
 
     Return 0 if there is none.
     """

@@ -52,7 +52,7 @@ class View:
 
     @property
     def box(self) -> tuple[Point, Point]:
-        """Return the lower left and upper right corner of what is drawn."""
+        """Return the lower left and upper right corner of the drawn shape."""
         points = [point for curve in (*self.visible, *self.hidden) for point in curve.points]
         across, up = [x for x, _ in points], [y for _, y in points]
         return (min(across), min(up)), (max(across), max(up))

@@ -103,10 +103,11 @@ class OilFilm(WarmOil, Journal):
     Without grooves a lobed bore is fed along the joints of its lobes, another along its widest gap.
     The error of each level was measured for plain, aligned bearings without grooves. Lobed and grooved ones
     state that of their meshes for film, eccentricity, attitude, largest pressure and side flow: 1.25 times
-    the last change by refinement, or more where the change before was large. With a tilt or a bell mouth
-    only mesh_error is stated. The film is extrapolated from 64 x 8 and 128 x 16 intervals. Where these differ
-    by over 1 %, 256 x 32 intervals follow; if the changes then do not fall as the square of the mesh, the
-    finest mesh answers. Grooves narrower than 5° or nearer to each other are not resolved.
+    the last change by refinement, or more where the change before was large. With a tilt, a bell
+    mouth or supply pressure only mesh_error is stated. The film is extrapolated from 64 x 8 and 128 x 16
+    intervals. Where these differ by over 1 %, 256 x 32 intervals follow; if the changes then do not fall as
+    the square of the mesh, the finest mesh answers. Grooves narrower than 5° or nearer to each other are not
+    resolved.
     Start line: while the journal is displaced from where it lies, the line of supply at the widest gap stays
     where it is (fixed, as a hole in the sleeve does), or turns with the journal (moving). At eps 0.1 and B/D
     1 K_xx is 0.83 W/c with the first and 1.91 with the second.
@@ -238,13 +239,16 @@ class OilFilm(WarmOil, Journal):
         """Errors were measured of plain, aligned bearings without grooves and supply pressure."""
         return not (self.is_shaped or (self.level == FED and is_fed(self.p_s, self.grooves)))
 
-    def own_error(self, output: str) -> Array | None:
+    def states_own_errors(self) -> bool:
+        """Of plain bearings those of the table hold."""
+        return not self.is_measured()
+
+    def own_error(self, output: str) -> Array:
         """The error by its meshes that a lobed or grooved bearing states, of which none was measured."""
-        if self.is_measured():
-            return None
         field = MESH_ERRORS.get(output)
         bent = (self.shape.mouth > 0) | (self.shape.tilt_x != 0) | (self.shape.tilt_y != 0)
-        error = np.where(bent, np.nan, np.nan if field is None else getattr(self.film, field))[()]
+        stated = np.nan if field is None else getattr(self.film, field)
+        error = np.where(bent | (self.p_s > 0), np.nan, stated)[()]
         return np.asarray(error / (np.pi / 2) if output == "attitude_angle" else error)
 
     @shared

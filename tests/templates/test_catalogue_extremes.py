@@ -1,8 +1,8 @@
 """Every template over twelve decades of its inputs, one by one, in pairs and as arrays, at every level.
 
 Each answer is a finite number, or none with its reason, or a refusal that names an input or a result. A
-result that cannot be negative is not, and none changes by more than tenfold where an input changes by a
-thousandth of a thousandth, unless a word in the answer or a limit of a table tells why.
+result that cannot be negative is not. None jumps, but where a word of the answer or a warning changes too, or
+where `STEPS` says why.
 """
 
 from itertools import product
@@ -35,6 +35,16 @@ NEVER_NEGATIVE = ("film_thickness", "clearance", "_life", "minimum_film", "side_
 """Parts of the names of outputs that mean nothing below zero."""
 SEIZED = {"thermal_clearance": "diametral_clearance"}
 """Templates whose clearance may be below zero, and the output of which a warning then says so."""
+STEPS = {
+    ("oil_film", "smallest_permissible_film"): "the table of ISO 7902-3 has steps",
+    ("oil_film", "fit_exponent"): "the paper's fit has three rows",
+    ("oil_film", "fit_factor"): "the paper's fit has three rows",
+}
+"""Outputs that jump, by template and name, and why."""
+JUMP = 0.02
+"""Change of a value, relative, at an input that changes by 1e-8 of itself, that may be a jump."""
+LEFT = 0.1
+"""Share of its change over a tenth of a decade that a jump makes there, unlike a value through zero."""
 BUILT_IN = find([Path(templates.__file__).parent], Template)
 LEVELS = [
     pytest.param(cls, level, id=f"{cls.id}-{cls.version}-{level or 'only'}")
@@ -84,7 +94,7 @@ def checked(cls, evaluation, where):
         value = np.asarray(np.nan if one.value is None else one.value, float)
         assert not np.isinf(value).any(), (name, where)
         missing = np.isnan(value)
-        if isinstance(formula, Profile):
+        if isinstance(formula, Profile) and missing.ndim >= formula.axes:
             missing = missing.any(axis=tuple(range(-formula.axes, 0)))
         reasons = np.asarray(one.reason if one.reasons is None else one.reasons, dtype=object)
         told = np.broadcast_to(reasons != None, np.broadcast_shapes(missing.shape, reasons.shape))  # noqa: E711
@@ -167,3 +177,79 @@ def dependents(cls, name):
     return {
         output for output, formula in cls.formulas.items() if attribute in cls.ancestors(formula.attribute)
     }
+
+
+def quick(cls, level):
+    """Whether a point takes milliseconds, as far as the most points at once tell."""
+    return cls.most_points.get(level, 10_000) >= 2000 and (cls.id, level) not in SECONDS_EACH
+
+
+JUMPY = [one for one in LEVELS if quick(*one.values)]
+
+
+@pytest.mark.parametrize(("cls", "level"), JUMPY)
+def test_property_nothing_jumps_without_a_word(cls, level):
+    start, jumps = starting(cls), []
+    for name in numeric(cls):
+        declared = cls.inputs[name]
+        if declared.meaning.integer or is_single(declared) or not start[name]:
+            continue
+        grid = start[name] * 10 ** np.linspace(-6, 6, 121)
+        whole = answer(cls, level, {**start, name: grid})
+        if whole is not None:
+            jumps += [f"{output} at {name}" for output in steepest(cls, whole, grid.size)
+                      if jumps_at(cls, level, name, output, whole, grid)]  # fmt: skip
+    assert not [jump for jump in jumps if (cls.id, jump.split(" at ")[0]) not in STEPS], jumps
+
+
+def numbers_of(cls, evaluation, count):
+    """The outputs that are one number a point."""
+    return {
+        name: np.broadcast_to(np.asarray(np.nan if one.value is None else one.value, float), count)
+        for name, one in evaluation.outputs.items()
+        if not isinstance(cls.formulas[name], (Text, Profile))
+    }
+
+
+def change(values):
+    """Relative changes between neighbours; 0 where there is no value."""
+    size = np.maximum(np.abs(values[1:]), np.abs(values[:-1]))
+    with np.errstate(invalid="ignore"):
+        return np.nan_to_num(np.abs(np.diff(values)) / np.where(size > 0, size, 1.0))
+
+
+def steepest(cls, whole, count):
+    """Outputs that change most between two neighbours, three at most."""
+    worst = {name: change(values).max() for name, values in numbers_of(cls, whole, count).items()}
+    return [name for name in sorted(worst, key=worst.get, reverse=True)[:3] if worst[name] > JUMP]
+
+
+def jumps_at(cls, level, name, output, whole, grid):
+    """Whether the largest change remains where the interval shrinks to nothing, and no word tells why."""
+    start = starting(cls)
+    k = int(change(numbers_of(cls, whole, grid.size)[output]).argmax())
+    low, high = grid[k], grid[k + 1]
+    coarse = float(np.abs(np.diff(numbers_of(cls, whole, grid.size)[output])[k]))
+    for _ in range(4):
+        near = np.linspace(low, high, 101)
+        part = answer(cls, level, {**start, name: near})
+        if part is None:
+            return False
+        k = int(change(numbers_of(cls, part, near.size)[output]).argmax())
+        low, high = near[k], near[k + 1]
+    ends = [answer(cls, level, {**start, name: end}) for end in (low, high)]
+    if None in ends or abs(high / low - 1) > 1e-8:
+        return False
+    if words(cls, ends[0]) != words(cls, ends[1]):
+        return False
+    values = np.array([numbers_of(cls, end, 1)[output][0] for end in ends])
+    return bool(change(values)[0] > JUMP and np.abs(np.diff(values))[0] > LEFT * coarse)
+
+
+def words(cls, evaluation):
+    """What the answer says in words: texts, warnings and reasons."""
+    texts = [
+        one.value if isinstance(cls.formulas[n], Text) else one.reason
+        for n, one in evaluation.outputs.items()
+    ]
+    return [*map(str, texts), *sorted(str(notice.code) for notice in evaluation.warnings)]

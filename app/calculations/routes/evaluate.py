@@ -81,7 +81,7 @@ async def _admit(request: Request) -> None:
 
 
 async def _answered(request: Request, question: Question) -> Response:
-    """Return the answer of a calculation process; 202 with a job once nobody waits for it any longer."""
+    """Return the answer of a calculation process, or 202 with a job if the client stops waiting."""
     questions, client = services_of(request).evaluations, await get_client(request)
     return await answered(questions, question, request, client, _patience(request), question.media_type)
 

@@ -91,7 +91,7 @@ _titles: WeakKeyDictionary[type[Template], dict[str, str]] = WeakKeyDictionary()
 
 
 def _description(cls: type[Template]) -> Mapping[str, object]:
-    """Return the description of a version, which nobody changes: it follows from the class alone."""
+    """Return the description of a version, which depends only on its class."""
     if (description := _described.get(cls)) is None:
         description = _described[cls] = describe(cls)
     return description

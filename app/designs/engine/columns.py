@@ -110,7 +110,7 @@ UNEQUAL = (
 
 
 def scattered(count: int, parts: Iterable[tuple[Indices | slice, Column]]) -> Column:
-    """Return one column of so many rows from columns of parts of the rows; NaN in the others.
+    """Return one column of this number of rows from columns of parts of the rows; NaN in the others.
 
     Raises
     ------

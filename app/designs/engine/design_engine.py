@@ -196,7 +196,7 @@ class DesignEngine:
         criteria: Collection[str] = (),
         by_tables: bool = False,
     ) -> float:
-        """Estimate how long a call for so many rows takes [s].
+        """Estimate how long a call for this number of rows takes [s].
 
         By the processor time of the last call of this kind, if it had some rows; before it by the tables of
         errors, which is an order of magnitude, and knows no heat balance. `by_tables` takes these always:

@@ -146,7 +146,7 @@ class Shifts:
         return Upstream(uncertain, unknown, frozenset(one for one in origins.stopped if kinds[one]))
 
     def _kinds(self, origin: Reference) -> frozenset[str]:
-        """Return the places of an output in an `Upstream`; in rows it may have more than one."""
+        """Return the indices of an output in an `Upstream`; with rows it may have several."""
         estimate = self.estimate(origin)
         if isinstance(estimate, Absent):
             return frozenset()

@@ -76,7 +76,7 @@ class JudgedColumn:
     is_known: bool
 
     def within(self, whole: JudgedColumn | None, chunk: slice, count: int) -> JudgedColumn:
-        """Return a column of so many rows, of which these are a chunk; the rest is that of `whole`."""
+        """Return a column of this number of rows, of which these are a chunk; the rest is that of `whole`."""
         columns = _columns(whole, count)
         for name in COLUMNS:
             columns[name][chunk] = getattr(self, name)

@@ -52,7 +52,7 @@ class WantedVariant:
 def detailed(
     wanted: WantedVariant, database: Database, catalogues: Catalogues
 ) -> Reply[WantedVariant, VariantDetail]:
-    """Return the variant, unless its caller does not wait so long.
+    """Return the variant, if its caller waits long enough.
 
     Raises
     ------

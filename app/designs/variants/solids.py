@@ -40,7 +40,7 @@ Settle = Callable[[Prepared, JobContext], Calculation]
 
 
 def plain_problem(error: Exception) -> JsonObject:
-    """Return an error as a problem, where nobody knows more of it."""
+    """Return an unexpected error as a problem."""
     return {"type": "about:blank", "title": "The variant failed", "status": 422, "detail": str(error)}
 
 

@@ -101,7 +101,7 @@ def _limit(runs: Sequence[_Run]) -> None:
 
 
 def _begun(document: Document, name: str, available: Available) -> _Run | Outcome:
-    """Return a variant before anything of it is calculated, or what is wrong with its network."""
+    """Return a variant before anything of it is calculated, or the faults of its network."""
     overrides = document.variants[name]
     own = applied(document, overrides)
     graph, faults = build_graph(own, available.catalogues)

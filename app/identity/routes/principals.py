@@ -61,7 +61,7 @@ def show_principal(id: Id, identity: TheIdentity) -> Principal:
 
 @router.post("/principals/{id}", dependencies=ADMIN, responses=refusals(404, 409))
 def change_principal(id: Id, body: PrincipalPatch, identity: TheIdentity) -> Principal:
-    """Another name, other roles or limits; disabled, its keys and sessions let nobody in."""
+    """Change the name, roles or limits of a principal, or disable it with its keys and sessions."""
     limits = None if body.limits is None else body.limits.model_dump(exclude_unset=True)
     changes = Changes(body.name, body.roles, limits, body.disabled)
     return views.principal(identity.change(id, changes))

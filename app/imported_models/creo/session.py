@@ -64,7 +64,7 @@ class CreoSession:
     id: str = field(default="")
 
     def connect(self) -> None:
-        """Connect; raises ProgramMissing if nobody answers, or Creo does not run."""
+        """Connect; raises ProgramMissing if CREOSON does not answer or Creo does not run."""
         answer = self._post({"command": "connection", "function": "connect"}, "creo_unreachable", ())
         self.id = str(answer.get("sessionId") or "")
         running = self.ask("connection", "is_creo_running", {}, "creo_unreachable")
@@ -171,7 +171,7 @@ class CreoDrawing:
 
     @contextmanager
     def _session(self, cancelled: threading.Event) -> Iterator[CreoSession]:
-        """Open a session once nobody else has one; close it in the end without saving changes."""
+        """Open a session when no other one is open; close it at the end without saving changes."""
         end = time.monotonic() + self.seconds
         while not self._turn.acquire(timeout=_GLANCE):
             if cancelled.is_set():

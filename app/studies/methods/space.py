@@ -88,7 +88,7 @@ class Values:
         return np.asarray((nearest + 0.5) / len(self.values))
 
     def steps(self, count: int) -> Array:
-        """Return all values, whatever the count."""
+        """Return all values, regardless of the count."""
         return np.array(self.values)
 
 

@@ -42,7 +42,7 @@ class Journal(Protocol):
         ...
 
     def keep(self, name: str, stage: Stage) -> None:
-        """Keep a stage as far as it has come."""
+        """Store the present state of a stage."""
         ...
 
 

@@ -210,7 +210,7 @@ async def _again(
 
 
 def _refuse_taken(design: Design, patch: Patch) -> None:
-    """Let nobody add what would take the place of a parameter, a step or a model.
+    """Refuse a name that a parameter, a step or a model already has.
 
     Raises
     ------

@@ -61,7 +61,7 @@ def check_form_token(request: Request, typed: dict[str, str]) -> None:
 
 
 def keep_signed_in(request: Request, response: Response, token: str, hours: float) -> None:
-    """Give a browser the cookie of a session in which somebody has signed in, for so long [h]."""
+    """Set the cookie of a signed-in session in a browser, for a time [h]."""
     response.set_cookie(
         SIGN_IN,
         token,

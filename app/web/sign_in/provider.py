@@ -46,7 +46,7 @@ async def leave(request: Request, back: Text = "/") -> Response:
 async def come_back(
     request: Request, identity: TheIdentity, state: Text = "", code: Text = "", error: Text = ""
 ) -> Response:
-    """From the provider; the page leads on by itself, so that the new cookie is sent along.
+    """Finish the sign-in; the page then redirects, so that the browser sends the new cookie.
 
     Raises
     ------

@@ -26,7 +26,7 @@ EMPTY = Grid((("variant",), ("unit",)))
 
 @dataclass(frozen=True)
 class RefusedTable:
-    """A table that was not saved: its cells as typed, and what is wrong with them by address."""
+    """A table that was not saved: its cells as typed, and their faults by address."""
 
     grid: Grid
     faults: Mapping[str, str]

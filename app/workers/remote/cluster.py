@@ -109,7 +109,7 @@ class Cluster:
         on_progress: Reporter | None,
         cancelled: threading.Event,
     ) -> tuple[Outcome, str]:
-        """Run an order on one machine; raises NeverBegun if it has gone before the order came there."""
+        """Run an order on one machine; raises NeverBegun if the machine is lost before the order arrives."""
         with self._place(lane, preferred, cancelled) as (client, machine):
             try:
                 return self._run_there(client, lane, order, machine, on_progress, cancelled), machine

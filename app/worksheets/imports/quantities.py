@@ -227,7 +227,7 @@ def _monomial(node: Node) -> ScaledNumber:
 
 
 def is_infinite(text: str) -> bool:
-    """Return whether a stored number stands for infinity."""
+    """Return whether a stored number means infinity."""
     try:
         return not abs(float(text)) < BEYOND
     except ValueError:

@@ -56,7 +56,7 @@ class ImportRecord(SheetRecord):
 
 
 def record_of(row: Row) -> ImportRecord | None:
-    """Return the record of a version; None if somebody typed it. Nothing but an import writes records."""
+    """Return the import record of a version; None for a typed worksheet."""
     return cast("ImportRecord | None", row.imported)
 
 
@@ -116,7 +116,7 @@ def _stands(region: RegionRecord, present: set[str]) -> bool:
 
 
 def require_resolved(row: Row) -> None:
-    """Return if no region of the import of a version forbids its release.
+    """Check that no region of the import of a version forbids its release.
 
     Raises
     ------

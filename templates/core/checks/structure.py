@@ -71,7 +71,7 @@ def _docstring(cls: type[Template]) -> Iterator[FileFault]:
 
 
 def _units(cls: type[Template]) -> Iterator[FileFault]:
-    """Yield declared units that nobody knows."""
+    """Yield declared units that are unknown."""
     for declared in cls.declarations.values():
         try:
             _ = declared.meaning.scale

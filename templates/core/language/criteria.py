@@ -202,7 +202,7 @@ def _limit(evaluated: EvaluatedValues, limit: Limit, others: Mapping[str, Estima
 
 
 def _default(evaluated: EvaluatedValues, limit: Limit) -> Estimate | Absent:
-    """Return a limit that nobody gave.
+    """Return a missing limit.
 
     An end of an input that is a list, where that is declared and given.
     """

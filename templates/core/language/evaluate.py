@@ -293,7 +293,7 @@ def _with_nulls(shown: Array) -> list[Any]:
 
 
 def _standing(cls: type[Template], given: Mapping[str, Any]) -> list[Notice]:
-    """Return the warnings that hold whatever is calculated from these inputs.
+    """Return the warnings that hold for every calculation from these inputs.
 
     Of the version, and of tolerances.
     """

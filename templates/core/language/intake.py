@@ -20,6 +20,7 @@ from templates.core.language.calculation import Calculation
 from templates.core.language.causes import BROKEN, suspects
 from templates.core.language.ledger import Mask, Notice
 from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Input, Requirement, Table
+from templates.core.language.violations import violation
 from templates.core.units.quantity import TypedQuantity, read, scaled
 from templates.core.units.tolerance import LONGEST_TEXT, Tolerance
 from templates.core.units.units import Value, unit
@@ -28,7 +29,7 @@ from templates.core.units.units import Value, unit
 def read_inputs(
     cls: type[Calculation], raw: Mapping[str, Any]
 ) -> tuple[dict[str, TypedQuantity | str], list[Fault]]:
-    """Return every input that was given, read in its unit, and what is wrong with the others."""
+    """Return every input that was given, read in its unit, and the faults of the others."""
     typed: dict[str, TypedQuantity | str] = {}
     raw, faults = _in_declared_sizes(cls, raw)
     faults += unknown_names(filterfalse(cls.inputs.__contains__, raw), cls.inputs, "input")
@@ -247,7 +248,7 @@ def _note_missing(declared: Input, intake: Intake) -> None:
 
 
 def _bounded(declared: Input, typed: TypedQuantity) -> tuple[Any, Fault | Mask | None]:
-    """Return the value and what is wrong with it.
+    """Return the value and its faults.
 
     A faulty point of an array is masked, and is not a fault.
     """
@@ -421,7 +422,8 @@ def remarks(self: Calculation) -> Iterator[Notice]:
     """Yield a warning for every rule that refuses nothing, where it does not hold, and for every remark."""
     for rule in self._remarks:
         if not np.all(rule.function(self)):
-            yield from (Notice(rule.warning, name, f"{rule.sentence}; {rule.remedy}") for name in rule.names)
+            for name in rule.names:
+                yield Notice(rule.warning, name, f"{violation(self, rule, name)}; {rule.remedy}")
     for declared, remark in self._readings:
         if declared.attribute in vars(self) and declared.name not in self.ledger.typed:
             yield Notice("turns", declared.name, remark)

@@ -66,7 +66,7 @@ def states_any(cls: type[Template], level: str) -> bool:
 
 
 def is_affordable(cls: type[Template], level: str, points: int) -> bool:
-    """Return whether a level takes so many points at once, at a stated cost within the budget.
+    """Return whether a level takes a number of points at once, at a stated cost within the budget.
 
     Without a stated cost it does if it states an error.
     """

@@ -106,10 +106,9 @@ class Accuracy:
         its largest absolute value; NaN where none is stated. Scalars, or arrays of the shape of the points.
         """
         errors = self.expected(template, template.level, outputs)
-        for name in self.own(template.level).keys() & errors.keys():
-            own = template.own_error(name)
-            if own is not None:
-                errors[name] = own + self._added(template, name)
+        own = self.own(template.level) if template.states_own_errors() else {}
+        for name in own.keys() & errors.keys():
+            errors[name] = template.own_error(name) + self._added(template, name)
         return errors
 
     def expected(self, template: Template, level: str, outputs: Iterable[str]) -> dict[str, Any]:
@@ -120,7 +119,7 @@ class Accuracy:
         tables = levels.get(level or SINGLE, {})
         there = template if level == template.level else template.at(level)
         exact = {name for name in names if _same_at_all_levels(template, name)} if template.levels else set()
-        own = self.own(level or SINGLE)
+        own = self.own(level or SINGLE) if there.states_own_errors() else {}
         available = tables if there.is_measured() else {}
         measured = [name for name in names if name in available and name not in exact and name not in own]
         cell = self._cell(template) if measured else None

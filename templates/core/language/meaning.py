@@ -62,7 +62,7 @@ class Bounds:
 
     @property
     def open(self) -> bool:
-        """Return whether there is no limit at all."""
+        """Return whether there is no limit."""
         return all(getattr(self, side) is None for side, _ in _RELATIONS)
 
 

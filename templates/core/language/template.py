@@ -118,7 +118,7 @@ class Template(Calculation):
 
     @classmethod
     def from_quantities(cls, raw: Mapping[str, Any], pending: Collection[str] = ()) -> Self:
-        """Return a template from what a user typed: read, convert to SI, check.
+        """Return a template from typed inputs: read, convert to SI, check.
 
         Once, before any formula runs.
 
@@ -173,11 +173,12 @@ class Template(Calculation):
         """Return the measured case of such inputs, where errors were measured apart for several."""
         return ""
 
-    def own_error(self, output: str) -> Array | None:
-        """Return the relative error of an output that the level itself states; NaN without one [-].
+    def states_own_errors(self) -> bool:
+        """Return whether what a level states of itself holds for such inputs, not the measured errors."""
+        return True
 
-        None where the measured error holds instead.
-        """
+    def own_error(self, output: str) -> Array:
+        """Return the relative error of an output that the level itself states; NaN without one [-]."""
         return np.full(self.shape_of_points(), np.nan)[()]
 
     def starting_level(self) -> str:

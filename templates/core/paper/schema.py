@@ -230,7 +230,7 @@ def _limits_of_levels(declared: Declaration) -> Iterator[dict[str, Any]]:
 def documentation(cls: type[Template]) -> Mapping[str, list[str]]:
     """Return the sections of the docstring (Limits, Errata, References), each as its paragraphs or lines.
 
-    A line that begins a new sentence begins a new item; other lines go on.
+    A line that begins a new sentence begins a new item; other lines continue the item.
     """
     parts = re.split(r"\n\n?(\w+)\n-{3,}\n", cls.documentation())
     return {name: _items(text) for name, text in zip(parts[1::2], parts[2::2], strict=True)}

@@ -49,7 +49,7 @@ _ORDER = (
 
 
 class Builder:
-    """Reads statement after statement; what one refuses does not hide what is wrong with the next."""
+    """Reads statement after statement; what one refuses does not hide the faults of the next."""
 
     def __init__(self, chunks: list[Chunk]) -> None:
         self.built, self.names = Built(), Names()
@@ -122,7 +122,7 @@ class Builder:
         self.built.statements.append(parsed(chunk))
 
     def _announce(self, statement: ParsedStatement) -> None:
-        """Let other statements use a name before the formula behind it is read."""
+        """Declare a name, so that other statements can use it before its formula is read."""
         match statement.kind:
             case "given" | "formula":
                 name, unit_text, axis = statement.parts[:3]
@@ -243,7 +243,9 @@ class Builder:
         unknowns = [str(unknown.children[0]) for unknown in parts]
         if len(unknowns) > MOST_UNKNOWNS:
             message = f"a system has at most {MOST_UNKNOWNS} unknowns"
-            raise statement.refuse("too_large", message, parts[MOST_UNKNOWNS], "solve for some in formulas")
+            raise statement.refuse(
+                "too_large", message, parts[MOST_UNKNOWNS], "solve some unknowns in separate formulas"
+            )
         meanings: dict[str, Meaning] = {}
         for unknown in parts:
             name, unit_text, words, clauses = unknown.children

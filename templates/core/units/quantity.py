@@ -141,7 +141,7 @@ def scaled(typed: TypedQuantity, factor: float) -> TypedQuantity:
 
 
 def read_any(raw: Any) -> TypedQuantity:
-    """Read a quantity of whatever kind its own unit says.
+    """Read a quantity of any kind; its unit decides.
 
     Raises
     ------

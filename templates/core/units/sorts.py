@@ -42,11 +42,11 @@ class Sort:
 
 
 Part = tuple[Any, Sort]
-"""A node and what it gives."""
+"""A node and its result."""
 
 
 def applied(operation: Operation, parts: Sequence[Part]) -> Part:
-    """Return an operation applied to its parts, and what it gives.
+    """Return an operation applied to its parts, and its sort.
 
     A single value that meets a list is given a trailing axis here, once.
 

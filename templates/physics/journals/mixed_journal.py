@@ -301,7 +301,7 @@ def composite_roughness(R_1: Array, R_2: Array) -> Array:
 
 @units("m", "m", returns="1", latex=r"\frac{{{0}^2-{1}^2}}{{{0}^2+{1}^2}}")
 def roughness_asymmetry(R_1: Array, R_2: Array) -> Array:
-    """What one face has more of the square of the roughness than the other, 0 if both are smooth [-]."""
+    """Asymmetry of the squared roughness of both faces, 0 if both are smooth [-]."""
     total = np.hypot(R_1, R_2)
     return ((R_1 - R_2) / np.where(total > 0, total, 1.0) * ((R_1 + R_2) / np.where(total > 0, total, 1.0)))[
         ()

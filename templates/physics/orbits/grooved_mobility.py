@@ -103,7 +103,7 @@ class Passing:
         return ring_of(replace(self.load, S=rows), finer)
 
     def covered(self, nodes: int) -> Array:
-        """Return the share s on the ring of `periodic_orbit` that has so many nodes, (C, nodes) [-].
+        """Return the share s on the ring of `periodic_orbit` that has this number of nodes, (C, nodes) [-].
 
         Raises
         ------
