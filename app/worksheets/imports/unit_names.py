@@ -33,13 +33,13 @@ _Place = Literal["", "factor", "quantity"]
 
 def letters_of(regions: Iterable[Original]) -> frozenset[str]:
     """Return the single letters that stand behind a number somewhere in a sheet, and so are units in it."""
-    found = set[str]()
+    letters = set[str]()
     for region in regions:
         if region.math is not None:
-            found.update(
+            letters.update(
                 key_of(name) for name, place in _placed(region.math, frozenset()) if place == "quantity"
             )
-    return frozenset(found & _LETTERS)
+    return frozenset(letters & _LETTERS)
 
 
 def label_units(math: Node, defined: Collection[str], letters: Collection[str]) -> None:
